@@ -63,7 +63,7 @@ class _Plan:
     Attributes:
         rows, unknowns: in the order of the blocks.
         later: the places of the unknowns that a later group reads, ascending.
-        largest: rows of the largest block. parity: of the two orders.
+        largest: rows of the largest block.
     """
 
     rows: Indices
@@ -71,7 +71,6 @@ class _Plan:
     groups: tuple[_Group, ...]
     later: Indices
     largest: int
-    parity: float
 
 
 @dataclass(frozen=True)
@@ -115,10 +114,9 @@ class Substitution:
 
 @dataclass(frozen=True)
 class BlockInverse:
-    """The inverse of matrices, shape (..., n, n), and the signs of their determinants, shape (...,)."""
+    """The inverse of matrices, shape (..., n, n), and the parts that it was made of."""
 
     inverse: Array
-    sign: Array
     substitution: Substitution
 
 
@@ -177,12 +175,12 @@ def _plan_of(filled: bytes, n: int) -> _Plan:
         for (low, high), read in zip(spans, outside, strict=True)
     )
     largest = max(len(block.rows) for block in blocks)
-    return _Plan(rows, unknowns, groups, later, largest, _parity(rows) * _parity(unknowns))
+    return _Plan(rows, unknowns, groups, later, largest)
 
 
 def _inverted(matrix: Array, plan: _Plan) -> BlockInverse:
     batch, n = matrix.shape[:-2], matrix.shape[-1]
-    inverse, sign = np.zeros_like(matrix), np.full(batch, plan.parity)
+    inverse = np.zeros_like(matrix)
     # Rows of the inverse that are read again, their columns in the order of the blocks.
     saved = np.zeros((*batch, len(plan.later), n))
     own_parts, outside_parts = [], []
@@ -191,7 +189,6 @@ def _inverted(matrix: Array, plan: _Plan) -> BlockInverse:
         some = matrix[..., plan.rows[low:high], :]
         diagonal = some[..., plan.unknowns[low:high]]
         outside = some[..., plan.unknowns[group.reads]]
-        sign = sign * np.linalg.slogdet(diagonal)[0]
         own = np.asarray(np.linalg.inv(diagonal), dtype=float)
         found = np.empty((*batch, high - low, high))
         found[..., low:] = own
@@ -201,7 +198,7 @@ def _inverted(matrix: Array, plan: _Plan) -> BlockInverse:
         saved[..., first:last, :high] = found[..., plan.later[first:last] - low, :]
         own_parts.append(own)
         outside_parts.append(outside)
-    return BlockInverse(inverse, sign, Substitution(plan, tuple(own_parts), tuple(outside_parts)))
+    return BlockInverse(inverse, Substitution(plan, tuple(own_parts), tuple(outside_parts)))
 
 
 def product_of_few_entries(left: Array, right: Array) -> Array:
@@ -226,16 +223,3 @@ def product_of_few_entries(left: Array, right: Array) -> Array:
 def _times(matrix: Array, x: Array) -> Array:
     """Products of matrices and vectors; of one, `dot` takes half the time that the operator @ does."""
     return np.asarray(matrix.dot(x) if matrix.ndim == 2 and x.ndim == 1 else (matrix @ x[..., None])[..., 0])
-
-
-def _parity(order: Indices) -> float:
-    """1 of an even permutation, -1 of an odd one: a cycle of even length changes it."""
-    seen, parity = np.zeros(len(order), dtype=bool), 1.0
-    for start in range(len(order)):
-        length, here = 0, start
-        while not seen[here]:
-            seen[here] = True
-            here, length = int(order[here]), length + 1
-        if length and length % 2 == 0:
-            parity = -parity
-    return parity

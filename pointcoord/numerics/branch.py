@@ -35,8 +35,6 @@ Indices = NDArray[np.intp]
 
 # Share of the distance within which an assembly is alone that may lie between it and the series.
 NEAR = 0.25
-# Binary digits that a double keeps of a whole number, and one to spare.
-DIGITS = 52
 # Degree of an interpolant, places at which it is looked at, by what factor a segment is divided finer where
 # it shows nothing, and into how many parts at most.
 DEGREE, BETWEEN, FINER, MOST_PARTS = 6, 17, 4, 16
@@ -51,7 +49,7 @@ SURE = 1.0 - 1e-9
 
 
 def orientation(system: QuadraticMap, factors: Factors) -> Array:
-    """The signs of the diagonal blocks of C_u as one number, shape (...,); NaN where one is singular.
+    """The signs of the determinants of the diagonal blocks of C_u, shape (..., blocks); 0 of a singular one.
 
     Rows are scaled by positive numbers, which changes no sign.
     """
@@ -60,17 +58,12 @@ def orientation(system: QuadraticMap, factors: Factors) -> Array:
         blocks = factors.matrix[..., one.rows[:, :, None], one.unknowns[:, None, :]]
         single = blocks.shape[-1] == 1
         signs[..., one.numbers] = np.sign(blocks[..., 0, 0]) if single else np.linalg.slogdet(blocks)[0]
-    return sides(signs)
+    return signs
 
 
-def sides(signs: Array) -> Array:
-    """Signs, shape (..., blocks), as one number, shape (...,); NaN where one of them is none.
-
-    Of more than 52 blocks, as many as a double has digits, every 52nd ones share a digit.
-    """
-    digits = np.where(signs < 0.0, 1, 0) << (np.arange(signs.shape[-1]) % DIGITS)
-    whole = np.isfinite(signs).all(axis=-1) & (signs != 0.0).all(axis=-1)
-    return np.where(whole, np.bitwise_xor.reduce(digits, axis=-1), np.nan)
+def same_signs(one: Array, other: Array) -> NDArray[np.bool_]:
+    """Whether all signs of orientations, (..., blocks), are the same, and none is 0 or no number, (...,)."""
+    return np.asarray((one * other > 0.0).all(axis=-1))
 
 
 def on_branch(
@@ -90,17 +83,17 @@ def on_branch(
 
 
 def same_side(
-    system: QuadraticMap, y: Array, factors: Factors, side: Array | float, last: NDArray[np.bool_] | bool
+    system: QuadraticMap, y: Array, factors: Factors, side: Array, last: NDArray[np.bool_] | bool
 ) -> NDArray[np.bool_]:
     """Whether the end of a proven step is surely on the branch of its start, shape (...,).
 
     In exact arithmetic no such step crosses a fold or a crossing; what does has run out of digits.
 
     Args:
-        y: the end, shape (..., size). factors: of C_u there. side: orientation at the start, shape (...,).
+        y: the end, shape (..., size). factors: of C_u there. side: orientation at the start.
         last: whether nothing goes on from there: only what lies beyond may be on another branch.
     """
-    same = np.asarray(orientation(system, factors) == side)
+    same = same_signs(orientation(system, factors), side)
     return same if np.all(last) else same & (last | ~hidden(system, y, factors))
 
 

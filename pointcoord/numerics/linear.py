@@ -37,7 +37,6 @@ class Factors:
         row_scale: the power of two that scales each row, shape (..., n).
         condition: condition number of the scaled matrix in the maximum norm, shape (...,); infinite
             where the matrix is exactly singular.
-        sign: of the determinant, shape (...,), if it came with the inverse.
         substitution: solutions of the scaled matrix by its blocks, if it was inverted so.
     """
 
@@ -45,7 +44,6 @@ class Factors:
     inverse: Array
     row_scale: Array
     condition: Array
-    sign: Array | None = None
     substitution: Substitution | None = None
 
     def solve(self, right: Array) -> Array:
@@ -77,10 +75,10 @@ class Factors:
         """The same inverse for a matrix of shape (..., n, n) nearby, |I - inverse matrix| = z well below 1.
 
         A solution's error is z^2 of itself, because it is refined with the new matrix; the condition number
-        is that of the old one. The determinant's sign is the same: no matrix between the two is singular.
+        is that of the old one.
         """
         scaled = matrix * self.row_scale[..., None]
-        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.sign, self.substitution)
+        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.substitution)
 
     def _times(self, x: Array) -> Array:
         """The product with vectors of shape (..., n), of the matrix' entries only."""
@@ -103,7 +101,6 @@ class Factors:
             self.inverse.reshape(*batch, n, n),
             self.row_scale.reshape(*batch, n),
             self.condition.reshape(batch),
-            None if self.sign is None else self.sign.reshape(batch),
             None if self.substitution is None else self.substitution.reshaped(batch),
         )
 
@@ -114,7 +111,6 @@ class Factors:
             self.inverse[members],
             self.row_scale[members],
             self.condition[members],
-            None if self.sign is None else self.sign[members],
             None if self.substitution is None else self.substitution.taken(members),
         )
 
@@ -134,17 +130,8 @@ class Factors:
         result = [self.matrix.copy(), self.inverse.copy(), self.row_scale.copy(), self.condition.copy()]
         for mine, other in zip(result, (new.matrix, new.inverse, new.row_scale, new.condition), strict=True):
             mine[members] = other
-        sign = None
-        if self.sign is not None and new.sign is not None:
-            sign = self.sign.copy()
-            sign[members] = new.sign
         matrix, inverse, row_scale, condition = result
-        return Factors(matrix, inverse, row_scale, condition, sign)
-
-    @cached_property
-    def orientation(self) -> Array:
-        """Sign of the determinant, shape (...,); positive scales of rows do not change it."""
-        return np.asarray(np.linalg.slogdet(self.matrix)[0]) if self.sign is None else self.sign
+        return Factors(matrix, inverse, row_scale, condition)
 
     @cached_property
     def preconditioner(self) -> Array:
@@ -206,7 +193,7 @@ def factorise_plainly(matrix: Array) -> Factors:
     blocks = inverse_by_blocks(safe) if sound.all() else None
     if blocks is not None:
         condition = _condition(scaled, blocks.inverse)
-        return Factors(scaled, blocks.inverse, row_scale, condition, blocks.sign, blocks.substitution)
+        return Factors(scaled, blocks.inverse, row_scale, condition, blocks.substitution)
     try:
         inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:

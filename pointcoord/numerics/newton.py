@@ -153,6 +153,21 @@ def newton_refine(
     )
 
 
+def factors_at(system: QuadraticMap, reached: Converged, tolerance: float = 0.0) -> tuple[Factors, Work]:
+    """Factors of C_u at a solved place; Newton's own, of the place before its last step, where these do.
+
+    With z = omega |last step| their solutions are off by z^2 of themselves, which is to be rounding or below
+    a tolerance.
+    """
+    matrix = system.jacobian(reached.y)
+    with np.errstate(all="ignore"):
+        z = reached.lipschitz_with(system, reached.factors) * reached.last_step
+        near = (z * z <= max(EPS, tolerance)).all()
+    if near:
+        return reached.factors.moved(matrix), Work()
+    return factorise(matrix), Work(factorisations=int(np.prod(reached.y.shape[:-1])))
+
+
 def rounding_of(system: QuadraticMap, reached: Converged) -> Array:
     """Largest component of the rounding error of a last step, shape (...,); zero where that is far larger."""
     return np.asarray(_noise(system, reached.y, reached.factors, reached.last_step).max(axis=-1))

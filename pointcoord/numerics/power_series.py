@@ -28,6 +28,7 @@ from pointcoord.numerics.partial_map import stages
 from pointcoord.numerics.quadratic import MovingProducts, QuadraticMap
 
 Array = NDArray[np.float64]
+Combine = Callable[[Array], Array]
 
 # Products of pairs of coefficients at once: 7 MB for a map of a hundred terms.
 PAIRS = 8192
@@ -136,46 +137,51 @@ def _recursion(
         first = edges.index(len(begun))
     # What the known ones alone make of each power; sums of products follow degree after degree.
     by_known = factors.solve_many(np.moveaxis(system.derivative_by(y, moving), -1, 0))
-    still = own[edges[first] :]
-    still[..., :n] = -_combined(still[..., n:-1], by_known)
-    solved = _solved_sums(factors, terms)
-    # The factors of each power by its exponents, 0 where it is still to come.
+    low = edges[first]
+    own[low:, ..., :n] = -_combined(own[low:, ..., n:-1], by_known)
+    solved, advanced = _solved_sums(factors, terms)
+    # The factors of each power by its exponents, without the sums that are still to come.
     table = np.zeros([*[every.order + 1] * inputs, *y.shape[:-1], terms.ends.shape[-1]])
     left, right = table[..., : terms.count], table[..., -terms.count :]
     table = table.reshape(-1, *table.shape[inputs:])
+    table[every.places(1, every.count)] = terms.factors(own[1:])
     # Of one input there are few pairs of each.
     squares = inputs > 1 and terms.ends.shape[-1] == terms.count
     pairs, times = every.pairs(squares), every.times.reshape(-1, *[1] * (left.ndim - inputs))
-    places = [every.places(low, high) for low, high in pairwise(edges)]
-    table[every.places(1, edges[first])] = terms.factors(own[1 : edges[first]])
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
-    sums = np.zeros((every.count - edges[every.order], *left.shape[inputs:]))
-    for degree in range(first, every.order + 1):
-        low, high = edges[degree], edges[degree + 1]
-        here, each = own[low:high, ..., :n], sums[: high - low]
-        if degree > 1:
-            for place in range(low, high):
-                up, down = pairs[place]
-                np.einsum(subscripts, left[up], right[down], out=each[place - low])
-            if squares:
-                each *= times[low:high]
-            here -= solved(each)
-        table[places[degree]] = terms.factors(own[low:high])
+    sums = np.zeros((every.count - low, *left.shape[inputs:]))
+    for start, stop in pairwise(edges[max(first, 2) :]):
+        each = sums[start - low : stop - low]
+        for place in range(start, stop):
+            up, down = pairs[place]
+            # A power still to come is multiplied by the constant term's 0.
+            np.einsum(subscripts, left[up], right[down], out=each[place - start])
+        if squares:
+            each *= times[start:stop]
+        table[every.places(start, stop)] -= advanced(each)
+    own[low:, ..., :n] -= solved(sums)
     own[0, ..., :n] = y[..., :n]
     own[0, ..., n:-1] = known[0]
     return own[..., :-1]
 
 
-def _solved_sums(factors: Factors, terms: MovingProducts) -> Callable[[Array], Array]:
-    """From sums of products, (powers, ..., count), to C_u^-1 times the rows that they make, (powers, ..., n).
+def _solved_sums(factors: Factors, terms: MovingProducts) -> tuple[Combine, Combine]:
+    """From sums of products, (powers, ..., count), to what they take off the unknowns and off their factors.
 
-    Of a matrix that is not inverted by blocks C_u^-1 is multiplied into the rows' coefficients beforehand.
+    The unknowns lose C_u^-1 times the rows that the sums make, (powers, ..., n), and the factors of all
+    products the differences of these. Of a matrix that is not inverted by blocks both are one product of
+    matrices, made beforehand.
     """
     if factors.substitution is not None:
-        return lambda sums: factors.solve_many(terms.gather(sums))
+
+        def substituted(sums: Array) -> Array:
+            return factors.solve_many(terms.gather(sums))
+
+        return substituted, lambda sums: terms.factors_of_first(substituted(sums))
     members = [1] * (factors.row_scale.ndim - 1)
     each = factors.solve_many(terms.rows_of_each.reshape(terms.count, *members, -1))
-    return lambda sums: _combined(sums, each)
+    factors_of_each = terms.factors_of_first(each)
+    return lambda sums: _combined(sums, each), lambda sums: _combined(sums, factors_of_each)
 
 
 def _combined(shares: Array, vectors: Array) -> Array:

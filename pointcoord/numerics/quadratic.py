@@ -412,6 +412,12 @@ class MovingProducts:
         plus, minus = self.ends
         return np.asarray(moving.take(plus, axis=-1) - moving.take(minus, axis=-1))
 
+    def factors_of_first(self, first: Array) -> Array:
+        """The same where the first coordinates alone are not 0."""
+        moving = np.zeros((*first.shape[:-1], int(self.ends.max()) + 1))
+        moving[..., : first.shape[-1]] = first
+        return self.factors(moving)
+
     @cached_property
     def _differences(self) -> Array:
         """The same as a matrix, two entries +-1 a column: a difference is rounded once, as by itself."""

@@ -27,10 +27,10 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import hidden, orientation, same_side
+from pointcoord.numerics.branch import hidden, orientation, same_side, same_signs
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
-from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.curved_path import SHARES, Path, beside_the_way, straight_way
 from pointcoord.solve.proven_path import proven_end
@@ -175,8 +175,8 @@ def follow(
             reached = newton_refine(system, guess, left_open[1, able], allowed)
             # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
             # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding.
-            there = factorise(system.jacobian(reached.y))
-            work += reached.work + Work(factorisations=len(able))
+            there, factorised = factors_at(system, reached)
+            work += reached.work + factorised
             apart = np.abs(reached.y - guess)[:, :n]
             good = reached.converged & proof.taken(able).within(apart)
             good &= same_side(system, reached.y, there, side[active[able]], end[able] == 1.0)
@@ -194,8 +194,8 @@ def follow(
     if stopped.size:
         # Where a path ends is told as exactly as an assembly is.
         ends = newton_refine(system, y[stopped], offset[stopped] * (1.0 - done[stopped])[:, None])
-        there = factorise(system.jacobian(ends.y))
-        work += ends.work + Work(factorisations=len(stopped))
+        there, factorised = factors_at(system, ends)
+        work += ends.work + factorised
         good = ends.converged & same_side(system, ends.y, there, side[stopped], True)
         stopped = stopped[good]
         y[stopped], rest[stopped] = ends.y[good], 0.0
@@ -250,7 +250,7 @@ def stepped(system: QuadraticMap, y: Array, target: Array) -> Array | None:
         reached = newton_refine(system, guess)
         there = factorise(system.jacobian(reached.y))
         beside = np.abs(reached.y - guess).max() <= BESIDE * np.abs(tangent).max()
-    kept = float(orientation(system, there)) == float(orientation(system, factors))
+    kept = same_signs(orientation(system, there), orientation(system, factors))
     return reached.y if bool(beside and reached.converged) and kept else None
 
 

@@ -34,8 +34,8 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.curved_path import LEAST_WEIGHTS, ROOM, StraightWay
@@ -81,7 +81,7 @@ def proven_end(
     """
     if factors.singular or system.dense is None or bool(hidden(system, y, factors)):
         return None
-    n, left, side = system.unknowns, 1.0, float(orientation(system, factors))
+    n, left, side = system.unknowns, 1.0, orientation(system, factors)
     here, local, work = y, factors, Work()
     begun = _begun(system, y, factors, target - y[n:], offset)
     if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, factors):
@@ -108,7 +108,7 @@ def _end(
     system: QuadraticMap,
     guess: Array,
     target: Array,
-    side: float,
+    side: Array,
     tolerance: float,
     work: Work,
     offset: Array | float = 0.0,
@@ -116,11 +116,11 @@ def _end(
     """The assembly near a guess with known coordinates, if Newton's method finds it on the same side."""
     guess[system.unknowns :] = target
     reached = newton_refine(system, guess, offset, tolerance)
-    there = factorise(system.jacobian(reached.y))
+    there, factorised = factors_at(system, reached)
     # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
     if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, tolerance < np.inf))):
         return None
-    work += reached.work + Work(factorisations=1)
+    work += reached.work + factorised
     return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)
 
 

@@ -38,8 +38,8 @@ from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden, on_branch, regular_along
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.newton import Converged, newton_refine, rounding_of
+from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.newton import Converged, factors_at, newton_refine, rounding_of
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -635,21 +635,8 @@ def confirmed(
         good = reached.converged & (reached.first_step <= tolerance + 2.0 * noise)
     if not good.any():
         return Confirmed(good, None, Work())
-    ahead, work = _factors_at(system, reached, tolerance)
+    ahead, work = factors_at(system, reached, SOLVED * tolerance)
     return Confirmed(good & on_branch(system, series, s, reached, ahead), ahead, work)
-
-
-def _factors_at(system: QuadraticMap, reached: Converged, tolerance: float) -> tuple[Factors, Work]:
-    """Factors of C_u at a solved end; Newton's own, of the place before its last step, where these do.
-
-    With z = omega |last step| their solutions are off by z^2 of themselves.
-    """
-    matrix = system.jacobian(reached.y)
-    z = reached.lipschitz_with(system, reached.factors) * reached.last_step
-    if (z * z <= max(EPS, SOLVED * tolerance)).all():
-        return reached.factors.moved(matrix), Work()
-    members = int(np.prod(reached.y.shape[:-1]))
-    return factorise(matrix), Work(factorisations=members)
 
 
 def lengths_by_sizes(logs: Array, settings: Settings) -> Array:

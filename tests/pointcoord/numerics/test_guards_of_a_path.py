@@ -16,7 +16,7 @@ from pointcoord.numerics.branch import (
     on_branch,
     orientation,
     regular_along,
-    sides,
+    same_signs,
     surely_regular,
 )
 from pointcoord.numerics.counters import Work
@@ -141,13 +141,14 @@ def test_a_pose_within_rounding_of_a_meeting_is_hidden_and_no_other() -> None:
 def test_an_end_beyond_the_fold_is_not_on_the_branch() -> None:
     assert not regular(1.0, -2.0)
     before, beyond = (factorise(PARABOLA.jacobian(np.array([u, 1.0, 0.0, 1.0]))) for u in (1.0, -1.0))
-    assert orientation(PARABOLA, before) != orientation(PARABOLA, beyond)
+    assert not same_signs(orientation(PARABOLA, before), orientation(PARABOLA, beyond))
 
 
 def test_two_folds_at_once_are_not_one_that_is_none() -> None:
-    both = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
-    assert len(set(sides(both).tolist())) == 4
-    assert np.isnan(sides(np.array([1.0, 0.0])))
+    every = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
+    assert np.array_equal(same_signs(every[:, None], every), np.eye(4, dtype=bool))
+    for none in (0.0, np.nan):
+        assert not same_signs(np.array([1.0, none]), np.array([1.0, none]))
 
 
 def path_to(w: float) -> tuple[float, float]:

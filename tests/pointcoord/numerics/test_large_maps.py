@@ -45,7 +45,6 @@ def test_block_after_block_gives_the_inverse_and_the_determinants_sign(
     wanted = np.linalg.inv(matrix)
     allowed = N * EPS * condition * np.abs(wanted).max(axis=(-2, -1), keepdims=True)
     assert (np.abs(found.inverse - wanted) <= allowed).all()
-    assert np.array_equal(found.sign, np.linalg.slogdet(matrix)[0])
 
 
 def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,9 +53,6 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
     by_blocks = factorise(matrix)
     monkeypatch.setattr(block_inverse, "LARGE", np.inf)
     plain = factorise(matrix)
-    assert by_blocks.sign is not None
-    assert plain.sign is None
-    assert np.array_equal(by_blocks.orientation, plain.orientation)
     assert by_blocks.condition == pytest.approx(plain.condition, rel=1e-10)
     x = by_blocks.solve(right)
     assert (np.abs(x - plain.solve(right)).max(axis=-1) <= 8 * EPS * plain.condition * np.abs(x).max()).all()
@@ -68,10 +64,11 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
         by_blocks.taken(np.array([2, 0])),
         by_blocks.reshaped((1, 3)).reshaped((3,)).taken(np.array([2, 0])),
     ):
-        assert np.array_equal(some.orientation, plain.orientation[[2, 0]])
+        assert np.array_equal(some.solve(right[[2, 0]]), x[[2, 0]])
     turned = factorise(matrix[[1]] * np.where(np.arange(N) == 7, -1.0, 1.0))
     replaced = by_blocks.replaced(np.array([1]), turned)
-    assert np.array_equal(replaced.orientation, plain.orientation * [1.0, -1.0, 1.0])
+    assert np.array_equal(replaced.preconditioner[1], turned.preconditioner[0])
+    assert np.array_equal(replaced.preconditioner[::2], by_blocks.preconditioner[::2])
 
 
 @pytest.mark.parametrize("batch", [(), (1,), (2, 3)])
@@ -106,8 +103,6 @@ def test_products_with_few_entries_are_the_products(columns: int) -> None:
 def test_one_large_matrix_is_factorised_by_blocks_as_a_batch_is() -> None:
     matrix = hidden_triangle(np.random.default_rng(8))
     alone, batch = factorise(matrix), factorise(matrix[None])
-    assert alone.sign is not None
-    assert alone.sign == batch.orientation[0]
     assert np.array_equal(alone.inverse, batch.inverse[0])
 
 

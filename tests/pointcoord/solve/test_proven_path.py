@@ -185,7 +185,7 @@ def test_a_planted_fault_in_what_is_left_out_is_seen(monkeypatch: pytest.MonkeyP
 def test_an_end_on_the_other_side_or_without_assembly_is_none(start: float, w: float) -> None:
     # From u = -1 Newton's method finds the other root of w = 1, and of w < 0 there is none.
     guess = np.array([start, 1.0, 0.0, 1.0])
-    side = float(orientation(PARABOLA, factorise(PARABOLA.jacobian(AT_ONE))))
+    side = orientation(PARABOLA, factorise(PARABOLA.jacobian(AT_ONE)))
     assert proven_path._end(PARABOLA, guess, np.array([w, 0.0, 1.0]), side, 0.0, Work()) is None
     right = proven_path._end(PARABOLA, AT_ONE.copy(), np.array([1.1, 0.0, 1.0]), side, 0.0, Work())
     assert right is not None
