@@ -165,7 +165,7 @@ def factors_at(system: QuadraticMap, reached: Converged, tolerance: float = 0.0)
         near = (z * z <= max(EPS, tolerance)).all()
     if near:
         return reached.factors.moved(matrix), Work()
-    return factorise(matrix), Work(factorisations=int(np.prod(reached.y.shape[:-1])))
+    return factorise(matrix), Work(factorisations=reached.converged.size)
 
 
 def rounding_of(system: QuadraticMap, reached: Converged) -> Array:

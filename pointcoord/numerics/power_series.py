@@ -56,14 +56,12 @@ def expand(
     """
     n = system.unknowns
     places = np.flatnonzero(known[..., 1:, :].reshape(-1, known.shape[-1]).any(axis=0))
-    first = None if begun is None else np.moveaxis(begun[..., :n], -2, 0)
+    first = None if begun is None else powers_first(begun[..., :n])
     moving = np.broadcast_to(known[..., places], (*y.shape[:-1], known.shape[-2], len(places)))
-    found = expand_moving(
-        system, factors, y, np.moveaxis(moving, -2, 0), (places + n).tolist(), first, inputs
-    )
+    found = expand_moving(system, factors, y, powers_first(moving), (places + n).tolist(), first, inputs)
     series = np.empty((*y.shape[:-1], known.shape[-2], y.shape[-1]))
     series[..., n:] = known
-    series[..., :n] = np.moveaxis(found[..., :n], 0, -2)
+    powers_first(series)[..., :n] = found[..., :n]
     series[..., 0, :] = y
     return series
 
@@ -136,7 +134,7 @@ def _recursion(
         own[1 : len(begun), ..., :n] = begun[1:]
         first = edges.index(len(begun))
     # What the known ones alone make of each power; sums of products follow degree after degree.
-    by_known = factors.solve_many(np.moveaxis(system.derivative_by(y, moving), -1, 0))
+    by_known = factors.solve_many(powers_first(system.derivative_by(y, moving).swapaxes(-1, -2)))
     low = edges[first]
     own[low:, ..., :n] = -_combined(own[low:, ..., n:-1], by_known)
     solved, advanced = _solved_sums(factors, terms)
@@ -189,6 +187,12 @@ def _combined(shares: Array, vectors: Array) -> Array:
     return np.asarray(np.matmul(shares, vectors, axes=[(0, -1), (0, -1), (0, -1)]))
 
 
+def powers_first(series: Array) -> Array:
+    """A view of series, (..., powers, n), in the order (powers, ..., n)."""
+    last = series.ndim - 1
+    return series.transpose(last - 1, *range(last - 1), last)
+
+
 def multiplied(left: Array, right: Array, pairs: Products) -> Array:
     """Coefficients of products of series.
 
@@ -222,7 +226,7 @@ def cross_series(a: Array, b: Array, inputs: int = 1, doubled: bool = False) -> 
     pairs = products(inputs, order, (0, 2 * order if doubled else order), 0)
     left = np.concatenate([a[..., CYCLE], a[..., BACK]], axis=-1)
     right = np.concatenate([b[..., BACK], b[..., CYCLE]], axis=-1)
-    found = multiplied(np.moveaxis(left, -2, 0), np.moveaxis(right, -2, 0), pairs)
+    found = multiplied(powers_first(left), powers_first(right), pairs)
     result = np.empty((*found.shape[:-1], 3))
     result[pairs.targets] = found[..., :3] - found[..., 3:]
-    return np.moveaxis(result, 0, -2)
+    return result.transpose(*range(1, result.ndim - 1), 0, result.ndim - 1)

@@ -300,7 +300,7 @@ class _Joint:
     @property
     def members(self) -> int:
         """How many poses it is."""
-        return int(np.prod(self.y.shape[:-1]))
+        return self.factors.condition.size
 
     def taken(self, members: Numbers) -> _Joint:
         """Some of them."""
@@ -510,7 +510,7 @@ class _Course:
     def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
         """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
         lengths, decay = self.measure(segment)
-        return float(np.min(lengths)), decay
+        return float(lengths.min()), decay
 
     def measure(self, segment: Segment) -> tuple[Array, Decay | None]:
         """The same for each member, (members,), with what the one of the shortest length tells."""
@@ -518,7 +518,7 @@ class _Course:
         if not (self.measured and self.measured[0][0] is segment):
             logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
             lengths, decay = lengths_by_sizes(logs, self.settings), None
-            length = float(np.min(lengths))
+            length = float(lengths.min())
             if np.isfinite(length):
                 found = decay_by_sizes(logs, length)
                 decay = Decay(found.radius * segment.scale, found.spread)
