@@ -216,7 +216,7 @@ def _condition(matrix: Array, inverse: Array) -> Array:
 def _norm(matrix: Array) -> Array:
     """The largest sum of magnitudes of a row, shape (...,)."""
     if matrix.shape[-2] < block_inverse.LARGE:
-        return np.asarray(np.abs(matrix).sum(axis=-1).max(axis=-1))
+        return np.asarray((np.abs(matrix) @ _ones(matrix.shape[-1])).max(axis=-1))
     parts = (matrix[..., low : low + ROWS, :] for low in range(0, matrix.shape[-2], ROWS))
     return np.asarray(np.max([np.abs(part).sum(axis=-1).max(axis=-1) for part in parts], axis=0))
 

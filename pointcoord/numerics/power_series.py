@@ -57,7 +57,8 @@ def expand(
     n = system.unknowns
     places = np.flatnonzero(known[..., 1:, :].reshape(-1, known.shape[-1]).any(axis=0))
     first = None if begun is None else powers_first(begun[..., :n])
-    moving = np.broadcast_to(known[..., places], (*y.shape[:-1], known.shape[-2], len(places)))
+    moving = np.empty((*y.shape[:-1], known.shape[-2], len(places)))
+    moving[...] = known[..., places]
     found = expand_moving(system, factors, y, powers_first(moving), (places + n).tolist(), first, inputs)
     series = np.empty((*y.shape[:-1], known.shape[-2], y.shape[-1]))
     series[..., n:] = known
@@ -87,9 +88,11 @@ def expand_moving(
     if inputs == 1:
         return _recursion(system, factors, y, known, driven, begun, inputs)
     n, every = system.unknowns, powers_counted(inputs, len(known))
-    there = np.abs(known).max(axis=tuple(range(1, known.ndim - 1)), initial=0.0) > 0.0
+    # By members side by side in memory, which is four times as quick.
+    members_last = np.ascontiguousarray(known.reshape(every.count, -1, len(driven)).swapaxes(1, 2))
+    there = (members_last != 0.0).any(axis=-1)
     moved = tuple((number, every.variables_of(there[:, i])) for i, number in enumerate(driven))
-    series = np.zeros((every.count, *y.shape[:-1], n + len(driven)))
+    series = np.moveaxis(np.zeros((n + len(driven), every.count, *y.shape[:-1])), 0, -1)
     series[0, ..., :n] = y[..., :n]
     series[..., n:] = known
     place = {number: n + i for i, number in enumerate(driven)}

@@ -414,15 +414,20 @@ class MovingProducts:
 
     def factors_of_first(self, first: Array) -> Array:
         """The same where the first coordinates alone are not 0."""
-        moving = np.zeros((*first.shape[:-1], int(self.ends.max()) + 1))
+        moving = np.zeros((*first.shape[:-1], self.size))
         moving[..., : first.shape[-1]] = first
         return self.factors(moving)
+
+    @cached_property
+    def size(self) -> int:
+        """How many coordinates move, with the last 0."""
+        return int(self.ends.max()) + 1
 
     @cached_property
     def _differences(self) -> Array:
         """The same as a matrix, two entries +-1 a column: a difference is rounded once, as by itself."""
         plus, minus = self.ends
-        matrix = np.zeros((self.ends.max() + 1, len(plus)))
+        matrix = np.zeros((self.size, len(plus)))
         matrix[plus, np.arange(len(plus))] += 1.0
         matrix[minus, np.arange(len(minus))] -= 1.0
         return matrix

@@ -693,7 +693,7 @@ def gone_on(logs: Array) -> Array:
     later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
     last = (later - fall * ahead).max(axis=-1)
     before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
-    return np.stack([before, last], axis=-1)
+    return np.array([before, last]).T
 
 
 def _fall(logs: Array) -> tuple[int, Array]:
@@ -701,7 +701,7 @@ def _fall(logs: Array) -> tuple[int, Array]:
     count = logs.shape[-1]
     window = WINDOW
     there = np.isfinite(logs[:, 1:])
-    for member in there[~there.all(axis=-1)]:
+    for member in there if not there.all() else ():
         # A gap that was there once may come again.
         window = max(window, int(np.diff(np.flatnonzero(member) + 1, prepend=0).max(initial=1)))
     window = min(window, count - 2)

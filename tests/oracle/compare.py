@@ -55,16 +55,19 @@ def options_of(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--count", type=int, help="random cars: the first so many; with --freeze, how many to keep at least"
     )
-    parser.add_argument("--factor", type=float, help="speed: the ratio now / frozen that is a failure")
+    parser.add_argument("--factor", type=float, help="speed: the ratio now / before that is a failure")
     parser.add_argument("--frozen", type=Path, default=HERE / "frozen", help="the folder of what was frozen")
     options = parser.parse_args(arguments)
     unknown = [part for part in options.parts if part not in NAMES]
     if unknown:
         parser.error(f"no part is called {unknown[0]}; there are: {', '.join(NAMES)}")
-    if options.freeze and (SCENES_QUICK in options.parts or not (options.parts or options.all)):
-        parser.error("--freeze needs the parts to freeze; scenes-quick is a piece of scenes")
+    pieces = {SCENES_QUICK, SPEED}.intersection(options.parts)
+    if options.freeze and (pieces or not (options.parts or options.all)):
+        parser.error(
+            "--freeze needs the parts to freeze; scenes-quick is a piece of scenes, speed is measured"
+        )
     if options.all:
-        options.parts = [name for name in NAMES if name != SCENES_QUICK]
+        options.parts = [*PARTS, RANDOM] if options.freeze else [*PARTS, RANDOM, SPEED]
     options.parts = options.parts or list(QUICK)
     return options
 
@@ -106,16 +109,12 @@ def hold(part: str, options: argparse.Namespace, folder: Path) -> Comparison:
 
 
 def run_speed(options: argparse.Namespace, folder: Path) -> bool:
-    """Freeze the speed table, or report it: whether a ratio is above the factor that is asked for.
+    """Report the speed table: whether a ratio is above the factor that is asked for.
 
     Raises:
-        FileNotFoundError: it was never frozen.
+        FileNotFoundError: the commit that it is compared with is not there.
     """
-    if options.freeze:
-        speed.freeze(options.frozen, folder)
-        return False
-    frozen = speed.read(options.frozen)
-    lines, most = speed.told(frozen, speed.measured(folder))
+    lines, most = speed.told(*speed.by_turns(folder))
     print(*lines, sep="\n", flush=True)
     return options.factor is not None and most > options.factor
 
@@ -134,7 +133,8 @@ def main(arguments: list[str]) -> int:
                     continue
                 held.append(hold(part, options, Path(folder)))
             except FileNotFoundError as error:
-                print(f"{part}: {error.filename} was never frozen; try --freeze", file=sys.stderr)
+                told = error.strerror if part == SPEED else "was never frozen; try --freeze"
+                print(f"{part}: {error.filename}: {told}", file=sys.stderr)
                 return 2
         for difference in held[-1].differences:
             print(difference)

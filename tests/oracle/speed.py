@@ -1,28 +1,52 @@
-"""The speed table: every ratio of `tests/benchmarks/speed.py`, work against other work of the same run."""
+"""Every ratio of `tests/benchmarks/speed.py`, of this checkout and of a commit before, by turns."""
 
 from __future__ import annotations
 
 import json
 import os
-import platform
+import statistics
 import subprocess
-from datetime import UTC, datetime
+import sys
 from pathlib import Path
-from typing import Any
 
-from program import ROOT, python
-from record import read_text, write_text
+from program import ONE_CORE, ROOT
 
-SIZE = os.environ.get("SPEED", "small")  # or full; each has a table of its own
-FILE = f"speed-{SIZE}.json"
+COMMIT = "babc22c"
+"""The last one before a suspension became a file."""
+TURNS = 4
+SIZE = os.environ.get("SPEED", "small")  # or full
 FACTORS = (1.3, 2.0)  # what issues 17 and 18 allow
 
+Ratios = dict[str, float]
 
-def measured(folder: Path) -> dict[str, float]:
-    """The ratios of one run, by the name of the figure, at the sizes of SIZE."""
+
+def by_turns(folder: Path) -> tuple[list[Ratios], list[Ratios]]:
+    """The ratios of some runs of the commit before and of this checkout, one after the other, by figure.
+
+    A ratio moves with the machine, its load and its processor's kind, so that two are compared that were
+    taken next to each other.
+
+    Raises:
+        FileNotFoundError: the commit is not there, as in a clone without its history.
+    """
+    tree = folder / COMMIT
+    add = ("git", "worktree", "add", "--detach", "--quiet", str(tree), COMMIT)
+    if subprocess.run(add, cwd=ROOT, capture_output=True).returncode:
+        raise FileNotFoundError(2, "there is no such commit in this clone", COMMIT)
+    try:
+        runs = [(_measured(tree, folder), _measured(ROOT, folder)) for _ in range(TURNS)]
+    finally:
+        subprocess.run(("git", "worktree", "remove", "--force", str(tree)), cwd=ROOT, capture_output=True)
+    return [before for before, _ in runs], [now for _, now in runs]
+
+
+def _measured(tree: Path, folder: Path) -> Ratios:
+    """The ratios of one run of a checkout, by the name of the figure."""
     target = folder / "speed.json"
-    options = ("-n", "0", "-p", "benchmark", "--benchmark-json", target, "-q")
-    python("-m", "pytest", "tests/benchmarks/speed.py", *options, OPENBLAS_NUM_THREADS="1", SPEED=SIZE)
+    options = ("-n", "0", "-p", "benchmark", "--benchmark-json", str(target), "-q")
+    environment = {**os.environ, **ONE_CORE, "PYTHONPATH": str(tree), "SPEED": SIZE}
+    command = (sys.executable, "-m", "pytest", "tests/benchmarks/speed.py", *options)
+    subprocess.run(command, cwd=tree, env=environment, capture_output=True)
     content = json.loads(target.read_text(encoding="utf-8"))
     return {_figure(one["name"]): one["extra_info"]["ratio"] for one in content["benchmarks"]}
 
@@ -32,51 +56,24 @@ def _figure(test: str) -> str:
     return test.partition("[")[2].removesuffix("]")
 
 
-def freeze(frozen: Path, folder: Path, runs: int = 2) -> None:
-    """Measure some runs, one after the other, and keep all of them with the lowest ratio of each figure."""
-    git = ("git", "log", "-1", "--format=%h %s", "--", "pointcoord", "absolute", "validate")
-    content: dict[str, Any] = {
-        "commit": subprocess.run(git, cwd=ROOT, capture_output=True, text=True).stdout.strip(),
-        "date": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
-        "machine": f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.release()}",
-        "python": platform.python_version(),
-        "size": SIZE,
-        "runs": [],
-        "load": [],
-    }
-    for number in range(runs):
-        (folder / str(number)).mkdir()
-        content["runs"].append(measured(folder / str(number)))
-        content["load"].append(os.getloadavg()[0])
-        ratios = content["runs"]
-        content["lowest"] = {name: min(run[name] for run in ratios if name in run) for name in ratios[0]}
-        write_text(frozen / FILE, content)
+def told(before: list[Ratios], now: list[Ratios]) -> tuple[list[str], float]:
+    """A line for each figure with the lowest and the middle ratio of either, and the largest factor.
 
-
-def _processor() -> str:
-    names = [line for line in Path("/proc/cpuinfo").read_text().splitlines() if line.startswith("model name")]
-    return names[0].partition(":")[2].strip() if names else platform.processor()
-
-
-def read(frozen: Path) -> dict[str, Any]:
-    """The frozen table.
-
-    Raises:
-        FileNotFoundError: there is none of this size.
+    A factor is that of the lowest ratios: what else the machine did only adds to a time.
     """
-    return dict(read_text(frozen / FILE))
-
-
-def told(content: dict[str, Any], now: dict[str, float]) -> tuple[list[str], float]:
-    """A line for each figure with now / frozen, and the largest of these."""
-    lines = [f"speed: frozen on {content['date']}, {content['machine']}, sizes {content['size']}"]
-    times = {name: now[name] / ratio for name, ratio in content["lowest"].items() if name in now}
-    for name, factor in times.items():
-        above = [f"{limit:g}" for limit in FACTORS if factor > limit]
+    lines = [f"speed: {TURNS} turns with {COMMIT}, sizes {SIZE}, load {os.getloadavg()[0]:.1f}"]
+    factors = {}
+    for name in before[0]:
+        if not all(name in run for run in now):
+            lines.append(f"speed | {name} | gone")
+            continue
+        old, new = ([run[name] for run in runs] for runs in (before, now))
+        factors[name] = min(new) / min(old)
+        middle = statistics.median(new) / statistics.median(old)
+        above = [f"{limit:g}" for limit in FACTORS if factors[name] > limit]
         words = f", above {' and '.join(above)}" if above else ""
         lines.append(
-            f"speed | {name} | frozen {content['lowest'][name]:.3g} | now {now[name]:.3g} | "
-            f"{factor:.2f} times{words}"
+            f"speed | {name} | before {min(old):.3g} | now {min(new):.3g} | {factors[name]:.2f} times "
+            f"({middle:.2f} of medians){words}"
         )
-    lines += [f"speed | {name} | gone" for name in content["lowest"].keys() - now.keys()]
-    return lines, max(times.values(), default=float("inf"))
+    return lines, max(factors.values(), default=float("inf"))

@@ -55,6 +55,8 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
     plain = factorise(matrix)
     assert by_blocks.condition == pytest.approx(plain.condition, rel=1e-10)
     x = by_blocks.solve(right)
+    # Of one member by itself the processor may add in another order.
+    allowed = 8 * EPS * plain.condition.max() * np.abs(x).max()
     assert (np.abs(x - plain.solve(right)).max(axis=-1) <= 8 * EPS * plain.condition * np.abs(x).max()).all()
     # One of the matrices for several right sides.
     one, several = by_blocks.taken(np.array([0])).reshaped(()), rng.uniform(-1.0, 1.0, (4, N))
@@ -64,7 +66,7 @@ def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -
         by_blocks.taken(np.array([2, 0])),
         by_blocks.reshaped((1, 3)).reshaped((3,)).taken(np.array([2, 0])),
     ):
-        assert np.array_equal(some.solve(right[[2, 0]]), x[[2, 0]])
+        assert np.abs(some.solve(right[[2, 0]]) - x[[2, 0]]).max() <= allowed
     turned = factorise(matrix[[1]] * np.where(np.arange(N) == 7, -1.0, 1.0))
     replaced = by_blocks.replaced(np.array([1]), turned)
     assert np.array_equal(replaced.preconditioner[1], turned.preconditioner[0])
