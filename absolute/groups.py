@@ -10,6 +10,7 @@ with p all groups before g: small inverses and a few products. A block's determi
 the assemblies of its group meet, and so tells more than that of J, which is the product of all.
 """
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -96,9 +97,20 @@ def groups_of(first: Places, second: Places, bodies: int) -> Groups:
 
 def signs_of(groups: Groups, jacobian: Array) -> Array:
     """(..., groups) signs of the determinants of the blocks of Jacobians (..., rows, rows)."""
-    ordered = jacobian[..., groups.rows[:, None], groups.columns]
-    signs = [np.sign(np.linalg.det(ordered[..., block, block])) for block in groups.blocks]
-    return np.stack(signs, axis=-1)
+    signs = np.empty((*jacobian.shape[:-2], len(groups.ends)))
+    for numbers, places in _alike(groups.ends):
+        blocks = jacobian[..., groups.rows[places][:, :, None], groups.columns[places][:, None, :]]
+        signs[..., numbers] = np.sign(np.linalg.det(blocks))
+    return signs
+
+
+@cache
+def _alike(ends: tuple[int, ...]) -> tuple[tuple[Places, Places], ...]:
+    """Groups of one size together: their numbers (k,), and the places of each, (k, size)."""
+    starts = np.array((0, *ends[:-1]))
+    sizes = np.array(ends) - starts
+    alike = [np.flatnonzero(sizes == size) for size in np.unique(sizes)]
+    return tuple((numbers, np.add.outer(starts[numbers], np.arange(sizes[numbers[0]]))) for numbers in alike)
 
 
 def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:

@@ -28,13 +28,12 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import LAST, NEXT, axes_first_cross
 
 Array = NDArray[np.float64]
 Carriers = tuple[Array, Array, Array]
 
-
 ROUNDINGS = 10.0 * UNIT_ROUNDOFF  # the nine of p and one for the distance from what is reported
-NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # of the axes, in a circle
 
 
 def carried_errors(
@@ -63,7 +62,7 @@ def carried_errors(
         derivatives = ((abs(1.0 - a - b), np.abs(e2 - e1)), (abs(a), np.abs(e2)), (abs(b), np.abs(e1)))
         steps, spreads = ([v[place] for place in places] for v in (certified.step, certified.spread))
         first_step, second_step = steps[1] - steps[0], steps[2] - steps[0]
-        turned = _cross(first_step, e2) + _cross(e1, second_step)
+        turned = axes_first_cross(first_step, e2) + axes_first_cross(e1, second_step)
         moved = np.abs(steps[0] + a * first_step + b * second_step + c * turned)
         rows = sum(along + abs(c) * (edge[NEXT] + edge[LAST]) for along, edge in derivatives)
         doubt = rows * certified.tail
@@ -92,7 +91,7 @@ def _carried(weights: Array, carriers: Carriers) -> tuple[Array, Array]:
     base, first, second = carriers
     e1, e2 = first - base, second - base
     a, b, c = weights
-    point = base + a * e1 + b * e2 + c * _cross(e1, e2)
+    point = base + a * e1 + b * e2 + c * axes_first_cross(e1, e2)
     long, wide = np.abs(e1), np.abs(e2)
     crossed = long[NEXT] * wide[LAST] + long[LAST] * wide[NEXT]
     return point, np.abs(base) + abs(a) * long + abs(b) * wide + abs(c) * crossed
@@ -105,8 +104,3 @@ def _unsolved(mechanism: Mechanism, name: str, carriers: tuple[str, str, str]) -
     found, size = _carried(mechanism.carrier_weights[name], (base, first, second))
     rest = np.abs(vectors[name] - found) + ROUNDINGS * size
     return float(np.linalg.norm(rest))
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """a x b over the first dimension."""
-    return np.asarray(a[NEXT] * b[LAST] - a[LAST] * b[NEXT])

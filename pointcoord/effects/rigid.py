@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import SingularConfiguration
 from pointcoord.numerics.rounding import EPS
-from pointcoord.numerics.vectors import LAST, NEXT
+from pointcoord.numerics.vectors import LAST, NEXT, axes_first_cross
 
 Array = NDArray[np.float64]
 
@@ -80,18 +80,13 @@ def _turning(compliance: tuple[Array, ...], r: Array, v: Array, refinements: int
     """The least squares solution of v = omega x r, refined; shape (3, ...)."""
     omega = _apply(compliance, _moment(r, v))
     for _ in range(refinements):
-        omega += _apply(compliance, _moment(r, v - _crossed(omega[:, None], r)))
+        omega += _apply(compliance, _moment(r, v - axes_first_cross(omega[:, None], r)))
     return omega
 
 
 def _moment(r: Array, f: Array) -> Array:
     """sum r x f over points, shapes (3, points, ...) to (3, ...)."""
-    return np.asarray(np.add.reduce(_crossed(r, f), axis=1))
-
-
-def _crossed(a: Array, b: Array) -> Array:
-    """a x b over the first dimension."""
-    return np.asarray(a[NEXT] * b[LAST] - a[LAST] * b[NEXT])
+    return np.asarray(np.add.reduce(axes_first_cross(r, f), axis=1))
 
 
 def _inverse_inertia(r: Array) -> tuple[tuple[Array, ...], Array]:

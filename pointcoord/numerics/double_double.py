@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import LAST, NEXT
 
 Array = NDArray[np.float64]
 Pair = tuple[Array, Array]
@@ -106,15 +107,11 @@ def pair_root(a: Pair) -> Pair:
 
 def pair_cross(a: Pair, b: Pair) -> Pair:
     """a x b of vectors given as pairs, shape (..., 3)."""
-    (ax, ay, az), (bx, by, bz) = ([(high[..., i], low[..., i]) for i in range(3)] for high, low in (a, b))
-    parts = [
-        pair_sum(pair_product(ay, bz), minus_pair(pair_product(az, by))),
-        pair_sum(pair_product(az, bx), minus_pair(pair_product(ax, bz))),
-        pair_sum(pair_product(ax, by), minus_pair(pair_product(ay, bx))),
-    ]
-    high, low = (np.stack([part[i] for part in parts], axis=-1) for i in (0, 1))
+    (a_next, a_last), (b_next, b_last) = (
+        [(high[..., axes], low[..., axes]) for axes in (NEXT, LAST)] for high, low in (a, b)
+    )
     # The sums of products may cancel, so their low parts are brought below the high ones again.
-    return two_sum(high, low)
+    return two_sum(*pair_sum(pair_product(a_next, b_last), minus_pair(pair_product(a_last, b_next))))
 
 
 def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) -> tuple[Array, Array]:

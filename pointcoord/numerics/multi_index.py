@@ -34,6 +34,11 @@ class Products:
     starts: Indices
     targets: Indices
 
+    @cached_property
+    def edges(self) -> list[int]:
+        """Where the pairs of each target begin, and where the last ones end."""
+        return [*self.starts.tolist(), len(self.first)]
+
 
 @dataclass(frozen=True)
 class Powers:

@@ -16,8 +16,10 @@ of two differences that both move take part in the sum, and many rows share one 
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,13 +28,13 @@ from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.multi_index import Products, powers_counted, products
 from pointcoord.numerics.partial_map import stages
 from pointcoord.numerics.quadratic import MovingProducts, QuadraticMap
+from pointcoord.numerics.vectors import LAST, NEXT
 
 Array = NDArray[np.float64]
 Combine = Callable[[Array], Array]
 
 # Products of pairs of coefficients at once: 7 MB for a map of a hundred terms.
 PAIRS = 8192
-CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def expand(
@@ -205,12 +207,11 @@ def multiplied(left: Array, right: Array, pairs: Products) -> Array:
         Shape (targets, ..., terms).
     """
     result = np.empty((len(pairs.targets), *left.shape[1:]))
-    edges = [*pairs.starts.tolist(), len(pairs.first)]
-    block = max(PAIRS // max(int(np.prod(left.shape[1:-1])), 1), 1)
+    edges, block = pairs.edges, max(PAIRS // max(prod(left.shape[1:-1]), 1), 1)
     low = 0
     while low < len(pairs.targets):
         # As many targets as make a block of pairs, one at least.
-        high = max(int(np.searchsorted(edges, edges[low] + block, side="right")) - 1, low + 1)
+        high = max(bisect_right(edges, edges[low] + block) - 1, low + 1)
         first, last = edges[low], edges[high]
         each = left[pairs.first[first:last]]
         each *= right[pairs.second[first:last]]
@@ -227,8 +228,8 @@ def cross_series(a: Array, b: Array, inputs: int = 1, doubled: bool = False) -> 
     """
     order = powers_counted(inputs, a.shape[-2]).order
     pairs = products(inputs, order, (0, 2 * order if doubled else order), 0)
-    left = np.concatenate([a[..., CYCLE], a[..., BACK]], axis=-1)
-    right = np.concatenate([b[..., BACK], b[..., CYCLE]], axis=-1)
+    left = np.concatenate([a[..., NEXT], a[..., LAST]], axis=-1)
+    right = np.concatenate([b[..., LAST], b[..., NEXT]], axis=-1)
     found = multiplied(powers_first(left), powers_first(right), pairs)
     result = np.empty((*found.shape[:-1], 3))
     result[pairs.targets] = found[..., :3] - found[..., 3:]

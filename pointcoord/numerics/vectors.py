@@ -1,4 +1,4 @@
-"""Products of vectors that lie in the last dimension of arrays."""
+"""Products of vectors, most of them in the last dimension of arrays."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ def cross(a: Array, b: Array) -> Array:
     return np.asarray(
         a.take(NEXT, axis=-1) * b.take(LAST, axis=-1) - a.take(LAST, axis=-1) * b.take(NEXT, axis=-1)
     )
+
+
+def axes_first_cross(a: Array, b: Array) -> Array:
+    """The same of shapes (3, ...)."""
+    return np.asarray(a[NEXT] * b[LAST] - a[LAST] * b[NEXT])
 
 
 def lengths(vectors: Array) -> Array:

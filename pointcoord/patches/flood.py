@@ -41,8 +41,8 @@ Key = tuple[Corner, Corner]
 
 # Boxes that are expanded and proven at once: their matrices stay below some 100 MB in two inputs.
 BATCH = 32
-# Steps of a path to the middle of a box: those that arrive take some ten, and one that takes more leads to a fold or
-# through what no patch will cover at once.
+# Steps of a path to the middle of a box: those that arrive take some ten, and one that takes more leads to a
+# fold or through what no patch will cover at once.
 STEPS = 32
 # A part that uses no less than this share of what the whole did is as exact as rounding lets it be.
 NO_BETTER = 0.9

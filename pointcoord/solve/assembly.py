@@ -223,7 +223,7 @@ def led(
     """
     if y.ndim == 1 and target.ndim == 1:
         first = factorise(system.jacobian(y)) if factors is None else factors
-        end = proven_end(system, y, target, first, system.residual(y), tolerance)
+        end = proven_end(system, y, target, first, tolerance)
         if end is not None:
             iterations, left = np.array(end.iterations), np.array(end.left)
             work = end.work if factors is not None else end.work + Work(factorisations=1)

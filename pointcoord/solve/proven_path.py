@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -70,37 +70,36 @@ class Reached:
 
 
 def proven_end(
-    system: QuadraticMap, y: Array, target: Array, factors: Factors, offset: Array, tolerance: float
+    system: QuadraticMap, y: Array, target: Array, factors: Factors, tolerance: float
 ) -> Reached | None:
     """The end of a path from one pose, if a few series prove it to be reached; None if not.
 
     Args:
-        y: start, shape (size,), with C(y) = offset. target: known coordinates at the end.
+        y: start, shape (size,), assembled or not. target: known coordinates at the end.
         factors: of C_u at the start.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
     """
     if factors.singular or system.dense is None or bool(hidden(system, y, factors)):
         return None
-    n, left, side = system.unknowns, 1.0, orientation(system, factors)
-    here, local, work = y, factors, Work()
-    begun = _begun(system, y, factors, target - y[n:], offset)
-    if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, factors):
-        return _end(system, y + begun[1], target, side, tolerance, Work(residuals=1))
+    n, side = system.unknowns, orientation(system, factors)
+    here, local, work = y, factors, Work(residuals=1)
     for _ in range(STRETCHES):
-        series, share, spent = _proven_series(system, begun, local, left * offset)
+        begun = _begun(system, here, local, target - here[n:])
+        if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, local):
+            return _end(system, here + begun[1], target, side, tolerance, work)
+        series, share, spent = _proven_series(system, begun, local)
         work += spent
         if not share > 0.0:
             return None
         guess = share ** np.arange(len(series)) @ series
         if share == 1.0:
             return _end(system, guess, target, side, tolerance, work)
-        left *= 1.0 - share
+        # What the series leaves out at its end is taken back along the rest of the path.
         guess[n:] = here[n:] + share * (target - here[n:])
-        reached = _end(system, guess, guess[n:], side, np.inf, work, left * offset)
-        if reached is None:
+        here, local = guess, factorise(system.jacobian(guess))
+        work += Work(residuals=1, factorisations=1)
+        if not same_side(system, here, local, side, False):
             return None
-        here, local, work = reached.y, reached.factors, reached.work
-        begun = _begun(system, here, local, target - here[n:], left * offset)
     return None
 
 
@@ -111,25 +110,27 @@ def _end(
     side: Array,
     tolerance: float,
     work: Work,
-    offset: Array | float = 0.0,
 ) -> Reached | None:
     """The assembly near a guess with known coordinates, if Newton's method finds it on the same side."""
     guess[system.unknowns :] = target
-    reached = newton_refine(system, guess, offset, tolerance)
+    reached = newton_refine(system, guess, tolerance=tolerance)
     there, factorised = factors_at(system, reached)
     # In exact arithmetic it converges, and no path crosses a fold, where the determinant's sign changes.
-    if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, tolerance < np.inf))):
+    if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, True))):
         return None
     work += reached.work + factorised
     return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)
 
 
-def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array, offset: Array) -> Array:
-    """The first two terms of a path's series, y and its tangent, (2, size)."""
+def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array) -> Array:
+    """The first two terms of a path's series, y and its tangent, (2, size).
+
+    What y is not assembled by is taken back along the path.
+    """
     begun = np.zeros((2, len(y)))
     begun[0], begun[1, system.unknowns :] = y, change
     with np.errstate(all="ignore"):
-        begun[1, : system.unknowns] = -factors.solve(2.0 * system.polar(y, begun[1]) + offset)
+        begun[1, : system.unknowns] = -factors.solve(2.0 * system.polar(y, begun[1]) + system.residual(y))
     return begun
 
 
@@ -146,9 +147,7 @@ def _proven_straight(system: QuadraticMap, begun: Array, factors: Factors) -> bo
         return bool(way.proof(system.lipschitz(inverse, weights), weights).holds)
 
 
-def _proven_series(
-    system: QuadraticMap, begun: Array, factors: Factors, offset: Array
-) -> tuple[Array, float, Work]:
+def _proven_series(system: QuadraticMap, begun: Array, factors: Factors) -> tuple[Array, float, Work]:
     """The series of a path about its start, the share that it is proven on, and what that takes.
 
     Args:
@@ -160,18 +159,17 @@ def _proven_series(
         known = np.zeros((order + 1, len(change)))
         known[0], known[1] = y[n:], change
         series = expand(system, factors, y, known, begun)
-        share = _proven_share(system, series, factors, offset, pieces)
+        share = _proven_share(system, series, factors, pieces)
     # Its orders are no rates of a motion, as the tangents of a path are none.
-    return series, share, Work(residuals=1, factorisations=pieces)
+    return series, share, Work(factorisations=pieces)
 
 
-def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset: Array, pieces: int) -> float:
+def _proven_share(system: QuadraticMap, series: Array, factors: Factors, pieces: int) -> float:
     """Up to where, from 0 to 1, the assemblies go on along a series; see the formulas above."""
     order, n = len(series) - 1, system.unknowns
     left, right = (np.ascontiguousarray(each) for each in system.factors(series))
     first, second, starts = _beyond(order)
     rest = system.gather(np.add.reduceat(left[first] * right[second], starts, axis=0)) * factors.row_scale
-    start = (system.residual(series[0]) - offset) * factors.row_scale
     # As far as what is left out stays small, in the plain norm and with the inverse at the start.
     # A map that does not bend has no other assembly at any distance.
     allowed = LEFT_OUT / max(float(system.lipschitz(factors.preconditioner)), SMALLEST)
@@ -192,7 +190,7 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors, offset:
     moved[:, :, 0] -= np.eye(n)
     change = np.abs(moved).sum(axis=2)
     ends = (reach * np.arange(1.0, pieces + 1.0) / pieces)[:, None] ** powers
-    remaining = np.abs(inverse @ start) + (np.abs(inverse @ rest.T) @ ends[..., None])[..., 0]
+    remaining = (np.abs(inverse @ rest.T) @ ends[..., None])[..., 0]
     preconditioner = inverse * factors.row_scale
     weights, largest = np.ones(n), change.max(axis=0)
     for _ in range(WEIGHINGS + 1):

@@ -108,7 +108,7 @@ def test_counts_are_what_was_done(
 
     solving = pointcoord.solve
     monkeypatch.setattr(solving.proven_path, "inverses", inverted)
-    ways = (solving.pointwise, solving.chord)
+    ways = (solving.pointwise, solving.chord, solving.proven_path)
     own = (newton, assembly, solving.standing_still, flood)
     for module in (*own, *ways):
         monkeypatch.setattr(module, "factorise", counted)

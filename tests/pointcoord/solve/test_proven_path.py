@@ -41,8 +41,7 @@ def test_a_path_that_a_series_proves_ends_where_the_tangents_end(
     mechanism: Mechanism, angle: float, rack: float
 ) -> None:
     closed, target = close_drawing(mechanism), known_at(mechanism, angle, rack)
-    offset = mechanism.map.residual(closed.y)
-    end = proven_end(mechanism.map, closed.y, target, closed.factors, offset, 0.0)
+    end = proven_end(mechanism.map, closed.y, target, closed.factors, 0.0)
     plainly = follow(mechanism.map, closed.y, target, closed.factors)
     if end is None:
         return
@@ -56,9 +55,8 @@ def test_a_path_that_a_series_proves_ends_where_the_tangents_end(
 def test_most_paths_inside_the_range_take_series_only(mechanism: Mechanism) -> None:
     rng = np.random.default_rng(0)
     closed = close_drawing(mechanism)
-    offset = mechanism.map.residual(closed.y)
     ends = [
-        proven_end(mechanism.map, closed.y, known_at(mechanism, angle, rack), closed.factors, offset, 0.0)
+        proven_end(mechanism.map, closed.y, known_at(mechanism, angle, rack), closed.factors, 0.0)
         for angle, rack in zip(rng.uniform(1.0, 2.0, 40), rng.uniform(-30.0, 40.0, 40), strict=True)
     ]
     assert sum(end is None for end in ends) <= 4
@@ -71,10 +69,10 @@ def test_where_a_share_is_proven_the_jacobian_keeps_its_sign_and_newton_finds_th
     mechanism: Mechanism, angle: float, rack: float
 ) -> None:
     system, closed = mechanism.map, close_drawing(mechanism)
-    n, offset = system.unknowns, system.residual(closed.y)
+    n = system.unknowns
     change = known_at(mechanism, angle, rack) - closed.y[n:]
-    begun = proven_path._begun(system, closed.y, closed.factors, change, offset)
-    series, share, _ = proven_path._proven_series(system, begun, closed.factors, offset)
+    begun = proven_path._begun(system, closed.y, closed.factors, change)
+    series, share, _ = proven_path._proven_series(system, begun, closed.factors)
     shares = np.linspace(0.0, share, 30)
     places = shares[:, None] ** np.arange(len(series)) @ series
     signs = np.linalg.slogdet(system.jacobian(places))[0]
@@ -89,8 +87,8 @@ def test_where_a_share_is_proven_the_jacobian_keeps_its_sign_and_newton_finds_th
 def proven_on_the_parabola(w: float) -> float:
     factors = factorise(PARABOLA.jacobian(AT_ONE))
     change = np.array([w - 1.0, 0.0, 0.0])
-    begun = proven_path._begun(PARABOLA, AT_ONE, factors, change, np.zeros(1))
-    return proven_path._proven_series(PARABOLA, begun, factors, np.zeros(1))[1]
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, change)
+    return proven_path._proven_series(PARABOLA, begun, factors)[1]
 
 
 @by_mechanism
@@ -105,7 +103,7 @@ def test_where_a_tangent_is_proven_every_place_beside_it_is_the_tangents_own(
     y[:n] += away * np.random.default_rng(7).uniform(-1.0, 1.0, n)
     offset, factors = system.residual(y), factorise(system.jacobian(y))
     change = known_at(mechanism, float(own["arm_angle"]) + angle, float(own["rack"]) + rack) - y[n:]
-    begun = proven_path._begun(system, y, factors, change, offset)
+    begun = proven_path._begun(system, y, factors, change)
     if not proven_path._proven_straight(system, begun, factors):
         return
     shares = np.linspace(0.0, 1.0, 20)
@@ -125,9 +123,9 @@ def test_no_tangent_is_proven_near_a_fold(w: float) -> None:
     # The root of w comes as near as 0.3 to its mirror image; the condition (1 - z)^2 >= 2 omega q is
     # |1 - w| / 2 <= 1 - |1 - w| / 2 there and fails at the fold itself.
     factors = factorise(PARABOLA.jacobian(AT_ONE))
-    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([w - 1.0, 0.0, 0.0]), np.zeros(1))
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([w - 1.0, 0.0, 0.0]))
     assert not proven_path._proven_straight(PARABOLA, begun, factors)
-    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([-0.5, 0.0, 0.0]), np.zeros(1))
+    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([-0.5, 0.0, 0.0]))
     assert proven_path._proven_straight(PARABOLA, begun, factors)
 
 
@@ -140,7 +138,7 @@ def test_no_series_is_proven_up_to_a_fold(w: float) -> None:
 @pytest.mark.parametrize("w", [-1e-3, -1e-13, 0.0])
 def test_a_path_to_a_fold_or_across_it_is_left_to_the_tangents(w: float) -> None:
     factors = factorise(PARABOLA.jacobian(AT_ONE))
-    assert proven_end(PARABOLA, AT_ONE, np.array([w, 0.0, 1.0]), factors, np.zeros(1), 0.0) is None
+    assert proven_end(PARABOLA, AT_ONE, np.array([w, 0.0, 1.0]), factors, 0.0) is None
 
 
 def test_the_polynomial_of_a_piece_is_the_polynomial_there() -> None:
