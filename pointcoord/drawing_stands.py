@@ -20,8 +20,8 @@ from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
-from pointcoord.solve.assembly import assemble, close_drawing, follow
-from pointcoord.solve.curved_path import Path
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.follower import Path, follow
 from pointcoord.solve.status import Blocked
 from pointcoord.solve.taylor import Settings, build_chain
 from pointcoord.time_functions import Polynomial

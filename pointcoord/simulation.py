@@ -32,7 +32,8 @@ from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.scene_file import Scene
-from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, follow, path_of_part, stepped
+from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
+from pointcoord.solve.follower import follow, stepped
 from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Chain, Settings, build_chain
 from pointcoord.time_functions import TimeFunction

@@ -32,7 +32,7 @@ from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
 from pointcoord.patches.reported_points import reported_points
-from pointcoord.solve.assembly import follow
+from pointcoord.solve.follower import follow
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

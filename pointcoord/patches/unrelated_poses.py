@@ -26,7 +26,7 @@ from pointcoord.patches.lookup import Lookup, Marked
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import HALVINGS, order_for, widened
 from pointcoord.solve.assembly import assemble, assembled, close_drawing
-from pointcoord.solve.curved_path import Path
+from pointcoord.solve.follower import Path
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]

@@ -36,7 +36,8 @@ from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.partial_map import PartialMap, stages
 from pointcoord.numerics.power_series import expand_moving
-from pointcoord.solve.assembly import Pose, follow
+from pointcoord.solve.assembly import Pose
+from pointcoord.solve.follower import follow
 from pointcoord.solve.standing_still import starting_place
 from pointcoord.solve.taylor import (
     CARRIED_ON,

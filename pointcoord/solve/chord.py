@@ -4,7 +4,7 @@ r"""Chord Newton at instants: one factorisation kept for as long as it is good e
 
 which converges by a constant factor instead of squaring its error. Each instant starts from the pose y0
 before, along the tangent T that X gives to the new known coordinates, where the theorem of Newton and
-Kantorovich holds on all of that straight way (see `curved_path`, whose eta, z and omega these are).
+Kantorovich holds on all of that straight way (see `proven_step`, whose eta, z and omega these are).
 
 Then there is one assembly near each y0 + s T, they are one branch, and X contracts towards the last by
 k = z + omega r, r the radius of the theorem, which is k = 1 - sqrt((1 - z)^2 - 2 omega eta): after a step d,
@@ -28,7 +28,6 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.partial_map import moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.solve.assembly import Pose, blocked
-from pointcoord.solve.curved_path import straight_way
 from pointcoord.solve.pointwise import (
     Between,
     Solved,
@@ -36,6 +35,7 @@ from pointcoord.solve.pointwise import (
     square_velocity_term,
     with_rates,
 )
+from pointcoord.solve.proven_step import straight_way
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 

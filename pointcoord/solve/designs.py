@@ -18,7 +18,7 @@ from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import assembled, closed_drawings
 from pointcoord.solve.box import follow_by_inputs
-from pointcoord.solve.curved_path import Path
+from pointcoord.solve.follower import Path
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain, Settings, build_chains
 from pointcoord.time_functions import TimeFunction

@@ -9,7 +9,7 @@ inputs,
     u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
 
 and corrected by Newton's method, all at once; then each is proven to continue the one before it, straight
-or, of a turn by more than a radian, round (see `curved_path`). Where that is not so the path is followed in
+or, of a turn by more than a radian, round (see `proven_step`). Where that is not so the path is followed in
 shorter proven steps. Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved
 for many instants at once either way. This is what the series are measured against.
 """
@@ -33,8 +33,9 @@ from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
-from pointcoord.solve.assembly import LONGEST, Pose, blocked, close_drawing, driven_to, follow
-from pointcoord.solve.curved_path import SHARES, Path, straight_way
+from pointcoord.solve.assembly import LONGEST, Pose, blocked, close_drawing, driven_to
+from pointcoord.solve.follower import Path, follow
+from pointcoord.solve.proven_step import SHARES, straight_way
 from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction

@@ -38,7 +38,7 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.curved_path import LEAST_WEIGHTS, ROOM, StraightWay
+from pointcoord.solve.proven_step import LEAST_WEIGHTS, ROOM, StraightWay
 
 Array = NDArray[np.float64]
 

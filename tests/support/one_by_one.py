@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.solve.assembly import Pose, follow
+from pointcoord.solve.assembly import Pose
+from pointcoord.solve.follower import follow
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]

@@ -109,7 +109,7 @@ def test_counts_are_what_was_done(
     solving = pointcoord.solve
     monkeypatch.setattr(solving.proven_path, "inverses", inverted)
     ways = (solving.pointwise, solving.chord, solving.proven_path)
-    own = (newton, assembly, solving.standing_still, flood)
+    own = (newton, assembly, solving.follower, solving.standing_still, flood)
     for module in (*own, *ways):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)

@@ -13,7 +13,8 @@ from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, simulate
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
-from pointcoord.solve.assembly import assemble, close_drawing, follow
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.follower import follow
 
 Array = NDArray[np.float64]
 

@@ -24,7 +24,8 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import MAP
 from pointcoord.patches import way_map
 from pointcoord.simulation import prepare_task
-from pointcoord.solve.assembly import close_drawing, follow, stepped
+from pointcoord.solve.assembly import close_drawing
+from pointcoord.solve.follower import follow, stepped
 
 Array = NDArray[np.float64]
 Make = Callable[..., Scene]

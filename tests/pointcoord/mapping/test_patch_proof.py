@@ -21,7 +21,8 @@ from pointcoord.numerics.power_series import expand
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
-from pointcoord.solve.assembly import assemble, close_drawing, follow
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.follower import follow
 
 Array = NDArray[np.float64]
 ORDER = 10

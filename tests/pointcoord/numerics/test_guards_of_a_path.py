@@ -23,7 +23,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import Converged
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.solve.assembly import SMALLEST_STEP, follow
+from pointcoord.solve.follower import SMALLEST_STEP, follow
 
 Array = NDArray[np.float64]
 

@@ -13,8 +13,9 @@ from pointcoord import AssemblyError, InputOutOfRange, Scene, simulate
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism import mechanism_file
-from pointcoord.solve.assembly import Pose, assemble, follow
-from pointcoord.solve.curved_path import ROOM, straight_way
+from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.solve.follower import follow
+from pointcoord.solve.proven_step import ROOM, straight_way
 
 COLLINEAR = mechanism_file("macpherson").topology("collinear", points=Scene.load("bounce").mechanism.points)
 

@@ -13,7 +13,7 @@ import pointcoord.solve.assembly
 from pointcoord import AssemblyError, MechanismError
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.solve.assembly import close_drawing
-from pointcoord.solve.curved_path import Proof
+from pointcoord.solve.proven_step import Proof
 
 Array = NDArray[np.float64]
 # Only a drawing that closes says by itself on which side it stands.
@@ -86,7 +86,7 @@ def test_one_that_rounding_cannot_put_on_the_fold_is_closed(car: SampleCar) -> N
 
 def test_without_what_guards_the_end_of_a_step_a_side_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        pointcoord.solve.assembly, "same_side", lambda system, y, *_: np.ones(y.shape[:-1], bool)
+        pointcoord.solve.follower, "same_side", lambda system, y, *_: np.ones(y.shape[:-1], bool)
     )
     monkeypatch.setattr(Proof, "within", lambda self, apart: np.ones(apart.shape[:-1], bool))
     assert not all(

@@ -12,11 +12,11 @@ from pointcoord.numerics import newton
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.solve import assembly, chord, pointwise, standing_still
+from pointcoord.solve import assembly, chord, follower, pointwise, proven_path, standing_still
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.chord import solve_by_chord
-from pointcoord.solve.curved_path import ROOM
 from pointcoord.solve.pointwise import InstantSolver, Solved, solve_from_drawing, solve_instants
+from pointcoord.solve.proven_step import ROOM
 from pointcoord.solve.status import Blocked
 from pointcoord.time_functions import Polynomial, Sine, TimeFunction
 
@@ -100,7 +100,7 @@ def test_factorisations_and_rates_are_counted_as_they_are_made(
         seen.append(int(np.prod(matrix.shape[:-2])))
         return factorise(matrix)
 
-    for module in (newton, assembly, chord, pointwise, standing_still):
+    for module in (newton, assembly, follower, proven_path, chord, pointwise, standing_still):
         monkeypatch.setattr(module, "factorise", counted)
     if way is solve_from_drawing:
         # It closes the drawing as well, which has factors of its own.

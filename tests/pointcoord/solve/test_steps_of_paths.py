@@ -9,8 +9,9 @@ from sample_cars import SAMPLES
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve import assembly
-from pointcoord.solve.assembly import Pose, assemble, follow
-from pointcoord.solve.curved_path import ROOM, straight_way
+from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.solve.follower import follow
+from pointcoord.solve.proven_step import ROOM, straight_way
 
 Array = NDArray[np.float64]
 MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}

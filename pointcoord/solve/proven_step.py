@@ -37,8 +37,6 @@ from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
 from pointcoord.numerics.block_inverse import product_of_few_entries
-from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 
@@ -187,32 +185,3 @@ def beside_the_way(first: Array, between: Array, last: Array) -> Array:
     alone = ((rise > rounding) | (off > 0.0)).sum(axis=-1, keepdims=True) == 1
     beyond = np.maximum(4.0 * off - rise, 0.0) ** 2 / (16.0 * np.where(off > 0.0, off, 1.0))
     return np.where(alone, beyond, off)
-
-
-@dataclass(frozen=True)
-class Path:
-    """How far a batch of poses followed their paths: `done` is 1 where the end was reached.
-
-    Attributes:
-        iterations: Newton steps that the last correction took, shape (...,).
-        left: proven distance to the exact assembly, rounding apart, where a tolerance ended the correction,
-            shape (...,), where the end was reached.
-    """
-
-    y: Array
-    factors: Factors
-    iterations: NDArray[np.int64]
-    left: Array
-    done: Array
-    work: Work
-
-    def reshaped(self, batch: tuple[int, ...]) -> Path:
-        """The same with other batch dimensions."""
-        return Path(
-            self.y.reshape(*batch, self.y.shape[-1]),
-            self.factors.reshaped(batch),
-            self.iterations.reshape(batch),
-            self.left.reshape(batch),
-            self.done.reshape(batch),
-            self.work,
-        )
