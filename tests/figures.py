@@ -66,7 +66,7 @@ def _agreement(printed: str, folder: Path) -> str:
             rows[name][column] = (max(before[0], row["difference"]), max(before[1], row["tolerance"]))
     others = f"the other {len(comparisons) - len(COLUMNS)}"
     lines = [
-        f"| quantity | {' | '.join((*COLUMNS, others))} | held to, at most |",
+        f"| quantity | {' | '.join((*COLUMNS, others))} | tolerance, at most |",
         "|---" * (len(COLUMNS) + 3) + "|",
     ]
     for name, found in rows.items():

@@ -115,7 +115,7 @@ class HardCases:
         """What came of them in a few words."""
         count, scenes = len(self.cases), sum(len({a.value for a in one.answers}) for one in self.cases)
         noun = "case" if count == 1 else "cases"
-        told = f"{count} hard {noun} at {scenes} values held to the many-digit reference: "
+        told = f"{count} hard {noun} at {scenes} values compared with the many-digit reference: "
         unjudged = [one.name for one in self.cases if any(a.outcome == "unjudged" for a in one.answers)]
         end = f"; some answers not judged: {', '.join(unjudged[:10])}" if unjudged else ""
         if self.status is ExitStatus.AGREE:

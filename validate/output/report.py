@@ -20,9 +20,9 @@ if TYPE_CHECKING:  # most runs compare no file
 
 MOST_EXPLANATIONS = 3  # that are printed
 
-# "most used": the largest part of its tolerance that any number of the quantity uses; above 1 it disagrees.
-HEAD = ("quantity", "where", "largest difference", "held to", "at", "most used", "resting on", "verdict")
-FILE_HEAD = ("quantity", "worst at", "difference", "held to", "at", "verdict")
+# "share": of the tolerance, the largest of any number of the quantity; above 1 it disagrees.
+HEAD = ("quantity", "where", "largest difference", "tolerance", "at", "share", "limited by", "verdict")
+FILE_HEAD = ("quantity", "worst at", "difference", "tolerance", "at", "verdict")
 
 # Verdicts from the one that tells least of a quantity to the one that tells most.
 OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
@@ -86,7 +86,7 @@ def pair_of(outcome: Outcome) -> str:
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
     worst: dict[str, Comparison] = {}
-    # A solver that is held to what it states need not give everything.
+    # A solver that states an accuracy need not give everything.
     order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
     for row in outcome.rows:
         key = heading(row.quantity, row.name)
@@ -100,10 +100,10 @@ def _severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:
 
 
 def held_to(factor: float) -> str:
-    """What differences are held to, in words."""
+    """The tolerance of differences, in words."""
     if factor == 1.0:
-        return "held to the derived tolerance"
-    return f"held to {factor!r} times the derived tolerance, which is no longer the derived one"
+        return "tolerances as derived"
+    return f"tolerances are {factor!r} times the derived tolerance, which is no longer the derived one"
 
 
 def counted_as(count: int, noun: str) -> str:
@@ -145,8 +145,8 @@ def outcome_parts(outcome: Outcome) -> tuple[Part, ...]:
 
 
 def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
-    """A quantity's line: its largest difference, with where and what it is held to; the most of a tolerance
-    that any of its numbers uses, which may be another number; and the verdict of the worst.
+    """A quantity's line: its largest difference with its place and tolerance; the largest share of a
+    tolerance, which may be of another number; and the verdict of the worst.
 
     Args:
         rows: all of the quantity. worst: the one of them that `worst_rows` tells.
@@ -271,7 +271,7 @@ def examined_data(examined: Examined, file: DataOutcome | None = None) -> dict[s
     """One scene as plain data: its verdict, every comparison, and every reason why there is none.
 
     Args:
-        file: of results that the scene's car is held to.
+        file: of results that the scene's car is compared with.
     """
     return {
         "scene": examined.name,

@@ -33,10 +33,10 @@ def lines_of(outcome: Outcome) -> dict[str, list[str]]:
         "quantity",
         "where",
         "largest difference",
-        "held to",
+        "tolerance",
         "at",
-        "most used",
-        "resting on",
+        "share",
+        "limited by",
         "verdict",
     ]
     return rows
@@ -52,7 +52,7 @@ def of_position(outcome: Outcome, **changes: tuple[float, float, str]) -> Outcom
     return replace(outcome, rows=tuple(rows))
 
 
-def test_the_largest_difference_is_the_largest_and_the_most_used_is_of_the_worst(heaving: Outcome) -> None:
+def test_the_largest_difference_is_the_largest_and_the_share_is_of_the_worst(heaving: Outcome) -> None:
     lines = lines_of(heaving)
     apart = 0
     for quantity, (where, difference, held, _, used, *_) in lines.items():

@@ -1,4 +1,4 @@
-"""Differences over time against what they are held to."""
+"""Differences over time against their tolerances."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _panel(outcome: Outcome, row: Comparison, instants: Array, points: int) -> P
     difference = np.where(found.difference > 0.0, found.difference, np.nan)
     times = numbers(found.times[at], 9)
     traces = (
-        {"x": times, "y": numbers(found.tolerance[at], 4), "name": "held to", "line": {"color": OTHER}},
+        {"x": times, "y": numbers(found.tolerance[at], 4), "name": "tolerance", "line": {"color": OTHER}},
         {
             "x": times,
             "y": numbers(difference[at], 4),

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 # Rows of the table, those that do not agree first: a file may give every number of every point.
 MOST = 300
-HEAD = ("number", "verdict", "largest difference", "held to", "at", "what would explain it, or why not")
+HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "what would explain it, or why not")
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -107,11 +107,11 @@ def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
     tolerance = {
         "x": x,
         "y": numbers(np.where(limit > 0.0, limit, np.nan), 4),
-        "name": "held to",
+        "name": "tolerance",
         "line": {"color": OTHER},
     }
     layout = {"xaxis": axis(plain(over)), "yaxis": axis(f"[{words}]", logarithmic=True)}
-    words = f"{told}, difference: at most {row.share:.1e} of what it is held to"
+    words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
     yield Panel(words, (tolerance, difference), layout)
 
 

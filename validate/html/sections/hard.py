@@ -14,8 +14,8 @@ from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Cell, Table
 
 WORDS = (
-    "Every answer is held to a reference that is solved in 60 digits and proven. It has to be right within "
-    "what its formulation claims, or refused with a reason. Filled: right; crosses at the lower edge, a row "
+    "Every answer is compared with a reference in 60 digits that is proven. It has to be right within "
+    "its own error bound, or refused with a reason. Filled: right; crosses at the lower edge, a row "
     "for each formulation: refused; red rings: neither. Toward the left it gets harder."
 )
 # In the order in which a case names its formulations.

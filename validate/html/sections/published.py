@@ -33,7 +33,7 @@ def _of_table(one: Published) -> Iterator[Block]:
         f"{one.table.title}: crosses as printed, line as computed", tuple(_panel(one, r) for r in rows)
     )
     head = (one.found.over, *(f"{about(row.quantity, row.name)} [{_unit(row)}]" for row in rows))
-    caption = f"{one.table.title}: printed, computed below it; held to the printed digits"
+    caption = f"{one.table.title}: printed, computed below it; compared to the printed digits"
     yield Table(head, _cells(one, rows), caption=caption)
 
 
