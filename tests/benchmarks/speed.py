@@ -20,6 +20,7 @@ import time
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +34,12 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.results.named_columns import number_columns
-from validate.cost.growth.unknowns import LongChain
+from validate.cost.growth.chain import TOLERANCE as OF_CHAIN
+from validate.cost.growth.chain import FourBarChain
+from validate.cost.growth.tasks import CHAIN_INSTANTS
 from validate.cost.instants import study_instants
 from validate.cost.ways.absolute import in_bodies
+from validate.cost.ways.registry import ways_named
 from validate.output.motion_tables import write_csv
 
 Array = NDArray[np.float64]
@@ -199,8 +203,13 @@ def csv() -> Race:
 
 def chain() -> Race:
     """A chain of many unknowns, against one of a tenth: how far from linear growth."""
-    long, short = (LongChain("series", n).prepare() for n in (size(1500, 600), size(150, 60)))
-    return Race(long, short, 10.0)
+    (series,) = ways_named(["series"])
+
+    def made_ready(unknowns: int) -> Work:
+        scene = FourBarChain.with_unknowns(unknowns).scene()
+        return partial(series.prepare(scene, OF_CHAIN), CHAIN_INSTANTS)
+
+    return Race(made_ready(size(1500, 600)), made_ready(size(150, 60)), 10.0)
 
 
 def comparing() -> Race:

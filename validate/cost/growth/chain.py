@@ -1,8 +1,7 @@
 r"""A chain of linkages of any length, with a closed form: rockers in a row, each driven by the one before.
 
-Rocker j turns about an axis along x in a lane of its own, x = 40 j: two links hold its tip to two points
-of that axis. A rod joins its tip to the next one's. The first rocker is driven by its arm angle theta from
-the upward vertical,
+Rocker j turns about an axis along x in a lane of its own, x = 40 j. A rod joins its tip to the next one's. The
+first rocker is driven by its arm angle theta from the upward vertical,
 
     p_j = a_j + r_j (0, sin theta_j, cos theta_j),
 
@@ -16,18 +15,13 @@ one intersection of two circles. Every drawn number is an integer: nothing of th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.rise import Rise
-from pointcoord.linkage.drives import ArmAngle
-from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord import Scene
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.topology import Topology
+from pointcoord.simulation import scene_mechanism
 from pointcoord.time_functions import Sine
 from validate.extras import MissingPackage
 
@@ -44,13 +38,14 @@ RISE = 150.0  # mm, from the lower line of pivots to the upper one
 ROCKERS = (100.0, 80.0)  # mm, of even and of odd number
 SWING = Sine(amplitude=0.35, angular_frequency=2.0 * np.pi, phase=0.0, offset=0.5 * np.pi)
 """The driven angle, rad: about the horizontal, where it is drawn; there the height tells it best."""
-
+STOP = 0.25  # s: a quarter of the swing
+TOLERANCE = 1e-9  # mm
 DIGITS = 40
 
 
 @dataclass(frozen=True)
 class FourBarChain:
-    """A chain of `rockers` rockers, which has three unknowns for each."""
+    """A chain of `rockers` rockers, which has three unknown coordinates for each: those of its tip."""
 
     rockers: int
 
@@ -71,46 +66,49 @@ class FourBarChain:
         return tuple(f"tip_{j}" for j in range(self.rockers))
 
     @property
-    def topology(self) -> Topology:
-        """What is joined to what."""
-        tips, rods = self.tips, pairwise(self.tips)
-        held = (Link(tip, f"{end}_{j}") for j, tip in enumerate(tips) for end in ("pivot", "axis"))
-        constraints: tuple[Constraint, ...] = (
-            Rise(tips[0], "pivot_0", "up", "rise"),
-            *held,
-            *(Link(other, one) for one, other in rods),
-        )
-        return Topology(
-            name=f"chain of {self.rockers} rockers",
-            chassis=tuple(f"{end}_{j}" for j in range(self.rockers) for end in ("pivot", "axis")),
-            moving=tips,
-            bodies={},
-            carried={},
-            directions=("up",),
-            constraints=constraints,
-            drives=(ArmAngle("rise", "arm_angle", "pivot_0", tips[0], "up"),),
-            knuckle="",
-            steering_axis=("pivot_0", "axis_0"),
-            wheel_axis=("pivot_0", "axis_0"),
-            inboard="pivot_0",
-            front_and_rear=("pivot_0", "axis_0"),
-        )
-
-    @property
     def points(self) -> dict[str, Array]:
         """Where every point is drawn, mm: all rockers level."""
         found = {}
         for j in range(self.rockers):
-            pivot = _pivot(j)
+            pivot = np.array([LANE * j, 0.0, RISE * (j % 2)])
             found[f"pivot_{j}"] = pivot
             found[f"axis_{j}"] = pivot + np.array([AXIS, 0.0, 0.0])
             found[f"tip_{j}"] = pivot + np.array([0.0, ROCKERS[j % 2], 0.0])
         return found
 
+    @property
+    def rods(self) -> dict[str, tuple[str, str]]:
+        """From each tip to the next."""
+        return {f"rod_{j}": (f"tip_{j - 1}", f"tip_{j}") for j in range(1, self.rockers)}
+
+    def scene(self) -> Scene:
+        """The chain over a quarter of the swing, for its positions alone."""
+        axes = {j: (f"pivot_{j}", f"axis_{j}") for j in range(self.rockers)}
+        rockers = {f"rocker_{j}": [*axis, f"tip_{j}"] for j, axis in axes.items()}
+        mechanism = {
+            "bodies": {"chassis": [name for axis in axes.values() for name in axis], **rockers},
+            "rods": {name: list(ends) for name, ends in self.rods.items()},
+            "inputs": {"arm_angle": {"angle": "rocker_0", "of": "tip_0", "about": "pivot_0", "from": "up"}},
+            "side": "right",
+            "points": {name: place.tolist() for name, place in self.points.items()},
+        }
+        law = {
+            "amplitude": SWING.amplitude,
+            "angular_frequency": SWING.angular_frequency,
+            "offset": SWING.offset,
+        }
+        content = {
+            "title": f"chain of {self.rockers} rockers",
+            "tolerance": TOLERANCE,
+            "mechanism": mechanism,
+            "inputs": {"arm_angle": {"sine": law}},
+            "time": {"start": 0.0, "stop": STOP, "samples": 6},
+        }
+        return Scene.from_mapping(content, "chain of four-bars")
+
     def mechanism(self) -> Mechanism:
         """The chain as point coordinates."""
-        axes = {"up": np.array([0.0, 0.0, 1.0]), "right": np.array([0.0, 1.0, 0.0])}
-        return build_mechanism(self.topology, self.points, axes)
+        return scene_mechanism(self.scene())
 
     def closed_form(self, instants: Array) -> Array:
         """Tips at instants of shape (N,) in many digits, each rounded once: (N, rockers, 3), mm."""
@@ -120,10 +118,6 @@ class FourBarChain:
             for parity, tip in enumerate(_two_tips(t)):
                 place[parity::2, 1:] = tip
         return found
-
-
-def _pivot(number: int) -> Array:
-    return np.array([LANE * number, 0.0, RISE * (number % 2)])
 
 
 def _two_tips(t: float) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -14,9 +14,7 @@ from functools import partial
 import numpy as np
 
 from validate.cost.growth.child import Limits, Task, measure_apart
-from validate.cost.growth.tasks import INSTANTS, ManyDesigns, ManyInstants
-from validate.cost.growth.unknowns import INSTANTS as CHAIN_INSTANTS
-from validate.cost.growth.unknowns import SOLVERS, LongChain
+from validate.cost.growth.tasks import CHAIN_INSTANTS, INSTANTS, LongChain, ManyDesigns, ManyInstants
 from validate.cost.row import Row
 from validate.cost.scenes import StudyScene
 from validate.cost.store import scene_digest
@@ -44,7 +42,7 @@ class Plan:
     unknowns: tuple[int, ...] = (15, 45, 150, 450, 1_500)
     ways: tuple[str, ...] = GROWING
     design_ways: tuple[str, ...] = GROWING
-    chain_ways: tuple[str, ...] = tuple(SOLVERS)
+    chain_ways: tuple[str, ...] = (*GROWING, "scipy-root", "scipy-root-jac")
 
 
 FULL = Plan(limits=Limits(seconds=60.0))
@@ -154,7 +152,7 @@ def lines_of(
                 task = partial(ManyDesigns, bare, way.name, together)
                 lines.append(Line(named, plan.designs, INSTANTS, task))
         if way.name in plan.chain_ways:
-            named = replace(row, scene=CHAIN, against="unknowns", setting="", value=None)
+            named = replace(row, scene=CHAIN, against="unknowns")
             lines.append(Line(named, plan.unknowns, 0, partial(LongChain, way.name)))
     return lines
 

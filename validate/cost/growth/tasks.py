@@ -1,4 +1,4 @@
-"""One scene at many instants, and many designs of one car: together through `sweep`, or one by one.
+"""What grows: instants of a scene, designs of a car (together through `sweep`, or one by one), unknowns of a chain.
 
 A design is the car with every moving hardpoint moved at random; its drawing is put together by whoever
 solves it. Design number k is the same car in however large a batch.
@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from pointcoord import Designs, Scene, designs_of, sweep
 from validate.cost.errors import errors_of, truth_of
+from validate.cost.growth.chain import STOP, FourBarChain
 from validate.cost.instants import study_instants
 from validate.cost.parts.accuracy import made_ready
-from validate.cost.race import Found, Runner
+from validate.cost.race import Found, NoNumbers, Runner
 from validate.cost.row import Row
 from validate.cost.way import Answer
 from validate.cost.ways.registry import ways_named
@@ -29,6 +30,8 @@ CHECKED = 16  # instants whose numbers are held to the reference, which takes so
 INSTANTS = 101  # of a design
 MOVED = 2.0  # mm, at most, along each axis: what a designer tries, and no drawing turns into another one
 SEED = 2026
+CHAIN_INSTANTS = np.linspace(0.0, STOP, 6)[1:]  # s; the longest chains take a second and more for each
+NOT_RIGHT = 1e-3  # of the shortest rocker: an answer that far off is another assembly, or none
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,45 @@ class ManyDesigns:
             return lambda: [run() for run in runs].__getitem__
 
         return Runner(row, prepared, found)
+
+
+@dataclass(frozen=True)
+class LongChain:
+    """A chain of four-bars of `size` unknowns, to be solved at `CHAIN_INSTANTS` by a way, by its name."""
+
+    way: str
+    size: int
+
+    @property
+    def smallest(self) -> LongChain:
+        """Two rockers."""
+        return replace(self, size=6)
+
+    def runner(self, row: Row) -> Runner:
+        """The way, and its errors against the closed form."""
+        (way,) = ways_named([self.way])
+        scene = FourBarChain.with_unknowns(self.size).scene()
+        return Runner(row, partial(made_ready, way, scene, row.value, CHAIN_INSTANTS), self.check)
+
+    def check(self, answer: Answer) -> Found:
+        """The error of every tip against the closed form, mm.
+
+        Raises:
+            NoNumbers: this is another assembly, or none.
+        """
+        chain = FourBarChain.with_unknowns(self.size)
+        right, places = chain.closed_form(CHAIN_INSTANTS), answer.numbers["position"]
+        off = np.abs(np.stack([places[name] for name in chain.tips], axis=1) - right)
+        if not (off <= NOT_RIGHT * np.min(np.abs(right[..., 1:]).max(axis=-1))).all():
+            worst = np.unravel_index(int(np.argmax(np.where(np.isnan(off), np.inf, off))), off.shape)
+            raise NoNumbers(f"tip_{worst[1]} is {off[worst]:.3g} mm from the closed form")
+        columns = {
+            "error": float(off.max()),
+            "rms": float(np.sqrt(np.mean(off**2))),
+            "radius": 0.5 * float(np.spacing(np.abs(right)).max()),
+            "numbers": off.size,
+        }
+        return Found({"position": columns})
 
 
 def drawn_at_random(scene: Scene, count: int) -> Designs:
