@@ -30,7 +30,7 @@ LISTED = 6  # ways that a sentence names
 def frame(rows: Iterable[Row]) -> pd.DataFrame:
     """Rows as a data frame; of what is not there, nothing."""
     columns = {field.name: str(field.type).removesuffix(" | None") for field in fields(Row)}
-    kinds = {"int": "Int64", "float": "float64", "bool": "bool"}
+    kinds = {"Count": "Int64", "Size": "float64", "bool": "bool"}
     found = pd.DataFrame([asdict(row) for row in rows], columns=list(columns))
     return found.astype({name: kinds.get(kind, "str") for name, kind in columns.items()})
 

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, ClassVar, Literal
 
+from pydantic import ConfigDict, Field
+
+Size = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Count = Annotated[int, Field(ge=0, lt=2**63)]
 Part = Literal["accuracy", "effects", "growth", "loading", "unrelated"]
 Verdict = Literal["measured", "failed", "left out"]
 
@@ -32,27 +36,29 @@ class Row:
         program, machine, python, packages, command: by what it was measured.
     """
 
+    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(strict=True, extra="forbid")
+
     part: Part
     scene: str
     way: str
     setting: str = ""
-    value: float | None = None
+    value: Size | None = None
     dense: bool = False
     against: str = ""
-    size: int | None = None
-    poses: int = 0
+    size: Count | None = None
+    poses: Count = 0
     quantity: str = ""
-    error: float | None = None
-    rms: float | None = None
-    radius: float | None = None
-    numbers: int | None = None
-    time: float | None = None
-    lower: float | None = None
-    upper: float | None = None
-    repeats: int | None = None
-    set_up: float | None = None
-    first: float | None = None
-    peak_bytes: int | None = None
+    error: Size | None = None
+    rms: Size | None = None
+    radius: Size | None = None
+    numbers: Count | None = None
+    time: Size | None = None
+    lower: Size | None = None
+    upper: Size | None = None
+    repeats: Count | None = None
+    set_up: Size | None = None
+    first: Size | None = None
+    peak_bytes: Count | None = None
     work: str = ""
     verdict: Verdict = "measured"
     reason: str = ""

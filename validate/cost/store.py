@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import os
 import platform
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, replace
 from importlib import metadata
 from pathlib import Path
-from typing import Any, get_args
+
+from pydantic import TypeAdapter, ValidationError
 
 from pointcoord import Scene
-from validate.cost.row import Part, Row, Verdict
+from validate.cost.row import Row
 from validate.output.document import code_digest
 from validate.plain_text import shown
 
@@ -35,8 +35,7 @@ MEASURED = (
 PACKAGES = ("numpy", "scipy", "pin", "mujoco", "exudyn")
 WHERE = ("program", "machine", "python", "packages")
 """Columns that are the same in all rows whose times compare."""
-ALLOWED = {"part": get_args(Part), "verdict": get_args(Verdict)}
-DIGITS = 18  # of whole numbers: those fit into 64 bits
+ROW = TypeAdapter(Row)
 
 
 class StoreError(Exception):
@@ -113,13 +112,12 @@ def read_rows(path: Path) -> list[Row]:
     for number, text in enumerate(lines, 1):
         try:
             if text:
-                rows.append(_row(json.loads(text, parse_int=_whole)))
-        except json.JSONDecodeError:
-            # The line that was being written when a run was killed.
-            if not text.startswith("{"):
-                raise _no_row(path, number, "it is not JSON") from None
-        except (ValueError, RecursionError) as error:
-            raise _no_row(path, number, str(error)) from None
+                rows.append(ROW.validate_json(text))
+        except ValidationError as error:
+            # A line that was being written when a run was killed has no end.
+            if not (text.startswith("{") and "EOF while parsing" in error.errors()[0]["msg"]):
+                why = f"line {number} is no row of what accuracy costs: {_why(error)}"
+                raise StoreError(f"{path}: {why}; give another file") from None
     return rows
 
 
@@ -136,52 +134,13 @@ def scene_digest(scene: Scene) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _no_row(path: Path, number: int, why: str) -> StoreError:
-    return StoreError(f"{path}: line {number} is no row of what accuracy costs: {why}; give another file")
-
-
-def _row(content: Any) -> Row:
-    """The row of a line; ValueError says why it is none."""
-    if not isinstance(content, dict):
-        raise ValueError("it is no object")
-    known = {field.name: str(field.type) for field in fields(Row)}
-    for name in ("part", "scene", "way"):
-        if name not in content:
-            raise ValueError(f"it has no {name!r}")
-    for name, value in content.items():
-        if name not in known:
-            raise ValueError(f"it has {shown(name)[:40]!r}, which is no column")
-        _require(name, value, known[name])
-    return Row(**content)
-
-
-def _whole(digits: str) -> float:
-    """A whole number; Python refuses to read one of thousands of digits."""
-    return int(digits) if len(digits) <= DIGITS else math.inf
-
-
-def _require(name: str, value: Any, kind: str) -> None:
-    """See that a value is one of its column: every number in the table is a size or a count."""
-    base = kind.removesuffix(" | None")
-    if value is None and base != kind:
-        return
-    if base in ("int", "float"):
-        good = isinstance(value, int if base == "int" else int | float) and not isinstance(value, bool)
-        good = good and 0 <= value < math.inf
-        allowed = (
-            f"{'a whole' if base == 'int' else 'a'} number from 0 up{', or null' if base != kind else ''}"
-        )
-    elif base == "bool":
-        good, allowed = isinstance(value, bool), "true or false"
-    else:
-        choices: Sequence[str] = ALLOWED.get(name, ())
-        good, allowed = (
-            isinstance(value, str) and (not choices or value in choices),
-            ", ".join(choices) or "text",
-        )
-    if not good:
-        said = "too large a number" if value == math.inf else shown(repr(value))[:40]
-        raise ValueError(f"{name} is {said}; allowed: {allowed}")
+def _why(error: ValidationError) -> str:
+    """What is wrong with a line, by the column that it is wrong in."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    where = ".".join(shown(str(key))[:40] for key in first["loc"])
+    value = first["input"]
+    given = f", not {shown(repr(value))[:40]}" if where and not isinstance(value, dict) else ""
+    return f"{where}{': ' if where else ''}{first['msg']}{given}"
 
 
 def _append(path: Path, lines: str) -> None:

@@ -1,7 +1,7 @@
 r"""A chain of linkages of any length, with a closed form: rockers in a row, each driven by the one before.
 
-Rocker j turns about an axis along x in a lane of its own, x = 40 j. A rod joins its tip to the next one's. The
-first rocker is driven by its arm angle theta from the upward vertical,
+Rocker j turns about an axis along x in a lane of its own, x = 40 j. A rod joins its tip to the next one's.
+The first rocker is driven by its arm angle theta from the upward vertical,
 
     p_j = a_j + r_j (0, sin theta_j, cos theta_j),
 

@@ -1,4 +1,4 @@
-"""What grows: instants of a scene, designs of a car (together through `sweep`, or one by one), unknowns of a chain.
+"""What grows: instants of a scene, designs of a car by one `sweep` or one by one, unknowns of a chain.
 
 A design is the car with every moving hardpoint moved at random; its drawing is put together by whoever
 solves it. Design number k is the same car in however large a batch.
