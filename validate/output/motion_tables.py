@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from importlib import import_module
 from itertools import islice
 from pathlib import Path
-from typing import BinaryIO, Protocol
+from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,8 +85,7 @@ def _npz_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
         if instants is None:
             for name, column in columns(motion):
-                pieces = (column[low : low + PIECE] for low in range(0, len(column), PIECE))
-                _npz_member(archive, name, len(column), pieces)
+                npz_member(archive, name, column.shape, "<f8", [column])
             return
         with tempfile.TemporaryFile() as gathered:
             names: tuple[str, ...] = ()
@@ -100,19 +99,23 @@ def _npz_file(stream: BinaryIO, motion: Motion, instants: int | None) -> None:
                 first += len(block.times)
             gathered.seek(0)
             for name in names:
-                _npz_member(archive, name, instants, _pieces(gathered, instants))
+                npz_member(archive, name, (instants,), "<f8", pieces(gathered, instants))
 
 
-def _npz_member(archive: zipfile.ZipFile, name: str, count: int, pieces: Iterator[Array]) -> None:
-    # As `numpy.savez` writes it, which would want all columns at once.
+def npz_member(
+    archive: zipfile.ZipFile, name: str, shape: tuple[int, ...], kind: str, parts: Iterable[NDArray[Any]]
+) -> None:
+    """Write an array part after part, as `numpy.savez` would, which wants all arrays at once."""
     with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
-        header = {"descr": "<f8", "fortran_order": False, "shape": (count,)}
+        header = {"descr": kind, "fortran_order": False, "shape": shape}
         np.lib.format.write_array_header_1_0(member, header)
-        for piece in pieces:
-            member.write(piece.astype("<f8", copy=False).tobytes())
+        for part in parts:
+            for low in range(0, len(part), PIECE):
+                member.write(part[low : low + PIECE].astype(kind, copy=False).tobytes())
 
 
-def _pieces(gathered: BinaryIO, count: int) -> Iterator[Array]:
+def pieces(gathered: BinaryIO, count: int) -> Iterator[Array]:
+    """So many numbers of a file, some at a time."""
     left = count
     while left:
         taken = min(left, PIECE)

@@ -20,7 +20,14 @@ from numpy.typing import NDArray
 from pointcoord import Sweep
 from pointcoord.results.named_columns import number_columns
 from validate.output.files import require_known_ending, write_whole
-from validate.output.motion_tables import AsText, Writable, csv_lines, require_writer
+from validate.output.motion_tables import (
+    AsText,
+    Writable,
+    csv_lines,
+    npz_member,
+    pieces,
+    require_writer,
+)
 
 Array = NDArray[np.float64]
 Blocks = Iterable[Sweep]
@@ -86,34 +93,15 @@ def _npz_file(stream: BinaryIO, blocks: Blocks, count: int) -> None:
                 of_designs.setdefault(name, []).append(values)
             said = (status_of(block, number) for number in block.numbers_of_designs.tolist())
             codes.append(np.array([reasons.setdefault(one, len(reasons)) for one in said], dtype=np.uint16))
-        _member(archive, DESIGN, (count,), "<i8", [np.arange(count)])
-        for name, pieces in of_designs.items():
-            _member(archive, name, (count,), "<f8", pieces)
+        npz_member(archive, DESIGN, (count,), "<i8", [np.arange(count)])
+        for name, values_of_blocks in of_designs.items():
+            npz_member(archive, name, (count,), "<f8", values_of_blocks)
         words = np.array(list(reasons))
-        _member(archive, STATUS, (count,), words.dtype.str, (words[code] for code in codes))
-        _member(archive, TIME, times.shape, "<f8", [times])
+        npz_member(archive, STATUS, (count,), words.dtype.str, (words[code] for code in codes))
+        npz_member(archive, TIME, times.shape, "<f8", [times])
         gathered.seek(0)
         for name in names:
-            _member(archive, name, (count, len(times)), "<f8", _pieces(gathered, count * len(times)))
-
-
-def _member(
-    archive: zipfile.ZipFile, name: str, shape: tuple[int, ...], kind: str, pieces: Iterable[NDArray[Any]]
-) -> None:
-    # As `numpy.savez` writes it, which would want all of an array at once.
-    with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
-        header = {"descr": kind, "fortran_order": False, "shape": shape}
-        np.lib.format.write_array_header_1_0(member, header)
-        for piece in pieces:
-            member.write(piece.astype(kind, copy=False).tobytes())
-
-
-def _pieces(gathered: BinaryIO, count: int) -> Iterator[Array]:
-    left = count
-    while left:
-        taken = min(left, PIECE)
-        yield np.frombuffer(gathered.read(8 * taken))
-        left -= taken
+            npz_member(archive, name, (count, len(times)), "<f8", pieces(gathered, count * len(times)))
 
 
 def _parquet_file(stream: BinaryIO, blocks: Blocks, count: int) -> None:
