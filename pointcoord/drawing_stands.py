@@ -7,11 +7,11 @@ and `taylor` for a turn), until it meets a pose beyond which there is none.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.car_axes import CarAxes

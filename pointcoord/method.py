@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, PointcoordError, UnknownName
 from pointcoord.linkage.chassis import SPREAD, ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism

@@ -9,6 +9,7 @@ which is all that positions, velocities, accelerations and whole motions need.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache, cached_property
 from math import comb, factorial, isfinite, perm
 from operator import mul
@@ -17,7 +18,6 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import SPLITTER, two_product, two_sum
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF

@@ -16,7 +16,6 @@ FORBIDDEN = {
 ROOMS = {
     "pointcoord": (
         "errors",
-        "data_classes",
         "numerics",
         "time_functions",
         "wording",

@@ -6,13 +6,13 @@ A car that was drawn is another one than the car that is solved, by as much as i
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, PointcoordError, Scene
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.results.closing import Closing, closing
 from pointcoord.simulation import scene_mechanism

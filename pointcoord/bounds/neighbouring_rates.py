@@ -14,12 +14,12 @@ its poses more than a small part of what is expected of them has to be divided.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_rates import row_sums
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosed_groups import EnclosedGroups
 from pointcoord.numerics.enclosure import Enclosed

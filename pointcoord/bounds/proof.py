@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,6 @@ from pointcoord.bounds.reported_bounds import (
     driven_coordinates,
     reported_bounds,
 )
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.chassis import SPREAD
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import Pair, two_sum

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,6 @@ from pointcoord.bounds.reported_bounds import (
     driven_coordinates,
     unit_of_time,
 )
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosed_groups import EnclosedGroups
 from pointcoord.numerics.enclosure import Enclosed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_points
 from pointcoord.bounds.enclosed_rates import enclosed_coordinates
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism

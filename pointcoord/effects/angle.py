@@ -8,12 +8,12 @@ as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Doubt, Effect, Point, Poses, Quantity, no_role
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.car_axes import CarAxes, Direction

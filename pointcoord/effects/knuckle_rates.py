@@ -13,12 +13,12 @@ that was found from all points by least squares (see `rigid`).
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects import rigid
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.topology import Topology

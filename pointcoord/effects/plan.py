@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.errors import UnknownName

@@ -6,12 +6,12 @@ Values are power series of shape (..., order + 1); lengths are in units of the m
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import Pair, exact_square, pair_quotient, two_product

@@ -13,12 +13,12 @@ are given.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion

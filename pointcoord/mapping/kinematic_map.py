@@ -15,7 +15,7 @@ outwards from the closed drawing (see `flood`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from types import MappingProxyType
@@ -23,7 +23,6 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS, QUANTITIES

@@ -12,13 +12,13 @@ import json
 import zipfile
 import zlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MapError, PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.multi_index import powers

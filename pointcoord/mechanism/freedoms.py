@@ -8,14 +8,13 @@ one is violated there, the mechanism is locked, and no compromise between its ro
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.some_rows import SomeRows
 from pointcoord.linkage.hardpoints import dominant, drawn_mechanism

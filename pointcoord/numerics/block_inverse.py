@@ -19,12 +19,12 @@ batch have the blocks of the entries that any of them has, which is a block tria
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.structure import structure_of
 
 Array = NDArray[np.float64]

@@ -11,13 +11,12 @@ k > n, that the function has (Trefethen, Approximation Theory and Approximation 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
-
-from pointcoord.data_classes import dataclass
 
 Array = NDArray[np.float64]
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from operator import add, attrgetter
-
-from pointcoord.data_classes import dataclass
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,11 @@ A number that is one for all instants, such as a direction, may stand in every o
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.enclosure import TINY, Enclosed, aligned, both
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 

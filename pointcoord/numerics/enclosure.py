@@ -13,12 +13,12 @@ dimension of 2. Operations keep |low| <= u |high| (an exact sum at their end); w
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 

@@ -9,13 +9,13 @@ few entries is inverted block after block (see `block_inverse`), and its solutio
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics import block_inverse
 from pointcoord.numerics.block_inverse import Substitution, inverse_by_blocks
 from pointcoord.numerics.rounding import EPS

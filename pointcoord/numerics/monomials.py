@@ -9,13 +9,12 @@ every such product is one call on contiguous numbers, and its rates follow Leibn
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
-
-from pointcoord.data_classes import dataclass
 
 Array = NDArray[np.float64]
 

@@ -7,14 +7,13 @@ order are the first ones of a higher.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import product
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
-
-from pointcoord.data_classes import dataclass
 
 Indices = NDArray[np.intp]
 Places = tuple[slice, ...]

@@ -18,12 +18,12 @@ a few per cent is not sound, and has to be divided.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.kantorovich import ball
 from pointcoord.numerics.linear import factorise

@@ -18,12 +18,12 @@ LU with partial pivoting (see `linear`). A step ends the iteration
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from types import EllipsisType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap

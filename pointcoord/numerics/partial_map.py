@@ -13,12 +13,12 @@ of fewer inputs are known.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.quadratic import Product, QuadraticMap
 
 Array = NDArray[np.float64]

@@ -14,12 +14,12 @@ taken first loses nothing when the points are close together and far from the or
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.structure import Structure, structure_of
 

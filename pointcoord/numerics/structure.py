@@ -14,13 +14,12 @@ pass over the entries; so does the matching of a linkage, where few rows have to
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-from pointcoord.data_classes import dataclass
 
 FREE = -1
 Indices = NDArray[np.intp]

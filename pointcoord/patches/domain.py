@@ -7,12 +7,12 @@ smallest box, so that boxes that touch are known to, exactly.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.multi_index import powers

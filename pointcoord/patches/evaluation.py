@@ -11,12 +11,12 @@ are three products with one and the same matrix of coefficients.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 

@@ -7,11 +7,10 @@ A series f(s) = sum_k c_k s^k on |s_i| <= 1 has  |f| <= sum |c_k|,  |f_i| <= sum
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
-from pointcoord.data_classes import dataclass
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]

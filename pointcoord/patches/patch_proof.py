@@ -33,10 +33,11 @@ The rounding of the bound's own last operations is made up for by a factor, as f
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.kantorovich import INFLATION, ball
 from pointcoord.numerics.linear import Factors

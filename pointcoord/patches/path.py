@@ -9,11 +9,11 @@ tell.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.rounding import EPS
 from pointcoord.patches.lookup import Lookup
 from pointcoord.time_functions import TimeFunction

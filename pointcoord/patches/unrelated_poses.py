@@ -9,11 +9,11 @@ few poses, goes along a path of its own from the closed drawing, and is proven b
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import AssemblyError, InputOutOfRange, PointcoordError
 from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.mechanism import Mechanism

@@ -26,13 +26,13 @@ from the number (see `bounds`), however it was found.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, SingularConfiguration
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyond

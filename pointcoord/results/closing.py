@@ -7,13 +7,13 @@ solved, by as much as its points move: the user is told how far, which point, an
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from math import hypot
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import lengths

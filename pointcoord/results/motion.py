@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import NotComputed
 from pointcoord.numerics.counters import Work
 from pointcoord.results.closing import Closing

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.results.cells import CloseInstants
 from pointcoord.results.readout import BLOCK, Readout

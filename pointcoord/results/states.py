@@ -6,6 +6,7 @@ Only what the plan of a scene asks for is evaluated.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
@@ -13,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.linkage.mechanism import Mechanism

@@ -14,11 +14,11 @@ together at each instant what rides on them (see `carried_states`).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.carried_states import CARRIED, carry, summed_and_carried
 from pointcoord.results.states import StatesOfChain

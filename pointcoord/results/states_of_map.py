@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
 
@@ -10,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_rates import Summed
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import OutsideMotion
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers

@@ -7,11 +7,11 @@ all points is one sum for each derivative, and a block of columns stays in a cac
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.plan import Plan
 from pointcoord.linkage.topology import Topology

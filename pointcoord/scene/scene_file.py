@@ -10,10 +10,11 @@ from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import Path
-from typing import IO, Any, Literal
+from typing import IO, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
@@ -32,28 +33,11 @@ from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.structure import CHASSIS, Structure
 from pointcoord.mechanism.tables import TABLES
 from pointcoord.results.even_instants import even_instants
-from pointcoord.scene.checks import (
-    list_of,
-    number,
-    one_of,
-    optional,
-    part,
-    plain_table,
-    positive,
-    table_of,
-    text,
-    vector,
-    whole_number,
-)
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.scene_part import Faults, Part, Place, key
+from pointcoord.scene.scene_part import AS_LIST, Number, Part, PlainTable, Positive, Text, Vector, Whole
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 from pointcoord.toml_text import parsed, read_file, read_stream
 from pointcoord.wording import meant, shown
-
-Vector = tuple[float, float, float]
-Others = Mapping[str, Any]
-"""The keys of a part that come before one, with their values."""
 
 # The built-in ones. (importlib.resources takes as long to import as a fifth of numpy.)
 SCENES = Path(__file__).parents[1] / "scenes"
@@ -66,50 +50,6 @@ LAWS = ("constant", "polynomial", "sine", "table")
 FARTHEST = 1e15
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
-
-
-def _known_type(type: str | None, others: Others) -> str | None:
-    if type is not None and type not in shipped():
-        hint = meant(type, shipped())
-        raise ValueError(
-            f"no mechanism is called {shown(type)}{hint}; allowed: {', '.join(shipped())}, or a path to a "
-            "mechanism file that ends in .toml"
-        )
-    return type
-
-
-def _known_closure(closure: str, others: Others) -> str:
-    file = _file_of(others)
-    if file is not None and closure not in file.closures:
-        raise ValueError(
-            f"a {file.name} has no closure called {shown(closure)}; allowed: {', '.join(file.closures)}"
-        )
-    return closure
-
-
-def _known_points(points: dict[str, Vector], others: Others) -> dict[str, Vector]:
-    file = _file_of(others)
-    if file is None or not {"closure", "right"} <= others.keys():
-        return points
-    structure = file.structures[others["closure"]]
-    points = _of_every_part(points, file, structure, others["right"])
-    extra = [name for name in points if name not in structure.points]
-    missing = [name for name in structure.required_points if name not in points]
-    if extra:
-        elsewhere = [one for one in shipped() if extra[0] in mechanism_file(one).points]
-        hint = f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], structure.points)
-        raise ValueError(
-            f"no point of a {file.name} is called {shown(extra[0])}{hint}; "
-            f"allowed: {', '.join(structure.points)}"
-        )
-    if missing:
-        raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(structure.required_points)}")
-    standing = {
-        name: points[other]
-        for name, other in structure.stand_ins.items()
-        if name in structure.bodies[CHASSIS] and other in points
-    }
-    return standing | points
 
 
 def _of_every_part(
@@ -136,14 +76,14 @@ def _mirrored(place: Vector, right: Vector) -> Vector:
     return x, y, z
 
 
-def _file_of(others: Others) -> MechanismFile | None:
+def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
     """The mechanism of a part as far as its keys are right."""
-    if "type" not in others or any(name not in others for name in TABLES):
+    if "type" not in keys or any(name not in keys for name in TABLES):
         return None
-    if others["type"] is not None:
-        return mechanism_file(others["type"])
-    tables = {name: others[name] for name in TABLES if others[name] is not None}
-    return _inline(_hashable({"title": others["title"], **tables})) if tables else None
+    if keys["type"] is not None:
+        return mechanism_file(keys["type"])
+    tables = {name: keys[name] for name in TABLES if keys[name] is not None}
+    return _inline(_hashable({"title": keys["title"], **tables})) if tables else None
 
 
 @lru_cache(maxsize=64)
@@ -179,34 +119,6 @@ def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -
     return found
 
 
-def _points_of_the_car(points: tuple[str, ...] | None, others: Others) -> tuple[str, ...] | None:
-    if points is None or "mechanism" not in others:
-        return points
-    there = others["mechanism"].structure.points
-    if not points:
-        raise ValueError(
-            f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
-        )
-    for place, name in enumerate(points):
-        if name not in there:
-            raise ValueError(
-                f"no point of this car is called {shown(name)}{meant(name, there)}; "
-                f"allowed: {', '.join(there)}"
-            )
-        if name in points[:place]:
-            raise ValueError(f"{name!r} is named twice; allowed: each point once")
-    return points
-
-
-def _known_effects(effects: tuple[str, ...], others: Others) -> tuple[str, ...]:
-    for name in effects:
-        if name not in EFFECTS:
-            givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
-            hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
-            raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
-    return effects
-
-
 class MechanismPart(Part):
     """The mechanism, its side of the car, its drawn points in mm and the car's axes.
 
@@ -215,55 +127,96 @@ class MechanismPart(Part):
     says what becomes of a drawing that does not close: `drawn` takes it as it stands, others put points in
     place. `points` has an entry also for those points of the chassis that the file leaves to others that
     stand in for them.
-
-    Attributes:
-        driven: the inputs that its scene drives; None for a part that belongs to no scene.
     """
 
-    type: str | None = key(optional(text), default=None, agrees=_known_type)
-    title: str = key(text, default="")
-    bodies: dict[str, Any] | None = key(optional(plain_table), default=None)
-    rods: dict[str, Any] | None = key(optional(plain_table), default=None)
-    slides: dict[str, Any] | None = key(optional(plain_table), default=None)
-    inputs: dict[str, Any] | None = key(optional(plain_table), default=None)
-    roles: dict[str, Any] | None = key(optional(plain_table), default=None)
-    stand_ins: dict[str, Any] | None = key(optional(plain_table), default=None)
-    closures: dict[str, Any] | None = key(optional(plain_table), default=None)
-    parts: dict[str, Any] | None = key(optional(plain_table), default=None)
-    closure: str = key(text, default="drawn", agrees=_known_closure)
-    side: Literal["left", "right"] = key(one_of("left", "right"), default="left")
-    up: Vector = key(vector, default=(0.0, 0.0, 1.0))
-    right: Vector = key(vector, default=(0.0, 1.0, 0.0))
-    wheel_radius: float | None = key(optional(positive), default=None)
-    points: dict[str, Vector] = key(table_of(vector), agrees=_known_points)
-    driven: tuple[str, ...] | None = None
+    type: Text | None = None
+    title: Text = ""
+    bodies: PlainTable | None = None
+    rods: PlainTable | None = None
+    slides: PlainTable | None = None
+    inputs: PlainTable | None = None
+    roles: PlainTable | None = None
+    stand_ins: PlainTable | None = None
+    closures: PlainTable | None = None
+    parts: PlainTable | None = None
+    closure: Text = "drawn"
+    side: Literal["left", "right"] = "left"
+    up: Vector = (0.0, 0.0, 1.0)
+    right: Vector = (0.0, 1.0, 0.0)
+    wheel_radius: Positive | None = None
+    points: dict[str, Vector]
+
+    _driven: tuple[str, ...] | None = PrivateAttr(None)
 
     @classmethod
-    def read_from(cls, content: object, place: Place, faults: Faults) -> Any:
-        """The part, or `WRONG` with its faults noted; a mechanism file is read.
+    def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
+        """The content with a mechanism file read in place of its path, and points by their dotted names.
 
         Raises:
             SceneError: a mechanism file cannot be read, or something in it is wrong.
+            TableFault: the tables are wrong, or stand beside a type.
         """
-        if isinstance(content, Mapping):
-            own = dict(content)
-            given = [name for name in TABLES if own.get(name) is not None]
-            if own.get("type") is not None and given:
-                problem = f"there are {given[0]} beside type = {shown(own['type'])}"
-                allowed = "a type, or the mechanism's tables and then no type"
-                return faults.note((*place, given[0]), problem, allowed=allowed)
-            if is_path(own.get("type")):
-                own |= read_tables(Path(own.pop("type")))
-            elif given:
-                own |= whole_tables({name: own[name] for name in given}, Path())
-                try:
-                    MechanismFile.of({name: own[name] for name in given}, "mechanism")
-                except TableFault as fault:
-                    return faults.note((*place, *fault.place), fault.problem, allowed=fault.allowed)
-            if "points" in own:
-                own["points"] = _by_dotted_name(own["points"], lambda table: False)
-            content = own
-        return super().read_from(content, place, faults)
+        given = [name for name in TABLES if content.get(name) is not None]
+        if content.get("type") is not None and given:
+            problem = f"there are {given[0]} beside type = {shown(content['type'])}"
+            raise TableFault((given[0],), problem, "a type, or the mechanism's tables and then no type")
+        if is_path(content.get("type")):
+            content |= read_tables(Path(content.pop("type")))
+        elif given:
+            content |= whole_tables({name: content[name] for name in given}, Path())
+            MechanismFile.of({name: content[name] for name in given}, "mechanism")
+        if "points" in content:
+            content["points"] = _by_dotted_name(content["points"], lambda table: False)
+        return content
+
+    @field_validator("type")
+    @classmethod
+    def _known_type(cls, type: str | None) -> str | None:
+        if type is not None and type not in shipped():
+            hint = meant(type, shipped())
+            raise ValueError(
+                f"no mechanism is called {shown(type)}{hint}; allowed: {', '.join(shipped())}, or a path "
+                "to a mechanism file that ends in .toml"
+            )
+        return type
+
+    @field_validator("closure")
+    @classmethod
+    def _known_closure(cls, closure: str, others: ValidationInfo) -> str:
+        file = _file_of(others.data)
+        if file is not None and closure not in file.closures:
+            raise ValueError(
+                f"a {file.name} has no closure called {shown(closure)}; allowed: {', '.join(file.closures)}"
+            )
+        return closure
+
+    @field_validator("points")
+    @classmethod
+    def _known_points(cls, points: dict[str, Vector], others: ValidationInfo) -> dict[str, Vector]:
+        file = _file_of(others.data)
+        if file is None or not {"closure", "right"} <= others.data.keys():
+            return points
+        structure = file.structures[others.data["closure"]]
+        points = _of_every_part(points, file, structure, others.data["right"])
+        extra = [name for name in points if name not in structure.points]
+        missing = [name for name in structure.required_points if name not in points]
+        if extra:
+            elsewhere = [one for one in shipped() if extra[0] in mechanism_file(one).points]
+            hint = (
+                f", which is a point of a {elsewhere[0]}" if elsewhere else meant(extra[0], structure.points)
+            )
+            raise ValueError(
+                f"no point of a {file.name} is called {shown(extra[0])}{hint}; "
+                f"allowed: {', '.join(structure.points)}"
+            )
+        if missing:
+            raise ValueError(f"{missing[0]!r} is missing; needed: {', '.join(structure.required_points)}")
+        standing = {
+            name: points[other]
+            for name, other in structure.stand_ins.items()
+            if name in structure.bodies[CHASSIS] and other in points
+        }
+        return standing | points
 
     def agree(self) -> None:
         """It is of a mechanism, and its axes, its side and its spin axis have a meaning."""
@@ -306,11 +259,16 @@ class MechanismPart(Part):
             )
 
     @property
+    def driven(self) -> tuple[str, ...] | None:
+        """The inputs that its scene drives; None for a part that belongs to no scene."""
+        return self._driven
+
+    @property
     def name(self) -> str:
         """What messages call the mechanism: its type, or the title of its tables."""
         return self.file.name
 
-    @property
+    @cached_property
     def file(self) -> MechanismFile:
         """The mechanism's file."""
         found = _file_of(self.__dict__)
@@ -393,17 +351,17 @@ class MechanismPart(Part):
 class SinePart(Part):
     """offset + amplitude sin(angular_frequency t + phase)."""
 
-    amplitude: float = key(number)
-    angular_frequency: float = key(number)
-    phase: float = key(number, default=0.0)
-    offset: float = key(number, default=0.0)
+    amplitude: Number
+    angular_frequency: Number
+    phase: Number = 0.0
+    offset: Number = 0.0
 
 
 class TablePart(Part):
     """A cubic spline through values at increasing times."""
 
-    times: tuple[float, ...] = key(list_of(number, at_least=4))
-    values: tuple[float, ...] = key(list_of(number, at_least=4))
+    times: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
+    values: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
 
     def agree(self) -> None:
         """Its times increase, and its spline is finite."""
@@ -420,10 +378,10 @@ class TablePart(Part):
 class InputPart(Part):
     """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table."""
 
-    constant: float | None = key(optional(number), default=None)
-    polynomial: tuple[float, ...] | None = key(optional(list_of(number, at_least=1)), default=None)
-    sine: SinePart | None = key(optional(part(SinePart)), default=None)
-    table: TablePart | None = key(optional(part(TablePart)), default=None)
+    constant: Number | None = None
+    polynomial: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=1)] | None = None
+    sine: SinePart | None = None
+    table: TablePart | None = None
 
     def agree(self) -> None:
         """It is of one kind."""
@@ -450,9 +408,9 @@ class InputPart(Part):
 class TimePart(Part):
     """The instants: `samples` of them evenly from start to stop, both included; s."""
 
-    start: float = key(number)
-    stop: float = key(number)
-    samples: int = key(whole_number(1, MOST_SAMPLES))
+    start: Number
+    stop: Number
+    samples: Annotated[Whole, Field(ge=1, le=MOST_SAMPLES)]
 
     def agree(self) -> None:
         """It goes forwards, within what a motion can count."""
@@ -474,20 +432,52 @@ class Scene(Part):
     effects hang on is not solved for.
     """
 
-    title: str = key(text, default="")
-    effects: tuple[str, ...] = key(list_of(text), default=(), agrees=_known_effects)
-    tolerance: float = key(positive, default=1e-9)
-    mechanism: MechanismPart = key(part(MechanismPart))
-    inputs: dict[str, InputPart] = key(table_of(part(InputPart)))
-    time: TimePart = key(part(TimePart))
-    points: tuple[str, ...] | None = key(optional(list_of(text)), default=None, agrees=_points_of_the_car)
+    title: Text = ""
+    effects: Annotated[tuple[Text, ...], AS_LIST] = ()
+    tolerance: Positive = 1e-9
+    mechanism: MechanismPart
+    inputs: dict[str, InputPart]
+    time: TimePart
+    points: Annotated[tuple[Text, ...], AS_LIST] | None = None
 
     @classmethod
-    def read_from(cls, content: object, place: Place, faults: Faults) -> Any:
-        """The scene, or `WRONG` with its faults noted; inputs of a part may be in a table of its own."""
-        if isinstance(content, Mapping) and "inputs" in content:
-            content = {**content, "inputs": _by_dotted_name(content["inputs"], _is_no_part)}
-        return super().read_from(content, place, faults)
+    def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
+        """The content with inputs by their dotted names, which may be in a table for each part."""
+        if "inputs" in content:
+            content["inputs"] = _by_dotted_name(content["inputs"], _is_no_part)
+        return content
+
+    @field_validator("effects")
+    @classmethod
+    def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
+        for name in effects:
+            if name not in EFFECTS:
+                givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
+                hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
+                raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
+        return effects
+
+    @field_validator("points")
+    @classmethod
+    def _points_of_the_car(
+        cls, points: tuple[str, ...] | None, others: ValidationInfo
+    ) -> tuple[str, ...] | None:
+        if points is None or "mechanism" not in others.data:
+            return points
+        there = others.data["mechanism"].structure.points
+        if not points:
+            raise ValueError(
+                f"none is named; allowed: one or more of {', '.join(there)}; without this key all of them"
+            )
+        for place, name in enumerate(points):
+            if name not in there:
+                raise ValueError(
+                    f"no point of this car is called {shown(name)}{meant(name, there)}; "
+                    f"allowed: {', '.join(there)}"
+                )
+            if name in points[:place]:
+                raise ValueError(f"{name!r} is named twice; allowed: each point once")
+        return points
 
     def agree(self) -> None:
         """Its effects and its inputs belong to its mechanism."""
@@ -512,7 +502,7 @@ class Scene(Part):
                     f"input {name!r} is the height of the wheel's contact point, and the mechanism has no "
                     "wheel_radius; allowed: wheel_radius in mm, such as wheel_radius = 300.0"
                 )
-        self.mechanism.__dict__["driven"] = tuple(name for name in known if name in self.inputs)
+        self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():
             table = law.table

@@ -17,14 +17,13 @@ in time.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import product
 from math import comb, factorial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import DEGREE, regular_between, surely_regular

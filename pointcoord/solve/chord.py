@@ -15,12 +15,11 @@ followed in shorter proven steps (see `assembly`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work

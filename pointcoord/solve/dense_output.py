@@ -7,11 +7,11 @@ writes where its result belongs, and whatever is made of the sums runs along the
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.solve.taylor import Chain
 

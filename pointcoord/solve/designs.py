@@ -10,11 +10,11 @@ there.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import assembled, closed_drawings
 from pointcoord.solve.box import follow_by_inputs

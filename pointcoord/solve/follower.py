@@ -18,11 +18,11 @@ where no few of these are proven to reach the end, and tell where a path stops.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.branch import hidden, orientation, same_side, same_signs
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise

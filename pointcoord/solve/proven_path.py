@@ -25,13 +25,13 @@ that is proven.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise

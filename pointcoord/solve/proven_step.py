@@ -32,10 +32,11 @@ cross on the circle, as in a parallelogram that lies flat, the chord leads from 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.numerics.block_inverse import product_of_few_entries
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS

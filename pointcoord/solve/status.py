@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Any
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import (
     AssemblyError,
     MotionNotMapped,

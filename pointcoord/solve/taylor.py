@@ -25,7 +25,7 @@ every series (see `partial_map`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, lru_cache, partial
 from math import perm
 from typing import Self
@@ -33,7 +33,6 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden, on_branch, regular_along

@@ -8,14 +8,13 @@ designs it has.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import SceneError, SweepError, UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.scene.scene_file import Scene

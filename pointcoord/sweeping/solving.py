@@ -8,13 +8,13 @@ a scene.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.effect import Doubt, Poses
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (

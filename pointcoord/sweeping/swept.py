@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.proof import Proof
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import PointcoordError, SweepError
 from pointcoord.results.motion import Motion
 from pointcoord.results.samples import Samples

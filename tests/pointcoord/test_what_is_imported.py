@@ -34,7 +34,7 @@ def imported(name: str, change: str = "") -> set[str]:
 def test_a_scene_without_a_table_is_solved_and_proven_without_scipy(name: str) -> None:
     found = imported(name)
     assert {"numpy", "pointcoord"} <= found
-    assert not {"pydantic", "scipy", "matplotlib", "pyarrow", "pinocchio", "absolute", "validate"} & found
+    assert not {"scipy", "matplotlib", "pyarrow", "pinocchio", "absolute", "validate"} & found
 
 
 def test_a_table_is_read_with_scipy() -> None:

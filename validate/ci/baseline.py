@@ -24,14 +24,13 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import IO, Any, BinaryIO, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
 from validate.comparison.given import given

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import BinaryIO
 
-from pointcoord.data_classes import dataclass
 from validate.ci.baseline import Recorder
 from validate.ci.junit import junit
 from validate.ci.record import Record

@@ -22,9 +22,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from pointcoord.data_classes import dataclass
 from validate.ci.baseline import Move, Since
 from validate.ci.record import Record, explained, fault_of, why_undecided
 from validate.comparison.compare import Comparison, Outcome

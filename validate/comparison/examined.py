@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
-from pointcoord.data_classes import dataclass
 from validate.closed_drawing import closing_data, closing_of, warnings_of
 from validate.comparison.compare import Outcome, compare
 from validate.exit_status import ExitStatus, combined

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 
-from pointcoord.data_classes import dataclass
 from validate.comparison.compare import Comparison, Outcome
 from validate.paper.errata import erratum_of
 

@@ -7,11 +7,11 @@ number is told and left out; the rest is compared.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from validate.formulations.protocol import Accuracy, FormulationError, Solution, shape_of
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, gaps_between
 from validate.comparison.given import given
 from validate.comparison.tolerance import largest_numbers, tolerance

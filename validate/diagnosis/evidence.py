@@ -6,14 +6,13 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate, sweep
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.rounding import EPS

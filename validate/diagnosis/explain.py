@@ -23,12 +23,11 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from pointcoord import PointcoordError, Scene
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Outcome
 from validate.comparison.explanation import Explanation

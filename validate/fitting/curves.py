@@ -14,13 +14,13 @@ ends at 1e-9 of the sum of squares, where a part of 1e-5 of a slope would matter
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, designs_of
-from pointcoord.data_classes import dataclass
 from validate.fitting.errors import FitError
 from validate.measured.comparing import ours_of
 from validate.measured.mapping import Measured

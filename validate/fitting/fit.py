@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +36,6 @@ from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
 
 from pointcoord import PointcoordError, Scene, UnknownName, designs_of
-from pointcoord.data_classes import dataclass
 from validate.fitting.curves import Curves, Solved
 from validate.fitting.errors import FitError
 from validate.measured.mapping import Measured

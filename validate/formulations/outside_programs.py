@@ -17,14 +17,13 @@ kind at least, for they are solved for together.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.results.closing import ALLOWED

@@ -7,7 +7,7 @@ to solve as the scene asks. What is claimed is what was left out, whichever it w
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -24,7 +24,6 @@ from pointcoord import (
     simulate,
 )
 from pointcoord.bounds.proof import Proof
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO, Method
 from pointcoord.simulation import Task, checked_task, finest_tolerance, solve_task

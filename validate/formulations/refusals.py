@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from numbers import Integral
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
-from pointcoord.data_classes import dataclass
 from validate.formulations.protocol import FormulationError
 from validate.peers.errors import PeerError
 from validate.relative.errors import HardpointsError, InputError, PoseError

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
@@ -36,7 +36,6 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict

@@ -37,7 +37,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -45,7 +45,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.angle import Angle, WheelAngles
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.toml_text import parsed, read_file

@@ -10,7 +10,7 @@ A derivative by an independent column is the rate where that goes at 1 per unit 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Protocol
 
@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import KinematicMap, Motion, Scene, kinematic_map, simulate, solve_poses
-from pointcoord.data_classes import dataclass
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, QUANTITIES

@@ -15,14 +15,13 @@ import math
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import SceneError
-from pointcoord.data_classes import dataclass
 from pointcoord.toml_text import read_file
 from validate.extras import MissingPackage
 from validate.plain_text import shown

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import combinations, product
 
@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from pointcoord import PointcoordError
-from pointcoord.data_classes import dataclass
 from validate.measured.mapping import INPUT, TIME, Measured, Series
 from validate.measured.poses import Driven, Found, of_a_pose
 from validate.plain_text import shown

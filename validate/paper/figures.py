@@ -8,12 +8,12 @@ wheel centre; they print no angle, so that Figures 5 and 7 have no printed point
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.data_classes import dataclass
 from validate.paper.tables import TABLE_2, TABLE_3, PrintedRow
 
 Array = NDArray[np.float64]

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.data_classes import dataclass
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 from validate.paper.tables import TABLE_2, TABLE_3, PaperRow

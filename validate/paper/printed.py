@@ -11,12 +11,11 @@ Three formulas differ from ours:
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, Edges, States
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.topology import Topology

@@ -7,12 +7,12 @@ system using point coordinates". Rows are as printed, but for three slips of pri
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.data_classes import dataclass
 
 Array = NDArray[np.float64]
 

@@ -17,12 +17,12 @@ and no program drives it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from validate.peers.errors import PeerError
 from validate.spanning_tree.chassis import ChassisMotion
 from validate.spanning_tree.cut import (

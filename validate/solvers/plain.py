@@ -26,7 +26,7 @@ from __future__ import annotations
 import importlib
 import traceback
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -34,7 +34,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
-from pointcoord.data_classes import dataclass
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.wording import meant, shown
 from validate.formulations.asked_numbers import asked_numbers

@@ -13,10 +13,11 @@ The length of d is between 1/2 and 1 of the mechanism's size, however close the 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, no_length, per_axis
 from pointcoord.linkage.constraints.normal import Normal

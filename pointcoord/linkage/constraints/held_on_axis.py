@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.axis_in_body import AxisInBody, axis_square, scaled_axis
 from pointcoord.linkage.constraints.constraint import Constraint, no_length, per_axis
 from pointcoord.linkage.constraints.on_axis import OnAxis

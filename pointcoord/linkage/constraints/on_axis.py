@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.axis_in_body import AxisInBody, axis_length, scaled_axis
 from pointcoord.linkage.constraints.constraint import Constraint, per_axis
 from pointcoord.linkage.drawing import Drawing, Placed

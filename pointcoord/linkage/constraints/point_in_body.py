@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pointcoord.data_classes import dataclass
+from dataclasses import dataclass
+
 from pointcoord.linkage.constraints.axis_in_body import weight_names, weighted_rows, weights_in_body
 from pointcoord.linkage.constraints.constraint import Constraint, per_axis
 from pointcoord.linkage.constraints.normal import Normal

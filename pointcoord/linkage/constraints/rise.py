@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pointcoord.data_classes import dataclass
+from dataclasses import dataclass
+
 from pointcoord.linkage.constraints.constraint import Constraint, dot
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.quadratic import Product, Row

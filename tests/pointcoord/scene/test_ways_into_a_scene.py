@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
 from pointcoord.errors import visible
@@ -47,7 +48,7 @@ def test_no_public_way_leads_to_a_scene_of_a_meaningless_tolerance(bad: Any) -> 
         lambda: Scene.from_mapping({**CONTENT, "tolerance": bad}),
         lambda: BOUNCE.model_copy(update={"tolerance": bad}),
         lambda: BOUNCE.model_copy(update={"tolerance": bad}, deep=True),
-        lambda: Scene.model_construct(**{**CONTENT, "tolerance": bad}),
+        lambda: simulate(Scene.model_construct(**{**CONTENT, "tolerance": bad})),
     )
     for way in ways:
         with pytest.raises(SceneError, match="tolerance: Input should be") as caught:
@@ -351,14 +352,14 @@ def test_a_scene_that_nobody_wrote_into_is_not_checked_again_and_one_that_was_is
     again = Scene.checked(scene, "written")
     assert again is not scene
     assert again.unchanged
-    assert again == scene
+    assert again.model_dump() == scene.model_dump()
     scene.mechanism.points["strut_top"] = (460.0, -180.0, float("inf"))
     with pytest.raises(SceneError, match=r"mechanism\.points\.strut_top\.2: .*finite number, not inf"):
         Scene.checked(scene, "written")
 
 
 def test_a_scene_does_not_change_but_comes_back_from_a_copy_a_pickle_and_its_plain_data() -> None:
-    with pytest.raises(AttributeError, match="does not change"):
+    with pytest.raises(ValidationError, match="frozen"):
         BOUNCE.time.samples = 3  # as one line by itself it does not pass a checker of types
     for again in (
         copy.deepcopy(BOUNCE),

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import pi
 
-from pointcoord.data_classes import dataclass
 from validate.diagnosis.evidence import Evidence, length_or_angle, order
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 
