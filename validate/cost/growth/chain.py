@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.rise import Rise
+from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.drives import ArmAngle
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
@@ -76,7 +76,7 @@ class FourBarChain:
         tips, rods = self.tips, pairwise(self.tips)
         held = (Link(tip, f"{end}_{j}") for j, tip in enumerate(tips) for end in ("pivot", "axis"))
         constraints: tuple[Constraint, ...] = (
-            Rise(tips[0], "pivot_0", "up", "rise"),
+            ScalarProduct.rise(tips[0], "pivot_0", "up", "rise"),
             *held,
             *(Link(other, one) for one, other in rods),
         )
