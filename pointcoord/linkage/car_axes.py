@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.enclosure import Enclosed, cross, dot
 from pointcoord.numerics.vectors import cross as vector_product

@@ -11,13 +11,12 @@ in the chassis' own frame, where neither the distance that the chassis goes nor 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.drives import within_a_turn
 from pointcoord.linkage.mechanism import Mechanism

@@ -8,9 +8,9 @@ measured from its own origin.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import UnknownName
 
 Triple = tuple[int, int, int]

@@ -8,13 +8,12 @@ power of two changes no bit of a result.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.drawing import Drawing

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from itertools import combinations
 from typing import TypeVar
@@ -11,7 +11,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.drives import Drive, TurnedBy
 from pointcoord.linkage.layout import Layout

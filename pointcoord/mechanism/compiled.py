@@ -9,12 +9,12 @@ no link of its own: so a hinge of two shared points takes no row too many.
 from __future__ import annotations
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight

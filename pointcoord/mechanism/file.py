@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Hashable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check

@@ -8,13 +8,12 @@ one is violated there, the mechanism is locked, and no compromise between its ro
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.hardpoints import dominant, drawn_mechanism
 from pointcoord.linkage.mechanism import Mechanism

@@ -7,11 +7,10 @@ A closure is applied, parts are put in with their prefix, and every name means s
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.directions import DIRECTIONS
 
 CHASSIS = "chassis"

@@ -13,10 +13,11 @@ that it is drawn by.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, no_length
 from pointcoord.linkage.drawing import Drawing, Placed

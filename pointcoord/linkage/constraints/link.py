@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.constraints.constraint import Constraint, dot, no_length
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, no_length
 from pointcoord.linkage.constraints.in_body import AxisInBody, scaled_axis

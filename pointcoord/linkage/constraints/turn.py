@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from pointcoord.data_classes import dataclass
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, dot, per_axis
 from pointcoord.linkage.constraints.in_body import (
