@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from itertools import accumulate, pairwise
 
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.layout import Layout
@@ -63,8 +62,7 @@ def needed_mechanism(mechanism: Mechanism, points: Collection[str]) -> Mechanism
 def _kept(topology: Topology, unknowns: set[int]) -> tuple[tuple[Constraint, ...], set[int]]:
     """The constraints that some unknowns hang on, and all coordinates that they read."""
     system, layout = topology.map, topology.layout
-    ends = [*accumulate((len(constraint.labels) for constraint in topology.constraints), initial=0)]
-    rows = [range(first, last) for first, last in pairwise(ends)]
+    rows = topology.rows_of
     own = [_own(constraint, layout) for constraint in topology.constraints]
     block_of = {row: block for block in system.structure.blocks for row in block.rows}
     triples = [layout.vector(name) for name in (*layout.moving, *layout.vectors)]

@@ -42,7 +42,8 @@ class Topology:
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
         chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
-        left_out: rows that follow from the constraints, and are looked at again at every answer.
+        left_out: numbers of rows that follow from the others; they are no part of the map, and are looked at
+            again at every answer.
         puts_in_place: whether closing the drawing moves points on purpose, however far that is.
     """
 
@@ -63,7 +64,7 @@ class Topology:
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     puts_in_place: bool = False
-    left_out: tuple[Constraint, ...] = ()
+    left_out: tuple[int, ...] = ()
 
     @cached_property
     def points(self) -> tuple[str, ...]:
@@ -128,7 +129,27 @@ class Topology:
     @property
     def labels(self) -> tuple[str, ...]:
         """A name for each row of the map."""
+        return tuple(label for row, label in enumerate(self._every_label) if row not in self.left_out)
+
+    @property
+    def left_labels(self) -> tuple[str, ...]:
+        """A name for each row that is left out."""
+        return tuple(self._every_label[row] for row in self.left_out)
+
+    @property
+    def _every_label(self) -> tuple[str, ...]:
         return tuple(label for constraint in self.constraints for label in constraint.labels)
+
+    @cached_property
+    def rows_of(self) -> tuple[tuple[int, ...], ...]:
+        """By constraint, the numbers of its rows in the map; less than it has where some are left out."""
+        found, first, number = [], 0, 0
+        for constraint in self.constraints:
+            last = first + len(constraint.labels)
+            kept = sum(row not in self.left_out for row in range(first, last))
+            found.append(tuple(range(number, number + kept)))
+            first, number = last, number + kept
+        return tuple(found)
 
     def strongest(self, forces: Array) -> tuple[str, ...]:
         """Names of the constraints that take part in a balance of forces.
@@ -139,15 +160,11 @@ class Topology:
             forces: one per row, shape (rows,); a constraint counts by the largest of its rows, and takes
                 part from a tenth of the largest of all.
         """
-        first = 0
         sizes: dict[str, float] = {}
         ranks: dict[str, int] = {}
-        for constraint in self.constraints:
-            last = first + len(constraint.labels)
-            name = constraint.name
-            sizes[name] = float(np.abs(forces[first:last]).max(initial=0.0))
-            ranks[name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
-            first = last
+        for constraint, rows in zip(self.constraints, self.rows_of, strict=True):
+            sizes[constraint.name] = float(np.abs(forces[list(rows)]).max(initial=0.0))
+            ranks[constraint.name] = 0 if constraint.may_lock else 2 if constraint.holds_a_body else 1
         acting = [name for name, size in sizes.items() if size > 0.1 * max(sizes.values())]
         return tuple(sorted(acting, key=lambda name: (ranks[name], -sizes[name])))
 
@@ -198,7 +215,12 @@ class Topology:
     @cached_property
     def map(self) -> QuadraticMap:
         """All constraints as one quadratic map; the same for every car of this topology."""
-        return _map(self.constraints, self.layout)
+        return _maps(self.constraints, self.left_out, self.layout)[0]
+
+    @cached_property
+    def left_map(self) -> QuadraticMap:
+        """The rows that are left out, as a map of the same coordinates."""
+        return _maps(self.constraints, self.left_out, self.layout)[1]
 
     @cached_property
     def fighting(self) -> tuple[str, ...]:
@@ -208,13 +230,16 @@ class Topology:
         named = (drive.input for drive in self.drives if self.layout.scalar(drive.coordinate) in read)
         return tuple(dict.fromkeys(named))
 
-    @cached_property
-    def left_map(self) -> QuadraticMap:
-        """The rows that are left out, as a map of the same coordinates."""
-        return _map(self.left_out, self.layout)
-
 
 @lru_cache(maxsize=64)
-def _map(constraints: tuple[Constraint, ...], layout: Layout) -> QuadraticMap:
+def _maps(
+    constraints: tuple[Constraint, ...], left_out: tuple[int, ...], layout: Layout
+) -> tuple[QuadraticMap, QuadraticMap]:
+    """Of the rows that are taken, and of those that are left out."""
     rows = [row for constraint in constraints for row in constraint.rows(layout)]
-    return quadratic_map(rows, layout.unknowns, layout.size)
+    taken = [row for number, row in enumerate(rows) if number not in left_out]
+    left = [rows[number] for number in left_out]
+    return (
+        quadratic_map(taken, layout.unknowns, layout.size),
+        quadratic_map(left, layout.unknowns, layout.size),
+    )

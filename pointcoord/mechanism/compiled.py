@@ -16,19 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.axis_in_body import AxisInBody
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
-from pointcoord.linkage.constraints.distance import Distance
-from pointcoord.linkage.constraints.height import Height
-from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
-from pointcoord.linkage.constraints.kept_from_turning import KeptFromTurning
+from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.normal import Normal
-from pointcoord.linkage.constraints.on_axis import OnAxis, OnChassisLine
-from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.point_in_body import PointInBody
-from pointcoord.linkage.constraints.rise import Rise
+from pointcoord.linkage.constraints.on_line import HeldOnAxis, OnAxis, OnChassisLine, OnLine
+from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.directions import DIRECTIONS, car_directions
 from pointcoord.linkage.drives import ArmAngle, DistanceOf, Drive, Travel, TravelAlong, TurnedBy
@@ -416,7 +409,7 @@ class _Compiler:
 
     def _kept_from_turning(self, name: str, slide: Slide) -> Constraint:
         """The pair of edges of the two bodies that change most by a turn about the line."""
-        return KeptFromTurning(name, *self.choices.edges[name])
+        return ScalarProduct.kept_from_turning(name, *self.choices.edges[name])
 
     def _input(self, name: str, one: Input) -> tuple[list[Constraint], list[Drive]]:
         """Rows and drives of an input."""
@@ -424,10 +417,12 @@ class _Compiler:
         if one.kind == "arm":
             of, about, up = one["of"], one["about"], one["from"]
             value = f"{name} rise"
-            return [Rise(of, about, up, value)], [ArmAngle(value, name, about, of, up)]
+            return [ScalarProduct.rise(of, about, up, value)], [ArmAngle(value, name, about, of, up)]
         if one.kind == "height":
             point, along = one["height"], one["along"]
-            return [Height(point, along, value)], [Travel(value, name, point, point, along, False)]
+            return [ScalarProduct.height(point, along, value)], [
+                Travel(value, name, point, point, along, False)
+            ]
         if one.kind == "contact":
             inner, centre = one["contact"]
             assert self.wheel_radius is not None  # the scene is refused without
@@ -435,20 +430,19 @@ class _Compiler:
             return [rows], [Travel(value, name, centre, centre, "up", False)]
         if one.kind == "distance":
             start, end = one["distance"]
-            return [Distance(start, end, value)], [DistanceOf(value, name, start, end)]
+            return [ScalarProduct.distance(start, end, value)], [DistanceOf(value, name, start, end)]
         if one.kind == "turn":
             return self._turn(name, one)
         drives: list[Drive] = []
         for slide_name in one["travel"]:
             slide = self.structure.slides[slide_name]
             line = self._sliding(slide_name, slide, slide.points[0])
-            place = line.ratio if isinstance(line, OnLine) else line.place
-            if any(drive.coordinate == place for drive in drives):
+            if any(drive.coordinate == line.place for drive in drives):
                 continue
             if isinstance(line, OnChassisLine) and slide.along in DIRECTIONS:
-                drives.append(Travel(place, name, slide.through, slide.points[0], slide.along))
+                drives.append(Travel(line.place, name, slide.through, slide.points[0], slide.along))
             else:
-                drives.append(TravelAlong(place, name, slide.points[0], line))
+                drives.append(TravelAlong(line.place, name, slide.points[0], line))
         return [], drives
 
     def _turn(self, name: str, one: Input) -> tuple[list[Constraint], list[Drive]]:

@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.some_rows import SomeRows
 from pointcoord.linkage.hardpoints import dominant, drawn_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
@@ -78,13 +76,12 @@ def freedoms(mechanism: Mechanism) -> Freedoms:
 
 def _rows_of_inputs(topology: Topology) -> list[int]:
     """Numbers of the rows that only an input makes; a driven line of the chassis also holds its point."""
-    driven = {drive.coordinate for drive in topology.drives}
-    names = [(name, constraint) for constraint in topology.constraints for name in constraint.labels]
-    reads, place = topology.map.reads, {name: topology.layout.scalar(name) for name in driven}
+    driven = set(topology.driven)
     return [
         row
-        for row, (_, constraint) in enumerate(names)
-        if not constraint.is_length and not {*place.values()}.isdisjoint(reads[row])
+        for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True)
+        for row in rows
+        if not (constraint.is_length or driven.isdisjoint(topology.map.reads[row]))
     ]
 
 
@@ -194,15 +191,7 @@ def _settled_once(key: _ByIdentity, points: Places, axes: Places) -> Topology:
     fighting = [row for row in lost if row in _rows_of_inputs(topology)]
     if found.count or fighting:
         raise MechanismError(_words(topology, found, bool(fighting)), found.free or found.redundant)
-    ends = [*accumulate((len(constraint.labels) for constraint in topology.constraints), initial=0)]
-    constraints, left_out = [], []
-    for constraint, (first, last) in zip(topology.constraints, pairwise(ends), strict=True):
-        out = tuple(row - first for row in lost if first <= row < last)
-        kept = tuple(row for row in range(last - first) if row not in out)
-        constraints.append(SomeRows(constraint, kept) if out else constraint)
-        if out:
-            left_out.append(SomeRows(constraint, out))
-    return replace(topology, constraints=tuple(constraints), left_out=tuple(left_out))
+    return replace(topology, left_out=tuple(lost))
 
 
 def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:
@@ -236,21 +225,20 @@ def locked(mechanism: Mechanism, y: Array, off: Array) -> dict[int, MechanismErr
         y: coordinates, shape (N, size). off: how far each unknown may be off, (N,), in units; a row is
             violated where it is farther from zero than that explains.
     """
-    rows = mechanism.topology.left_out
-    if not rows or not len(y):
+    topology = mechanism.topology
+    if not topology.left_out or not len(y):
         return {}
-    system = mechanism.topology.left_map
+    system, labels = topology.left_map, topology.left_labels
     residual = np.abs(system.residual(y))
     slope = np.abs(system.jacobian(y)).sum(axis=-1)
     size = 1.0 + np.abs(y).max(axis=-1, keepdims=True)
     allowed = slope * off[:, None] + ROUNDED * size**2 + system.unknowns * off[:, None] ** 2
-    labels = [label for part in rows for label in part.labels]
     share = np.where(residual <= allowed, 0.0, residual / allowed)
     found = {}
     for number in np.flatnonzero(share.any(axis=-1)).tolist():
         row = int(np.argmax(share[number]))
         found[number] = MechanismError(
-            f"{mechanism.topology.name} is locked: {labels[row]} follows from the other equations at the "
+            f"{topology.name} is locked: {labels[row]} follows from the other equations at the "
             f"drawing only and is violated by {float(residual[number, row]):.3g} away from it; draw hinges "
             "that are meant to be parallel or to meet in a point exactly so",
             [labels[row]],

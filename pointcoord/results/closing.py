@@ -91,14 +91,12 @@ def closing(mechanism: Mechanism, closed: Array) -> Closing:
     """
     topology, unit = mechanism.topology, float(mechanism.unit)
     residual = mechanism.map.residual(mechanism.drawn).tolist()
-    misses, first = {}, 0
-    for constraint in topology.constraints:
-        last = first + len(constraint.labels)
-        miss = hypot(*residual[first:last])
-        # Rows are sums of a few products of coordinates below 1.
-        if constraint.is_length and miss > 64 * EPS:
+    misses = {}
+    for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True):
+        miss = hypot(*(residual[row] for row in rows))
+        # Rows are sums of a few products of coordinates below 1. Of a length each component must be there.
+        if constraint.is_length and len(rows) == len(constraint.labels) and miss > 64 * EPS:
             misses[constraint.name] = unit * miss
-        first = last
     moved = {name: float(far) for name, far in movements(mechanism, closed).items()}
     return Closing(moved, misses, float(car_size(mechanism)))
 

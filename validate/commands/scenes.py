@@ -90,7 +90,7 @@ def _mechanism(part: MechanismPart) -> list[str]:
         f"freedoms: {count}, held by {', '.join(topology.required_inputs) or 'no input'}"
         + (f"; could be driven as well: {', '.join(others)}" if others else "")
     )
-    left_out = [label for constraint in topology.left_out for label in constraint.labels]
+    left_out = topology.left_labels
     if left_out:
         lines.append(
             f"redundant: {', '.join(left_out)}; each follows from the other equations as drawn and is "

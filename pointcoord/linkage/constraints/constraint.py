@@ -20,6 +20,9 @@ from pointcoord.numerics.quadratic import Product, Row
 class Constraint(ABC):
     """Named rows over a layout, and the coordinates of y that belong to them alone."""
 
+    along_axes = False
+    """Whether its rows are the three components of one equation between vectors."""
+
     @property
     @abstractmethod
     def name(self) -> str:
@@ -27,8 +30,8 @@ class Constraint(ABC):
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """A name for each row; one row unless the kind says otherwise."""
-        return (self.name,)
+        """A name for each row."""
+        return per_axis(self.name) if self.along_axes else (self.name,)
 
     @abstractmethod
     def rows(self, layout: Layout) -> tuple[Row, ...]:

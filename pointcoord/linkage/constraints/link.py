@@ -22,6 +22,8 @@ class Link(Constraint):
     start: str
     end: str
 
+    may_lock = True  # where it lies in line with another
+
     @property
     def name(self) -> str:
         """Its ends."""
@@ -31,11 +33,6 @@ class Link(Constraint):
     def segments(self) -> tuple[tuple[str, str], ...]:
         """The link."""
         return ((self.start, self.end),)
-
-    @property
-    def may_lock(self) -> bool:
-        """Where it lies in line with another."""
-        return True
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Quadratic in the difference of the ends."""

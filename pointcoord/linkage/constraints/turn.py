@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.axis_in_body import (
+from pointcoord.linkage.constraints.constraint import Constraint, dot, per_axis
+from pointcoord.linkage.constraints.in_body import (
+    Normal,
     axis_scale,
     scaled_axis,
     weight_names,
     weighted_rows,
     weights_in_body,
 )
-from pointcoord.linkage.constraints.constraint import Constraint, dot, per_axis
-from pointcoord.linkage.constraints.normal import Normal
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (

@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.axis_in_body import AxisInBody
-from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.in_body import AxisInBody, Normal
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.on_line import HeldOnAxis
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map

@@ -12,20 +12,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord.linkage import constraints
-from pointcoord.linkage.constraints.axis_in_body import AxisInBody
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
-from pointcoord.linkage.constraints.distance import Distance
-from pointcoord.linkage.constraints.height import Height
-from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
-from pointcoord.linkage.constraints.kept_from_turning import KeptFromTurning
+from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.normal import Normal
-from pointcoord.linkage.constraints.on_axis import OnAxis, OnChassisLine
-from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.point_in_body import PointInBody
-from pointcoord.linkage.constraints.rise import Rise
-from pointcoord.linkage.constraints.some_rows import SomeRows
+from pointcoord.linkage.constraints.on_line import HeldOnAxis, OnAxis, OnChassisLine, OnLine
+from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
@@ -39,10 +31,10 @@ BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = HeldOnAxis("c", "d", AXIS, "held")
 LINE = OnChassisLine("b", "o", "line", "o", "c", "place", False)
-HEIGHT = Height("d", "e", "travel")
+HEIGHT = ScalarProduct.height("d", "e", "travel")
 CONTACT = ContactHeight("a", "d", "e", "travel", 0.3)
-KEPT = KeptFromTurning("line", ("a", "b"), ("c", "d"))
-KEPT_BY_CHASSIS = KeptFromTurning("wall", ("e", ""), ("c", "d"))
+KEPT = ScalarProduct.kept_from_turning("line", ("a", "b"), ("c", "d"))
+KEPT_BY_CHASSIS = ScalarProduct.kept_from_turning("wall", ("e", ""), ("c", "d"))
 FURTHER = PointInBody("d", "body", BODY)
 TURN = Turn("turn", "c", "a", "b", "travel", "sine")
 TURN_ON_BODY = Turn("other turn", "d", "a", "b", "travel", "sine", BODY)
@@ -115,7 +107,10 @@ CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
         OnChassisLine("a", "o", "rack", "", "e", "travel", True),
         lambda p: p.a - p.o - p.scalar("travel") * p.e,
     ),
-    (Rise("a", "o", "e", "travel"), lambda p: np.array([(p.a - p.o) @ p.e - p.scalar("travel")])),
+    (
+        ScalarProduct.rise("a", "o", "e", "travel"),
+        lambda p: np.array([(p.a - p.o) @ p.e - p.scalar("travel")]),
+    ),
     (BODY, lambda p: p.n - np.cross(p.b - p.a, p.c - p.a)),
     (
         AXIS,
@@ -131,13 +126,15 @@ CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
     (LINE, lambda p: p.b - p.o - p.scalar("place") * p.scalars(LINE.constants)),
     (HEIGHT, lambda p: np.array([p.d @ p.e - p.scalar(HEIGHT.constants[0]) - p.scalar("travel")])),
     (CONTACT, contact),
-    (Distance("a", "d", "travel"), lambda p: np.array([(p.a - p.d) @ (p.a - p.d) - p.scalar("travel")])),
+    (
+        ScalarProduct.distance("a", "d", "travel"),
+        lambda p: np.array([(p.a - p.d) @ (p.a - p.d) - p.scalar("travel")]),
+    ),
     (KEPT, lambda p: np.array([(p.a - p.b) @ (p.c - p.d) - p.scalar(KEPT.constants[0])])),
     (KEPT_BY_CHASSIS, lambda p: np.array([p.e @ (p.c - p.d) - p.scalar(KEPT_BY_CHASSIS.constants[0])])),
     (FURTHER, lambda p: p.d - p.a - p.in_body(FURTHER.constants)),
     (TURN, lambda p: turned(TURN, p.c - p.a, *p.scalars(TURN.constants).reshape(2, 3), p)),
     (TURN_ON_BODY, turned_on_body),
-    (SomeRows(BODY, (2,)), lambda p: (p.n - np.cross(p.b - p.a, p.c - p.a))[2:]),
     (HELD, lambda p: p.c - p.d - p.scalar("held") * p.axis),
     (
         PrintedParallel("a", "b", "c", "d"),

@@ -9,14 +9,11 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.axis_in_body import AxisInBody, scaled_axis
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.held_on_axis import HeldOnAxis
+from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, scaled_axis
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.normal import Normal
-from pointcoord.linkage.constraints.on_axis import OnAxis, OnChassisLine
-from pointcoord.linkage.constraints.on_line import FARTHEST, OnLine
-from pointcoord.linkage.constraints.rise import Rise
+from pointcoord.linkage.constraints.on_line import FARTHEST, HeldOnAxis, OnAxis, OnChassisLine, OnLine
+from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
@@ -188,7 +185,16 @@ def test_the_rows_of_a_distance_are_that_distance(kind: Constraint) -> None:
 
 
 def test_a_motion_ends_at_links_and_slides_and_bodies_join_nothing() -> None:
-    every = (BODY, AXIS, HELD, SLIDES, LINE, RACK, Link("a", "b"), Rise("a", "o", "e", "travel"))
+    every = (
+        BODY,
+        AXIS,
+        HELD,
+        SLIDES,
+        LINE,
+        RACK,
+        Link("a", "b"),
+        ScalarProduct.rise("a", "o", "e", "travel"),
+    )
     assert [kind for kind in every if kind.may_lock] == [SLIDES, Link("a", "b")]
     assert [kind for kind in every if kind.holds_a_body] == [BODY, AXIS]
     assert [kind for kind in every if kind.is_length] == [HELD, LINE, RACK]

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.on_axis import OnChassisLine
+from pointcoord.linkage.constraints.on_line import OnChassisLine
 from pointcoord.linkage.drives import Travel
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism

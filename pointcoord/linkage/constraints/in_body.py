@@ -1,14 +1,14 @@
-r"""An axis that is fixed in a body, and points on it.
+r"""Vectors and points that are fixed in a body.
 
-The body is known by three points with the edges e1 and e2 and the normal n = e1 x e2, an unknown of its own.
-The axis has a direction d, an unknown too, which keeps its place in the body:
+The body is known by three points with the edges e1 and e2 and the normal n, an unknown of its own:
 
-    n - e1 x e2 = 0,      d - a e1 - b e2 - c n = 0,
+    n - e1 x e2 = 0,      v - a e1 - b e2 - c n = 0,
 
-with constants a, b, c of the drawing. A point on the axis through a point o of the body is p = o + s d. All
-rows are quadratic, and they keep their rank as long as the three points are not in one line: wherever the
-axis passes, also along an edge of the triangle, where links to a fourth point of the body would lose it.
-The length of d is between 1/2 and 1 of the mechanism's size, however close the points that it is drawn by.
+with constants a, b, c of the drawing for a further point of the body, v = p - p_base, or for the direction d
+of an axis, an unknown too. All rows are quadratic, and they keep their rank as long as the three points are
+not in one line: wherever an axis passes, also along an edge of the triangle, where links to a fourth point of
+the body would lose it. The length of d is between 1/2 and 1 of the mechanism's size, however close the points
+that it is drawn by.
 """
 
 from __future__ import annotations
@@ -19,18 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.constraint import Constraint, no_length, per_axis
-from pointcoord.linkage.constraints.normal import Normal
+from pointcoord.linkage.constraints.constraint import Constraint, no_length
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
     PAIRS,
     Pair,
-    exact_square,
     minus_pair,
     pair_cross,
     pair_product,
-    pair_root,
     pair_sum,
     two_sum,
 )
@@ -44,11 +41,50 @@ SOLVED = 32.0 * UNIT_ROUNDOFF
 
 
 @dataclass(frozen=True)
-class AxisInBody(Constraint):
-    r"""An axis drawn from `tail` to `head` that the body of a triangle carries. Three rows.
+class Normal(Constraint):
+    r"""The normal of a body's triangle: n - (p_first - p_base) x (p_second - p_base) = 0. Three rows."""
 
-    d - a (p_first - p_base) - b (p_second - p_base) - c n = 0 with d along p_head - p_tail as drawn; without
-    a tail, along the direction of the car that the head names.
+    normal: str
+    base: str
+    first: str
+    second: str
+
+    along_axes = True
+    holds_a_body = True
+
+    @property
+    def name(self) -> str:
+        """The normal's own."""
+        return self.normal
+
+    @property
+    def vectors(self) -> tuple[str, ...]:
+        """The normal."""
+        return (self.normal,)
+
+    def rows(self, layout: Layout) -> tuple[Row, ...]:
+        """Bilinear in the two edges."""
+        n, o, p, q = (layout.vector(name) for name in (self.normal, self.base, self.first, self.second))
+        return tuple(
+            (
+                Product(1.0, (n[i], layout.zero), (layout.one, layout.zero)),
+                Product(-1.0, (p[j], o[j]), (q[k], o[k])),
+                Product(1.0, (p[k], o[k]), (q[j], o[j])),
+            )
+            for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+        )
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """The normal of the drawn triangle."""
+        base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
+        return (Placed(layout.vector(self.normal), np.cross(first - base, second - base)),)
+
+
+@dataclass(frozen=True)
+class AxisInBody(Constraint):
+    """An axis drawn from `tail` to `head` that the body of a triangle carries. Three rows.
+
+    Without a tail it is drawn along the direction of the car that the head names.
     """
 
     axis: str
@@ -56,15 +92,13 @@ class AxisInBody(Constraint):
     head: str
     normal: Normal
 
+    along_axes = True
+    holds_a_body = True
+
     @property
     def name(self) -> str:
         """The axis' own."""
         return self.axis
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """A row per axis."""
-        return per_axis(self.name)
 
     @property
     def vectors(self) -> tuple[str, ...]:
@@ -76,15 +110,10 @@ class AxisInBody(Constraint):
         """Its place in the body: a, b and c."""
         return weight_names(self.axis, self.normal)
 
-    @property
-    def holds_a_body(self) -> bool:
-        """It does."""
-        return True
-
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the constants and the edges."""
-        d, zero = layout.vector(self.axis), layout.zero
-        return weighted_rows(layout, (d, (zero, zero, zero)), self.normal, self.constants)
+        vector = layout.vector(self.axis), (layout.zero,) * 3
+        return weighted_rows(layout, vector, self.normal, self.constants)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
         """The drawn direction and its constants, with what they lack by rounding.
@@ -96,6 +125,44 @@ class AxisInBody(Constraint):
         places = tuple(layout.scalar(name) for name in self.constants)
         weights = weights_in_body(drawing, direction, self.normal, self.axis)
         return (Placed(layout.vector(self.axis), direction[0]), Placed(places, *weights))
+
+
+@dataclass(frozen=True)
+class PointInBody(Constraint):
+    """A further point of a body, held in its triangle. Three rows."""
+
+    point: str
+    body: str
+    normal: Normal
+
+    along_axes = True
+    holds_a_body = True
+
+    @property
+    def name(self) -> str:
+        """The point and the body."""
+        return f"{self.point} in {self.body}"
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """Its place in the body: a, b and c."""
+        return weight_names(self.name, self.normal)
+
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        """From the body's first point."""
+        return ((self.normal.base, self.point),)
+
+    def rows(self, layout: Layout) -> tuple[Row, ...]:
+        """Bilinear in the constants and the edges."""
+        vector = layout.vector(self.point), layout.vector(self.normal.base)
+        return weighted_rows(layout, vector, self.normal, self.constants)
+
+    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+        """The constants, with what they lack by rounding."""
+        vector = two_sum(drawing.vectors[self.point], -drawing.vectors[self.normal.base])
+        places = tuple(layout.scalar(name) for name in self.constants)
+        return (Placed(places, *weights_in_body(drawing, vector, self.normal, self.point)),)
 
 
 def weight_names(name: str, body: Normal) -> tuple[str, ...]:
@@ -173,18 +240,6 @@ def axis_scale(drawing: Drawing, tail: str, head: str) -> Array:
     if not (length > 0.0).all():
         raise no_length(tail, head)
     return np.ldexp(1.0, -np.frexp(length)[1])
-
-
-def axis_square(drawing: Drawing, tail: str, head: str) -> Pair:
-    """|d|^2 of the scaled axis, shape (...,)."""
-    high, low = scaled_axis(drawing, tail, head)
-    square, rest = exact_square(high, np.zeros_like(high))
-    return square, rest + 2.0 * np.sum(high * low, axis=-1)
-
-
-def axis_length(drawing: Drawing, tail: str, head: str) -> Pair:
-    """|d| of the scaled axis, shape (...,)."""
-    return pair_root(axis_square(drawing, tail, head))
 
 
 def _applied(matrix: Array, vector: Array) -> Array:
