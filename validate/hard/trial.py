@@ -64,6 +64,8 @@ def scene_case(
     measure: Measure | None = None,
     also_answered: tuple[float, ...] = (),
     proven: bool = True,
+    judged: Callable[[float, Trial], Trial] | None = None,
+    given: bool = True,
 ) -> Case:
     """A case whose trial is one scene.
 
@@ -73,10 +75,13 @@ def scene_case(
         measure: what else is measured on the solutions.
         also_answered: see `Case`.
         proven: see `try_scene`.
+        judged: the trial at a value, with what else is asked of its answers.
+        given: whether the scene can be given to another solver.
     """
 
     def examine(value: float) -> Trial:
-        return try_scene(value, scene(value), tuple(expected), measure, proven)
+        trial = try_scene(value, scene(value), tuple(expected), measure, proven)
+        return trial if judged is None else judged(value, trial)
 
     return Case(
         name,
@@ -87,8 +92,8 @@ def scene_case(
         expected,
         behaviour,
         examine,
-        content=scene,
-        without_pose=all(one == REFUSED for one in expected.values()),
+        content=scene if given else None,
+        without_pose=given and all(one == REFUSED for one in expected.values()),
         also_answered=also_answered,
     )
 
