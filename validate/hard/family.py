@@ -207,7 +207,7 @@ def family(
     values: Sequence[float] | Callable[[Subject], tuple[float, ...]],
     scene: Callable[[Subject, float], Content],
     expected: Mapping[str, Expected] | Expected,
-    behaviour: str,
+    behaviour: str = "",
     measure: Measure | None = None,
     second: Sequence[float] = (),
     others: Sequence[float] = (),

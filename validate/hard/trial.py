@@ -21,7 +21,7 @@ from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates, started
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.case import OURS, REFUSED, Answer, Case, Expected, Trial
+from validate.hard.case import OURS, REFUSED, Answer, Case, Expected, Trial, described
 from validate.hard.classify import judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
@@ -60,7 +60,7 @@ def scene_case(
     values: Sequence[float],
     scene: Callable[[float], Mapping[str, Any]],
     expected: Mapping[str, Expected],
-    behaviour: str,
+    behaviour: str = "",
     measure: Measure | None = None,
     also_answered: tuple[float, ...] = (),
     proven: bool = True,
@@ -72,6 +72,7 @@ def scene_case(
     Args:
         scene: the content of the scene at a value of the parameter; see `scene_content`.
         expected: by name of a formulation; these are tried.
+        behaviour: what is expected, where that is more than `expected` says.
         measure: what else is measured on the solutions.
         also_answered: see `Case`.
         proven: see `try_scene`.
@@ -90,7 +91,7 @@ def scene_case(
         parameter,
         tuple(values),
         expected,
-        behaviour,
+        behaviour or described(expected),
         examine,
         content=scene if given else None,
         without_pose=given and all(one == REFUSED for one in expected.values()),

@@ -127,7 +127,6 @@ def _case(
     expected: Expected = CLEAR,
     also_answered: tuple[float, ...] = (),
 ) -> Case:
-    behaviour = "refused: the middle instant has no pose" if expected == REFUSED else ""
     return scene_case(
         name=name,
         group=GROUP,
@@ -135,7 +134,6 @@ def _case(
         parameter=parameter,
         values=values,
         expected=dict.fromkeys(SOLVERS, expected),
-        behaviour=behaviour or "the branch of the drawing, or a refusal",
         scene=scene,
         also_answered=also_answered,
     )
@@ -388,7 +386,6 @@ CASES: tuple[Case, ...] = (
             expected=dict.fromkeys(SOLVERS, REFUSED)
             if beyond
             else expected_of(subject, Expected(("right", "refused"), right_from=1e-3)),
-            behaviour="refused: no pose there is reached from the drawing" if beyond else "right, or refused",
             # Up to where branches cross the reference needs a minute and more of ever shorter steps.
             proven=not beyond,
         )

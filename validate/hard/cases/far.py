@@ -168,7 +168,6 @@ _sizes = partial(
     parameter="size, in parts of a car of some 500 mm",
     scene=lambda subject, scale: scaled_car(scale, subject),
     expected=RIGHT,
-    behaviour="right at every size, 1e-3 mm to 1e6 mm",
 )
 
 CASES: tuple[Case, ...] = (
@@ -181,7 +180,6 @@ CASES: tuple[Case, ...] = (
         values=decades(-9),
         scene=heaved_back,
         expected=RIGHT,
-        behaviour="right within the bound, rates and angles as right as at home",
         needs_heave=True,
     ),
     *_sizes(

@@ -19,7 +19,7 @@ import numpy as np
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.input_rates import rates
 from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, decades
-from validate.hard.cases.ends import INSIDE, NEAR_END
+from validate.hard.cases.ends import NEAR_END
 from validate.hard.family import SOLVERS, SUBJECTS, Content, Subject, family, hyphens, moved_by
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.trial import Facts, Tried
@@ -207,13 +207,12 @@ def _cancelling_polynomials(power: int) -> tuple[Case, ...]:
         parameter="1 s over the start of a motion of 1 s",
         values=tuple(2.0**-k for k in range(1, MOST + 1)),
         scene=partial(cancelling_polynomial, power),
-        behaviour=f"right from 1/{1 / right_from(power):g} up; later right within its bound, or refused",
         expected={"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT, "relative": RIGHT},
     )
 
 
 _laws = partial(family, group="Laws of the inputs")
-_right = partial(_laws, expected=OURS, behaviour="right within the bound")
+_right = partial(_laws, expected=OURS)
 RISING, FALLING, WITHIN = decades(0, 12)[::-1], decades(-12, 0), decades(-12, -1)
 BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
 ARM_RATE = "rate of the arm, rad/s"
@@ -239,7 +238,6 @@ CASES: tuple[Case, ...] = (
         parameter="duration, s",
         values=(1.0, 1e3, 1e6),  # few: each refusal takes two thousand segments
         scene=_long_sine,
-        behaviour="by series right, or refused as too long; at its instants right",
         expected=BY_STEPS,
         second=(1e3,),
         others=(1.0,),
@@ -333,7 +331,6 @@ CASES: tuple[Case, ...] = (
         parameter="time left to the lock, s, of a way that takes one second",
         values=WITHIN,
         scene=_before_a_lock,
-        behaviour=INSIDE,
         # As for `ends`: the lock is at the end of the whole way.
         expected={**NEAR_END, "pointcoord-newton": NEAR_END["pointcoord"]},
         subjects=[one for one in SUBJECTS if one.level or ends_of(one)],
@@ -352,7 +349,6 @@ CASES: tuple[Case, ...] = (
         values=tuple(1.0 / x for x in BY_25),
         scene=_tolerance,
         expected={**OURS, "pointcoord-as-asked": RIGHT},
-        behaviour="right within the bound",
     ),
     *(
         case
@@ -363,7 +359,6 @@ CASES: tuple[Case, ...] = (
             parameter="1 rad or 1 mm over the amplitude",
             values=tuple(1.0 / amplitude for amplitude in AMPLITUDES),
             scene=partial(_of_one_input, driven),
-            behaviour="right within the bound, which counts the rounding of the law",
             subjects=[one for one in SUBJECTS if driven in one.kinds or (driven == "heave" and one.heaves)],
         )
     ),

@@ -365,7 +365,6 @@ CASES: tuple[Case, ...] = (
         group=GROUP,
         why="A rod is made longer than its ends can be apart, by less and less.",
         parameter="what it is too long by, in parts of the longest that closes",
-        behaviour="refused: there is no pose",
         values=decades(),
         scene=overlong,
         expected=dict.fromkeys(SOLVERS, REFUSED),
@@ -377,7 +376,6 @@ CASES: tuple[Case, ...] = (
         why="A further link in place of an input holds the mechanism, by less and less; "
         "at last it is a copy.",
         parameter=f"{PIVOT_AT}; then a copy of it",
-        behaviour="right from 1e-6 up, nearer right or refused",
         values=(*decades(), 0.0),
         scene=held,
         expected=dict.fromkeys(SOLVERS, HELD),

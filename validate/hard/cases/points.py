@@ -194,7 +194,6 @@ def _case(
     parameter: str,
     expected: Expected,
     values: tuple[float, ...],
-    behaviour: str,
 ) -> Case:
     expected = row.expected or expected
 
@@ -208,7 +207,6 @@ def _case(
         parameter=row.parameter or parameter,
         values=row.values or values,
         expected=dict.fromkeys(SOLVERS, expected),
-        behaviour="right within the bound" if expected == RIGHT else behaviour.format(expected.right_from),
         scene=scene,
     )
 
@@ -283,7 +281,6 @@ NEAR: tuple[Case, ...] = tuple(
         "distance, in parts of what it is in the car",
         SOLVED,
         values,
-        "right within the bound, or refused with a reason; right from {:g} up",
     )
     for car, values, rows in (
         ("paper", decades(), _of_every_car(LOWER)),
@@ -361,7 +358,6 @@ OUT_OF_PROPORTION: tuple[Case, ...] = tuple(
         "how long it is in the paper's car over how long it is",
         MIXED,
         values,
-        "right within the bound, or refused; right from {:g} up",
     )
     for car, values, rows in (
         # Where it is refused, each refusal takes a second.
@@ -518,7 +514,6 @@ BESIDE: tuple[Case, ...] = tuple(
         PARTS,
         SOLVED,
         decades(),
-        "right within the bound, or refused with a reason; right from {:g} up",
     )
     for row in BESIDE_ROWS
 )

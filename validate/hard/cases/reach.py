@@ -423,7 +423,6 @@ CASES: tuple[Case, ...] = (
         scene=lambda subject, value: subject.content(heave=(0.0, 1.0 / value), stop=1.0),
         # Heave takes no part in any constraint: it is added to what was solved, the drawing itself.
         expected=RIGHT,
-        behaviour="right at every heave",
         needs_heave=True,
     ),
 )

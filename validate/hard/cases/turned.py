@@ -90,7 +90,7 @@ def _along_y(value: float) -> Array:
     return rotation(2, math.cos(value), math.sin(value))
 
 
-_turned = partial(family, group="Turned cars", expected=RIGHT, behaviour="right however the car is turned")
+_turned = partial(family, group="Turned cars", expected=RIGHT)
 _flat = partial(scene_case, group="The strut flat", measure=strut_rise)
 LEVEL = "the assembled strut comes to lie at right angles to z, where each pair of printed rows is one"
 SINE = "sine of the strut's angle with the horizontal plane"
@@ -135,7 +135,6 @@ CASES: tuple[Case, ...] = (
             values=VALUES,
             scene=partial(_moving, partial(quarter_turn_less, axis), ("velocity",)),
             expected={"printed": RIGHT},
-            behaviour="the printed rows, too, are right in positions and velocities",
         )
         for axis, letter in enumerate(AXES)
     ),
