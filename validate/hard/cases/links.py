@@ -292,54 +292,44 @@ def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject]
     return values
 
 
-def _missing(name: str, subjects: Sequence[Subject]) -> tuple[Case, ...]:
-    return _family(
-        name,
-        "A point, or a body, is free to move although all inputs are held.",
-        PIECE,
-        "refused; pointcoord names what is missing, or what is free without it",
-        without,
-        _numbers(lambda subject: pieces(subject.plain)),
-        subjects,
-    )
+PIECE = "number of the piece"
+PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
+EVERY = (*SUBJECTS, BESIDE)
+WITH_RODS = [subject for subject in SUBJECTS if subject.plain["rods"]]
 
-
-def _twice(subjects: Sequence[Subject]) -> tuple[Case, ...]:
-    return _family(
+CASES: tuple[Case, ...] = (
+    *(
+        case
+        for name, subjects in (("link-missing", SUBJECTS), ("constraint-missing", (BESIDE,)))
+        for case in _family(
+            name,
+            "A point, or a body, is free to move although all inputs are held.",
+            PIECE,
+            "refused; pointcoord names what is missing, or what is free without it",
+            without,
+            _numbers(lambda subject: pieces(subject.plain)),
+            subjects,
+        )
+    ),
+    *_family(
         "link-twice",
         "There are more rows than unknowns, and two of them say the same.",
         "number of the pair of points that are held apart",
         "right without it, or refused; pointcoord names one of the two, or the inputs that are too many then",
         twice,
         _numbers(lambda subject: held_apart(subject.plain)),
-        [one for one in subjects if held_apart(one.plain)],
+        [one for one in EVERY if held_apart(one.plain)],
         IF_ANY,
-    )
-
-
-def _exchanged(subjects: Sequence[Subject]) -> tuple[Case, ...]:
-    return _family(
+    ),
+    *_family(
         "link-twice-for-another",
         "There are as many rows as unknowns, but some say nothing new and some are missing.",
         PIECE,
         "refused; pointcoord names what is missing or there twice",
         exchanged,
         _numbers(exchangeable),
-        [one for one in subjects if exchangeable(one)],
-    )
-
-
-PIECE = "number of the piece"
-PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
-WITH_RODS = [subject for subject in SUBJECTS if subject.plain["rods"]]
-
-CASES: tuple[Case, ...] = (
-    *_missing("link-missing", SUBJECTS),
-    *_twice(SUBJECTS),
-    *_exchanged(SUBJECTS),
-    *_missing("constraint-missing", [BESIDE]),
-    *_twice([BESIDE]),
-    *_exchanged([BESIDE]),
+        [one for one in EVERY if exchangeable(one)],
+    ),
     *_family(
         "input-twice",
         "Two inputs drive one coordinate and contradict each other by less and less; at last they agree.",
