@@ -48,9 +48,9 @@ import numpy as np
 from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
-from validate.cars.accepted import cars
 from validate.cars.base_cars import Variant, variants
 from validate.cars.car import Car
+from validate.strategies import cars
 
 Array = NDArray[Any]  # of floats, or of mpmath's numbers
 Inputs = dict[str, float]

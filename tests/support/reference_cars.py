@@ -10,8 +10,9 @@ from typing import Any
 from lotus_front import POINTS as LOTUS
 from off_axis_cars import BASE, closing
 from plain_mechanisms import close_car, count_car, design_of, solve_car
+from reference_sensitivity import sensitivities
 
-from validate.reference import Instant, sensitivities
+from validate.reference import Instant
 from validate.reference.design import Design, Known, values_only
 from validate.reference.vectors import Vector
 

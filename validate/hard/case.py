@@ -67,6 +67,13 @@ class Expected:
     right_from: float = float("inf")
     right_to: float = float("-inf")
 
+    @property
+    def words(self) -> str:
+        """In words."""
+        surely = [f"right from {self.right_from:g} up"] if self.right_from < float("inf") else []
+        surely += [f"right up to {self.right_to:g}"] if self.right_to > float("-inf") else []
+        return "; ".join((" or ".join(self.outcomes), *surely))
+
     def met(self, value: float, outcome: Outcome) -> bool:
         """Whether an outcome is what had to come."""
         surely = value >= self.right_from or value <= self.right_to
@@ -84,7 +91,7 @@ class Case:
         parameter: what tends to the singular place, with its unit.
         values: of the parameter, evenly spaced in its logarithm.
         expected: by formulation; a case tries the formulations named here.
-        behaviour: one sentence that says what is expected.
+        behaviour: what is expected, in words.
         examine: tries one value.
         unit: of error and bound.
         content: of the scene at a value, of a case whose trial is one scene; for whoever has another solver
@@ -115,6 +122,16 @@ class Case:
         expected = self.expected.get(OURS) or next(iter(self.expected.values()))
         needed = (v for v in self.values if expected.met(v, "right") and not expected.met(v, "refused"))
         return tuple(dict.fromkeys((*needed, *self.also_answered)))
+
+
+def described(expected: Mapping[str, Expected]) -> str:
+    """What is expected of formulations, in words: who shares it named once."""
+    alike: dict[str, list[str]] = {}
+    for name, one in expected.items():
+        alike.setdefault(one.words, []).append(name)
+    if len(alike) == 1:
+        return next(iter(alike))
+    return "; ".join(f"{', '.join(names)}: {words}" for words, names in alike.items())
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:

@@ -7,20 +7,14 @@ from difflib import get_close_matches
 
 from validate.hard.case import Case
 from validate.hard.cases import (
-    beside,
     body_rates,
     branches,
-    by_nature,
-    cancelling,
-    dead_points,
-    extreme_durations,
-    extreme_heave,
-    far_and_mixed,
-    flat_strut,
+    ends,
+    far,
     laws,
     links,
-    near_points,
     numbers,
+    points,
     reach,
     regressions,
     turned,
@@ -28,23 +22,18 @@ from validate.hard.cases import (
 from validate.hard.family import OF_PARTS, SUBJECTS
 
 CASES: tuple[Case, ...] = (
-    *dead_points.CASES,
+    *ends.CASES,
     *turned.CASES,
-    *flat_strut.CASES,
     *body_rates.CASES,
-    *near_points.CASES,
-    *far_and_mixed.CASES,
+    *points.NEAR,
+    *far.CASES,
     *laws.CASES,
-    *extreme_durations.CASES,
-    *cancelling.CASES,
     *branches.CASES,
-    *by_nature.CASES,
     *reach.CASES,
     *links.CASES,
     *numbers.CASES,
-    *extreme_heave.CASES,
     *regressions.CASES,
-    *beside.CASES,
+    *points.BESIDE,
 )
 
 # Cases with fewer than eight values of their parameter, and why they have no more.

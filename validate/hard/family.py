@@ -17,7 +17,7 @@ from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import Car
 from validate.cars.scene_content import Law, content_of
 from validate.hard.cars import CARS, SQUARE, as_given, drawn_angle
-from validate.hard.case import IF_ANY, Case, Expected, coarse
+from validate.hard.case import IF_ANY, Case, Expected, Trial, coarse
 from validate.hard.trial import Measure, scene_case
 
 SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
@@ -183,10 +183,19 @@ def values_of(
     return tuple(others or (values[len(values) // 2],))
 
 
+def counted(count: int) -> tuple[float, ...]:
+    """Numbers from 1 to a count, as values of a parameter."""
+    return tuple(float(n) for n in range(1, count + 1))
+
+
+def every(expected: Mapping[str, Expected] | Expected) -> Mapping[str, Expected]:
+    """By formulation, if it is not yet."""
+    return dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected
+
+
 def expected_of(subject: Subject, expected: Mapping[str, Expected] | Expected) -> Mapping[str, Expected]:
     """What formulations may make of a mechanism; of one that is hard by nature, never wrong numbers."""
-    every = dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected
-    return dict.fromkeys(every, IF_ANY) if subject.name in HARD else every
+    return dict.fromkeys(every(expected), IF_ANY) if subject.name in HARD else every(expected)
 
 
 def family(
@@ -195,38 +204,49 @@ def family(
     group: str,
     why: str,
     parameter: str,
-    values: Sequence[float],
+    values: Sequence[float] | Callable[[Subject], tuple[float, ...]],
     scene: Callable[[Subject, float], Content],
     expected: Mapping[str, Expected] | Expected,
-    behaviour: str,
+    behaviour: str = "",
     measure: Measure | None = None,
     second: Sequence[float] = (),
     others: Sequence[float] = (),
-    also_answered: tuple[float, ...] = (),
+    also_answered: Sequence[float] | Callable[[Subject, float], bool] = (),
     subjects: Sequence[Subject] = SUBJECTS,
     needs_heave: bool = False,
+    judged: Callable[[Subject, float, Trial], Trial] | None = None,
+    given: bool = True,
+    strict: bool = False,
 ) -> tuple[Case, ...]:
     """A case for every mechanism; see `trial.scene_case`.
 
     Args:
+        values: that the first mechanism is tried at, or of each.
         scene: the content at a value, of a subject.
         expected: by formulation, or of each of `SOLVERS`.
         second, others: see `values_of`.
+        also_answered: see `Case`; or whether a value is one of them.
         needs_heave: whether mechanisms whose chassis cannot heave are left out.
+        strict: whether as much is expected of mechanisms that are hard by nature.
     """
-    return tuple(
-        scene_case(
+
+    def case(subject: Subject) -> Case:
+        own = values(subject) if callable(values) else values_of(subject, values, second, others)
+        return scene_case(
             name=f"{name}{subject.suffix}",
             group=group,
             why=why,
             parameter=parameter,
-            values=values_of(subject, values, second, others),
+            values=own,
             scene=partial(scene, subject),
-            expected=expected_of(subject, expected),
+            expected=every(expected) if strict else expected_of(subject, expected),
             behaviour=behaviour,
             measure=measure,
-            also_answered=also_answered,
+            also_answered=tuple(v for v in own if also_answered(subject, v))
+            if callable(also_answered)
+            else tuple(also_answered),
+            judged=None if judged is None else partial(judged, subject),
+            given=given,
         )
-        for subject in subjects
-        if subject.heaves or not needs_heave
-    )
+
+    return tuple(case(subject) for subject in subjects if subject.heaves or not needs_heave)

@@ -21,7 +21,7 @@ from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates, started
 from validate.formulations.protocol import Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.case import OURS, REFUSED, Answer, Case, Expected, Trial
+from validate.hard.case import OURS, REFUSED, Answer, Case, Expected, Trial, described
 from validate.hard.classify import judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
@@ -60,23 +60,29 @@ def scene_case(
     values: Sequence[float],
     scene: Callable[[float], Mapping[str, Any]],
     expected: Mapping[str, Expected],
-    behaviour: str,
+    behaviour: str = "",
     measure: Measure | None = None,
     also_answered: tuple[float, ...] = (),
     proven: bool = True,
+    judged: Callable[[float, Trial], Trial] | None = None,
+    given: bool = True,
 ) -> Case:
     """A case whose trial is one scene.
 
     Args:
         scene: the content of the scene at a value of the parameter; see `scene_content`.
         expected: by name of a formulation; these are tried.
+        behaviour: what is expected, where that is more than `expected` says.
         measure: what else is measured on the solutions.
         also_answered: see `Case`.
         proven: see `try_scene`.
+        judged: the trial at a value, with what else is asked of its answers.
+        given: whether the scene can be given to another solver.
     """
 
     def examine(value: float) -> Trial:
-        return try_scene(value, scene(value), tuple(expected), measure, proven)
+        trial = try_scene(value, scene(value), tuple(expected), measure, proven)
+        return trial if judged is None else judged(value, trial)
 
     return Case(
         name,
@@ -85,10 +91,10 @@ def scene_case(
         parameter,
         tuple(values),
         expected,
-        behaviour,
+        behaviour or described(expected),
         examine,
-        content=scene,
-        without_pose=all(one == REFUSED for one in expected.values()),
+        content=scene if given else None,
+        without_pose=given and all(one == REFUSED for one in expected.values()),
         also_answered=also_answered,
     )
 

@@ -1,13 +1,11 @@
-"""The paper's printed Tables 2 and 3 beside what its own equations give.
-
-Source: H. A. Attia, "A numerical algorithm for kinematic analysis of the MacPherson strut suspension
-system using point coordinates". Rows are as printed, but for three slips of print that are named.
-"""
+"""The paper's printed Tables 2 and 3 (see `tables.toml`) beside what its own equations give."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,33 +34,14 @@ class PrintedRow:
     slip: str = ""
 
 
-TABLE_2 = (
-    PrintedRow(2, 0.0, 45.84, (451, -291, 315), (-0.4, -0.03, -0.3), (0.3, -0.05, 0.39)),
-    PrintedRow(2, 0.2, 48.85, (446, -305, 305), (-0.3, -0.04, -0.2), (0.33, 0.003, 0.3)),
-    PrintedRow(2, 0.6, 55.72, (440, -334, 277), (0.2, -0.04, -0.1), (0.31, 0.06, 0.25)),
-    PrintedRow(2, 1.0, 63.74, (437, -364, 234), (-0.1, 0.01, 0.02), (0.26, 0.1, 0.198)),
-    PrintedRow(2, 1.2, 68.18, (436, -378, 208), (-0.03, 0.02, 0.1), (0.2, 0.07, 0.18)),
-    PrintedRow(2, 1.6, 77.92, (437, -401, 146), (0.05, 0.05, 0.12), (0.19, 0.05, 0.1)),
-    PrintedRow(2, 2.0, 88.81, (440, -415, 71.6), (0.12, 0.06, 0.17), (0.15, 0.01, 0.1)),
-    PrintedRow(
-        2, 2.4, 100.8, (444, -412, -12), (0.18, 0.058, 0.2), (0.13, -0.03, 0.04), "printed as t = 2.2"
-    ),
-    PrintedRow(2, 2.6, 107.3, (447, -404, -57), (0.2, 0.05, 0.21), (0.13, -0.1, -0.02)),
-)
+def _printed(number: int) -> tuple[PrintedRow, ...]:
+    table = tomllib.loads(Path(__file__).with_name("tables.toml").read_text(encoding="utf-8"))
+    rows = table[f"table_{number}"]
+    vectors = ("wheel_centre", "omega", "alpha")
+    return tuple(PrintedRow(number, **row | {name: tuple(row[name]) for name in vectors}) for row in rows)
 
-TABLE_3 = (
-    PrintedRow(3, 0.00, 0.00, (440.4, -415, 63), (0.03, 0.2, 0.617), (-0.04, -0.27, -0.77)),
-    PrintedRow(3, 0.05, 7.56, (434, -415, 63.5), (-0.09, -0.66, -1.9), (-1.82, -14.2, -40.7)),
-    PrintedRow(3, 0.10, 15.25, (427, -414, 63.5), (-0.01, -0.06, -0.2), (-0.09, -0.67, -1.92)),
-    PrintedRow(3, 0.15, 23.06, (420, -413, 63.3), (-0.004, -0.03, -0.1), (0.009, 0.07, 0.2)),
-    PrintedRow(3, 0.20, 31.00, (413.7, -411, 63), (-0.18, -0.14, -0.4), (0.197, 1.54, 4.4)),
-    PrintedRow(3, 0.25, 39.06, (407, -409, 62.4), (0.8, -0.76, -1.4), (1.4, -5.57, -9.7)),
-    PrintedRow(3, 0.30, 47.25, (400.4, -406, 62), (0.3, -0.24, -0.3), (-1.73, -0.98, -2.51)),
-    PrintedRow(3, 0.35, 55.56, (394, -402, 60.7), (-4.1, -0.53, -6.9), (115.3, 51.8, 269)),
-    PrintedRow(
-        3, 0.40, 64.00, (389, -398, 60), (-0.37, -1.6, -4.78), (0.526, 1.94, 4.9), "printed as z = -60"
-    ),
-)
+
+TABLE_2, TABLE_3 = _printed(2), _printed(3)
 
 
 @dataclass(frozen=True)

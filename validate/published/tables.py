@@ -6,6 +6,7 @@ is shipped here are printed numbers, with their source and under which licence t
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,10 +15,6 @@ from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import read_results
 
 FOLDER = Path(__file__).parent
-SHARK = (
-    "printed report of Lotus Suspension Analysis (SHARK) v4.03, tests/fixtures/front_type1_report.txt of the "
-    "Python package voila-sus 0.2.0 (MIT licence)"
-)
 
 
 @dataclass(frozen=True)
@@ -41,17 +38,8 @@ class Table:
         return FOLDER / f"{self.name}.csv", FOLDER / f"{self.name}.toml"
 
 
-TABLES = (
-    Table("lotus-bump", "Lotus: angles over bump", "double-wishbone", SHARK),
-    Table(
-        "lotus-steering",
-        "Lotus: angles over rack travel",
-        "double-wishbone",
-        SHARK,
-        "its rack moves the other way than ours, and travels are shown with our sign; the tyre's contact "
-        "point keeps its height",
-    ),
-)
+_KNOWN = tomllib.loads((FOLDER / "tables.toml").read_text(encoding="utf-8"))
+TABLES = tuple(Table(name, **about) for name, about in _KNOWN.items())
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,6 @@ try:
     from validate.reference.errors import SingularPoseError as SingularPoseError
     from validate.reference.errors import TooManyStepsError as TooManyStepsError
     from validate.reference.instant import Instant as Instant
-    from validate.reference.sensitivity import Sensitivity as Sensitivity
-    from validate.reference.sensitivity import sensitivities as sensitivities
     from validate.reference.solve import instants_of as instants_of
     from validate.reference.solve import pose_exists as pose_exists
     from validate.reference.solve import solve_reference as solve_reference

@@ -20,7 +20,7 @@ What that makes of the motion follows from C(y, t) = delta with a constant delta
 
 and of every number q(y, y', y'') by its own derivative. The worst signs are taken: the sum over the rows i of
 |dq / d delta_i| rho_i. All of this is the reference's own text of its equations (`residual`, `jacobian`,
-`points_of`, `body_turns`, the angles), evaluated with dual numbers as in `reference.sensitivity`, of arrays
+`points_of`, `body_turns`, the angles), evaluated with dual numbers, of arrays
 instead of balls: a tolerance needs no 60 digits.
 
 A number is also read from points that are themselves off by e, on bodies that turn with |omega| <= W and

@@ -21,19 +21,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.cars.base_cars import Variant, variants
+from validate.cars.base_cars import variants
 from validate.cars.near_singular import NearPose, near_pose
 from validate.cars.scene_content import content_of
 from validate.exit_status import ExitStatus
@@ -177,63 +178,25 @@ def _error(reference: Instant, name: str, place: Array) -> float:
     return max(float(abs(as_fraction(exact, name) - Fraction(float(found)))) for exact, found in pairs)
 
 
-@dataclass(frozen=True)
-class Checks:
-    """Poses held against the reference; a column is an array of a number for each of them."""
+def measured(rows: Sequence[Row]) -> pd.DataFrame:
+    """The rows that answer, with what is made of their columns.
 
-    rows: tuple[Row, ...]
-
-    def __getitem__(self, name: str) -> Array:
-        """A column; NaN where a row has no such number."""
-        return np.array([row[name] for row in self.rows], dtype=float)
-
-    def part(self, chosen: NDArray[np.bool_]) -> Checks:
-        """Those that are chosen."""
-        return Checks(tuple(row for row, one in zip(self.rows, chosen, strict=True) if one))
-
-    @property
-    def share(self) -> Array:
-        """The larger error in parts of its bound: above 1 the bound is broken."""
-        solved, carried = self["error"] / self["bound"], self["carried_error"] / self["carried_bound"]
-        return np.where(
-            [row["carried_bound"] is None for row in self.rows], solved, np.maximum(solved, carried)
-        )
-
-    @property
-    def rounding(self) -> Array:
-        """What rounding may do: eps (condition size + far), mm."""
-        return EPS * (self["condition"] * self["size"] + self["far"])
-
-    @property
-    def loss(self) -> Array:
-        """Error in parts of that rounding."""
-        return self["error"] / self.rounding
-
-    @property
-    def broken(self) -> Checks:
-        """Where the bound is below the error."""
-        return self.part(~(self.share <= 1.0))
-
-    @property
-    def looseness(self) -> dict[str, Array]:
-        """Bound over error, which is infinite where the error is zero, for both kinds of points."""
-        carried = self.part(np.isfinite(self["carried_bound"]))
-        with np.errstate(divide="ignore"):
-            return {
-                "solved points": self["bound"] / self["error"],
-                "carried points": carried["carried_bound"] / carried["carried_error"],
-            }
-
-    @property
-    def error_over_rounding(self) -> Fit:
-        """Error over eps (condition size + far): slope 1 where rounding alone makes it."""
-        return fitted(self.rounding / self["size"], self["error"] / self["size"])
-
-    @property
-    def error_over_distance(self) -> Fit:
-        """The same over the distance from the end, near it, of cars near the origin: slope -1/2 at a fold."""
-        near = self.part((self["distance"] < FOLD) & (self["far"] < 10.0 * self["size"]))
-        return fitted(near["distance"], near["error"] / near["size"])
+    Returns:
+        Also `share`, the larger error in parts of its bound: above 1 the bound is broken; `rounding`, what
+        rounding may do: eps (condition size + far), mm; `loss`, the error in parts of that; `solved points`
+        and `carried points`, bound over error, which is infinite where the error is zero.
+    """
+    table = pd.DataFrame(rows, columns=list(dict.fromkeys(("part", "number", *COLUMNS))))
+    table = table[table["refusal"].isna()].drop(columns="refusal").reset_index(drop=True)
+    numbers = [name for name, kind in COLUMNS.items() if kind == "float64"]
+    table[numbers] = table[numbers].astype(float)
+    solved, carried = table["error"] / table["bound"], table["carried_error"] / table["carried_bound"]
+    table["share"] = np.where(table["carried_bound"].isna(), solved, np.maximum(solved, carried))
+    table["rounding"] = EPS * (table["condition"] * table["size"] + table["far"])
+    table["loss"] = table["error"] / table["rounding"]
+    table["solved points"] = table["bound"] / table["error"]
+    table["carried points"] = table["carried_bound"] / table["carried_error"]
+    return table
 
 
 @dataclass(frozen=True)
@@ -260,12 +223,33 @@ def fitted(x: Array, y: Array) -> Fit:
     return Fit(float(slope), float(np.sqrt(np.mean((v - slope * u - constant) ** 2))), len(u))
 
 
+def error_over_rounding(checks: pd.DataFrame) -> Fit:
+    """Error over eps (condition size + far): slope 1 where rounding alone makes it."""
+    size = checks["size"]
+    return fitted((checks["rounding"] / size).to_numpy(), (checks["error"] / size).to_numpy())
+
+
+def error_over_distance(checks: pd.DataFrame) -> Fit:
+    """The same over the distance from the end, near it, of cars near the origin: slope -1/2 at a fold."""
+    near = checks[(checks["distance"] < FOLD) & (checks["far"] < 10.0 * checks["size"])]
+    return fitted(near["distance"].to_numpy(), (near["error"] / near["size"]).to_numpy())
+
+
+def _quantiles(checks: pd.DataFrame) -> dict[str, dict[str, float]]:
+    """How loose bounds are at levels, of points that are solved and of those that are carried."""
+    return {
+        points: {f"{level:g}": float(np.quantile(ratio, level, method="nearest")) for level in LEVELS}
+        for points in ("solved points", "carried points")
+        if len(ratio := checks[points].dropna())
+    }
+
+
 def found(rows: Sequence[Row], seed: int) -> Findings:
     """Whether every bound holds, and how loose they are."""
-    checks = Checks(tuple(row for row in rows if row.get("refusal") is None))
-    refused = Counter(row["suspension"] for row in rows if row.get("refusal") is not None)
-    reasons = Counter(row["refusal"] for row in rows if row.get("refusal") is not None).most_common()
-    broken = checks.broken
+    checks, refusals = measured(rows), [row for row in rows if row.get("refusal") is not None]
+    reasons = Counter(row["refusal"] for row in refusals).most_common()
+    broken = checks[~(checks["share"] <= 1.0)]
+    refused = Counter(row["suspension"] for row in refusals)
     parts: list[Part] = [_summary(checks, refused), ""]
     data: dict[str, Any] = {
         "seed": seed,
@@ -278,68 +262,62 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
     ):
         data[part] = {}
         for variant in variants():
-            here = _of(checks, variant, part)
+            here = checks[(checks["suspension"] == variant.words) & (checks["part"] == part)]
             parts += _set_parts(what.format(variant.words), here)
             data[part][variant.words] = _set_data(here)
     parts += [
-        f"refused: {sum(refused.values())}",
+        f"refused: {len(refusals)}",
         *(f"  {count}  {reason}" for reason, count in reasons),
-        f"bounds below the error: {len(broken.rows)}",
-        *(f"  {_case(broken, i)}" for i in range(len(broken.rows))),
+        f"bounds below the error: {len(broken)}",
+        *(f"  {_case(row)}" for row in broken.to_dict("records")),
     ]
-    return Findings(tuple(parts), data, ExitStatus.DISAGREE if broken.rows else ExitStatus.AGREE)
+    return Findings(tuple(parts), data, ExitStatus.AGREE if broken.empty else ExitStatus.DISAGREE)
 
 
-def _of(checks: Checks, variant: Variant, part: str | None = None) -> Checks:
-    """The checks of one kind of suspension, held or moving or both."""
-    words = variant.words
-    return Checks(tuple(r for r in checks.rows if r["suspension"] == words and part in (None, r["part"])))
-
-
-def _summary(checks: Checks, refused: Mapping[str, int]) -> Table:
+def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
     """A row for each suspension and closure."""
     rows = []
     for variant in variants():
-        here, parts = _of(checks, variant), [_of(checks, variant, part) for part in (HELD, MOVING)]
-        counts = (*(len(one.rows) for one in parts), refused[variant.words], len(here.broken.rows))
-        share = f"{here.share.max():.7g}" if here.rows else "-"
-        loose = f"{np.median(here.looseness['solved points']):.3g}" if here.rows else "-"
-        rows.append((variant.words, *map(str, counts), share, loose))
+        here = checks[checks["suspension"] == variant.words]
+        sets = [int((here["part"] == part).sum()) for part in (HELD, MOVING)]
+        counts = (*sets, refused[variant.words], int((~(here["share"] <= 1.0)).sum()))
+        worst, loose = here["share"].max(skipna=False), here["solved points"].median()
+        ends = ("-", "-") if here.empty else (f"{worst:.7g}", f"{loose:.3g}")
+        rows.append((variant.words, *map(str, counts), *ends))
     head = ("suspension", "poses held", "instants of motions", "refused", "bounds below the error")
     return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
 
-def _set_parts(name: str, checks: Checks) -> tuple[Part, ...]:
-    if not checks.rows:
+def _set_parts(name: str, checks: pd.DataFrame) -> tuple[Part, ...]:
+    if checks.empty:
         return (f"{name}: none",)
-    decades = np.floor(np.log10(checks["distance"])).astype(int)
-    rows = []
-    for decade in np.unique(decades):
-        part = checks.part(decades == decade)
-        rows.append(
-            (
-                f"1e{decade} to 1e{decade + 1}",
-                str(len(part.rows)),
-                f"{np.median(part['condition']):.1e}",
-                f"{np.median(part['error'] / part['size']):.1e}",
-                f"{np.median(part.loss):.2g}",
-                f"{part.loss.max():.2g}",
-                f"{np.median(part.looseness['solved points']):.3g}",
-                f"{part.share.max():.2g}",
-            )
+    rows = [
+        (
+            f"1e{decade:.0f} to 1e{decade + 1:.0f}",
+            str(len(part)),
+            f"{part['condition'].median():.1e}",
+            f"{(part['error'] / part['size']).median():.1e}",
+            f"{part['loss'].median():.2g}",
+            f"{part['loss'].max():.2g}",
+            f"{part['solved points'].median():.3g}",
+            f"{part['share'].max():.2g}",
         )
+        for decade, part in checks.groupby(np.floor(np.log10(checks["distance"])))
+    ]
     head = (
         *("distance / range", "poses", "condition", "error / size", "loss", "largest loss"),
         *("bound / error", "largest error / bound"),
     )
     quantiles = [
-        (points, *(f"{np.quantile(ratio, level, method='nearest'):.3g}" for level in LEVELS))
-        for points, ratio in checks.looseness.items()
-        if len(ratio)
+        (points, *(f"{ratio:.3g}" for ratio in at.values())) for points, at in _quantiles(checks).items()
     ]
-    by_rounding, by_distance = checks.error_over_rounding, checks.error_over_distance
+    by_rounding, by_distance = error_over_rounding(checks), error_over_distance(checks)
+    nearest, worst = (
+        checks.iloc[[int(checks[name].to_numpy().argmax())]].to_dict("records")[0]
+        for name in ("share", "loss")
+    )
     return (
-        f"{len(checks.rows)} {name}; medians, unless it says largest",
+        f"{len(checks)} {name}; medians, unless it says largest",
         "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
         Table(head, tuple(rows)),
         Table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), tuple(quantiles)),
@@ -347,42 +325,37 @@ def _set_parts(name: str, checks: Checks) -> tuple[Part, ...]:
         f"scatter {by_rounding.scatter:.2f} decades",
         f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
         f"scatter {by_distance.scatter:.2f} decades",
-        f"nearest to its bound: {_case(checks, int(checks.share.argmax()))}",
-        f"largest loss: {_case(checks, int(checks.loss.argmax()))}",
+        f"nearest to its bound: {_case(nearest)}",
+        f"largest loss: {_case(worst)}",
         "",
     )
 
 
-def _case(checks: Checks, i: int) -> str:
-    row, carried = checks.rows[i], checks["carried_error"][i]
+def _case(row: Mapping[Hashable, Any]) -> str:
+    carried = row["carried_error"]
     return (
         f"number {row['number']}, {row['suspension']}, "
         f"{row['driven']} {row['distance']:.2e} from the end ({row['lock']}), "
-        f"t = {row['instant']!r} s: error / bound {checks.share[i]:.3g}, error {row['error']:.2e} mm, "
-        + (f"carried points {carried:.2e} mm, " if row["carried_bound"] is not None else "")
-        + f"condition {row['condition']:.2e}, loss {checks.loss[i]:.2g}"
+        f"t = {row['instant']!r} s: error / bound {row['share']:.3g}, error {row['error']:.2e} mm, "
+        + ("" if math.isnan(carried) else f"carried points {carried:.2e} mm, ")
+        + f"condition {row['condition']:.2e}, loss {row['loss']:.2g}"
     )
 
 
-def _set_data(checks: Checks) -> dict[str, Any]:
+def _set_data(checks: pd.DataFrame) -> dict[str, Any]:
     return {
-        "count": len(checks.rows),
-        "bound_over_error": {
-            points.replace(" ", "_"): {
-                f"{level:g}": float(np.quantile(ratio, level, method="nearest")) for level in LEVELS
-            }
-            for points, ratio in checks.looseness.items()
-            if len(ratio)
-        },
-        "error_over_rounding": asdict(checks.error_over_rounding),
-        "error_over_distance": asdict(checks.error_over_distance),
-        "largest_loss": float(checks.loss.max()) if checks.rows else None,
-        "largest_error_over_bound": float(checks.share.max()) if checks.rows else None,
+        "count": len(checks),
+        "bound_over_error": {name.replace(" ", "_"): at for name, at in _quantiles(checks).items()},
+        "error_over_rounding": asdict(error_over_rounding(checks)),
+        "error_over_distance": asdict(error_over_distance(checks)),
+        "largest_loss": None if checks.empty else float(checks["loss"].max()),
+        "largest_error_over_bound": None if checks.empty else float(checks["share"].max()),
         "checks": _records(checks),
     }
 
 
-def _records(checks: Checks) -> list[dict[str, Any]]:
+def _records(checks: pd.DataFrame) -> list[dict[Hashable, Any]]:
     of = {variant.words: asdict(variant) for variant in variants()}
-    names = ("number", *(name for name in COLUMNS if name not in ("suspension", "refusal")))
-    return [{"variant": of[row["suspension"]], **{name: row[name] for name in names}} for row in checks.rows]
+    names = ["number", *(name for name in COLUMNS if name not in ("suspension", "refusal"))]
+    rows = checks[names].to_dict("records")
+    return [{"variant": of[words], **row} for words, row in zip(checks["suspension"], rows, strict=True)]

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.drawing_stands import drawn_inputs as drawn_inputs_of
 from pointcoord.linkage.directions import DIRECTIONS
-from validate.cars.accepted import cars
 from validate.cars.base_cars import Variant, variants
 from validate.cars.car import Car
 from validate.cars.input_ends import drawn_inputs, end
@@ -17,6 +16,7 @@ from validate.cars.near_singular import near_pose
 from validate.cars.random_cars import random_car
 from validate.cars.random_scenes import KINDS, random_scene
 from validate.cars.scene_content import content_of
+from validate.strategies import cars
 
 NUMBERS = st.integers(0, 2**32 - 1)
 by_variant = pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)

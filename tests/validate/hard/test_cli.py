@@ -66,13 +66,6 @@ def test_times_are_told_the_longest_first(capsys: pytest.CaptureFixture[str]) ->
     assert seconds == sorted(seconds, reverse=True)
 
 
-def test_json_goes_to_a_file_beside_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    target = tmp_path / "hard.json"
-    assert main(["hard", "at-rest", "--json", str(target)]) == 0
-    assert "at-rest" in capsys.readouterr().out
-    assert json.loads(target.read_text())["cases"][0]["unit"] == "mm"
-
-
 def test_the_list_names_every_case_with_its_reason_and_tries_none(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["hard", "--list"]) == 0
     out, _ = capsys.readouterr()
@@ -112,15 +105,6 @@ def test_one_is_counted_as_one(capsys: pytest.CaptureFixture[str]) -> None:
     assert "1 case, 1 scene:" in out
     assert "parameter: a number, 1, 1 value\n" in out
     assert "NOT as expected: 1 answer, 1 wrong without a warning, in quiet." in out
-
-
-def test_names_are_unique_and_every_case_leads_somewhere() -> None:
-    names = [case.name for case in catalogue.CASES]
-    assert len(set(names)) == len(names)
-    for case in catalogue.CASES:
-        assert case.values, case.name
-        assert case.expected, case.name
-        assert len(set(case.values)) == len(case.values), case.name
 
 
 def test_the_list_is_json_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,16 +1,23 @@
-"""Laws that every effect obeys."""
+"""Effects by their meaning, of axes turned by hand, and the laws that all of them obey."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 
+import mpmath
+import numpy as np
 import pytest
-from closed_forms import rational_turn, turned
+from closed_forms import rational_turn, turned, unit
+from flint import arb
 from mpmath import mpf
-from reference_cars import ReferenceCar
+from reference_cars import CARS, ReferenceCar
 
 from validate.reference import Instant
+from validate.reference.dual import Dual
+from validate.reference.effects.effect import STEERING, WHEEL, Axes, angle
 from validate.reference.effects.registry import EFFECTS
+from validate.reference.vectors import Vector, cross, minus, plus, times
 
 FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
 
@@ -19,12 +26,6 @@ def same(one: Instant, other: Instant) -> bool:
     bound = one.error_bound["effects"] + other.error_bound["effects"] + mpf("1e-60")
     assert set(one.effects) == set(other.effects) == set(EFFECTS)
     return all(abs(one.effects[name] - other.effects[name]) <= bound for name in EFFECTS)
-
-
-def test_the_registry_calls_every_effect_by_its_own_name() -> None:
-    assert all(
-        effect.name == name and effect.unit == "rad" and effect.positive for name, effect in EFFECTS.items()
-    )
 
 
 def test_effects_are_those_of_the_mirrored_car_on_the_other_side(car: ReferenceCar) -> None:
@@ -53,3 +54,128 @@ def test_effects_do_not_see_heave_size_or_motion(car: ReferenceCar) -> None:
     assert same(plain, car.solve({**car.still, "heave": (1000, 0, 0)}))
     twice = replace(car, points={name: tuple(2 * x for x in p) for name, p in car.points.items()})
     assert same(plain, twice.solve({**car.still, "rack": (2 * car.inputs["rack"][0], 0, 0)}))
+
+
+# The steering axis of each linkage, from below; x rearward, y right, z up.
+AXIS = {
+    "strut as drawn": ("lower_ball_joint", "strut_top"),
+    "collinear strut": ("lower_ball_joint", "strut_lower"),
+    "double wishbone": ("lower_ball_joint", "upper_ball_joint"),
+}
+
+
+def pierced(instant: Instant, foot: str, head: str, height: mpf) -> Vector:
+    """The point of the steering axis at a height."""
+    low, high = instant.position[foot], instant.position[head]
+    along = minus(high, low)
+    return plus(low, times(along, (height - low[2]) / along[2]))
+
+
+@pytest.mark.parametrize("name", AXIS)
+@pytest.mark.parametrize("turn", [Fraction(-1, 5), Fraction(0), Fraction(1, 5)])
+def test_a_steering_axis_that_leans_rearward_is_farther_back_at_the_top_by_the_tangent(
+    name: str, turn: Fraction
+) -> None:
+    car: ReferenceCar = CARS[name]
+    instant = car.solve({**car.still, "arm_angle": (car.inputs["arm_angle"][0] + turn, 0, 0)})
+    ground, above = (pierced(instant, *AXIS[name], mpf(height)) for height in (-500, 500))
+    back = above[0] - ground[0]
+    caster = instant.effects["caster"]
+    assert abs(mpmath.tan(caster) - back / 1000) < mpf("1e-55")
+    assert abs(caster) < mpmath.pi / 2
+    assert (caster > 0) == (back > 0)
+
+
+def test_a_top_moved_rearward_by_5_in_12_leans_by_that_angle_whatever_its_lean_inboard() -> None:
+    car = CARS["double wishbone"]
+    x, y, z = car.points["lower_ball_joint"]
+    for inboard in (0, 20, 60):
+        moved = replace(car, points={**car.points, "upper_ball_joint": (x + 100, y - inboard, z + 240)})
+        assert abs(moved.close().instant.effects["caster"] - mpmath.atan(mpf(5) / 12)) < mpf("1e-70")
+
+
+def edges(car: ReferenceCar, instant: Instant) -> tuple[tuple[mpf, ...], tuple[mpf, ...]]:
+    """The foremost and the rearmost point of the wheel's level diameter; x rearward, y right, z up."""
+    inner, centre = car.wheel_axis
+    p = instant.position
+    axis = minus(p[centre], p[inner])
+    level = times(unit(cross(axis, (0, 0, 1))), 300)
+    one, other = plus(p[centre], level), minus(p[centre], level)
+    return (one, other) if one[0] < other[0] else (other, one)
+
+
+@pytest.mark.parametrize("turn", [Fraction(-1, 5), Fraction(0), Fraction(1, 5)])
+@pytest.mark.parametrize("travel", [-25, 0, 25])
+def test_the_front_edge_of_a_wheel_that_toes_in_is_nearer_the_middle_by_the_tangent(
+    car: ReferenceCar, turn: Fraction, travel: int
+) -> None:
+    theta, rack = car.inputs["arm_angle"][0] + turn, car.inputs["rack"][0] + travel
+    instant = car.solve({"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)})
+    front, rear = edges(car, instant)
+    out = 1 if car.side == "right" else -1
+    nearer = out * (rear[1] - front[1])  # how much nearer the car's middle the front edge is
+    toe = instant.effects["toe"]
+    assert abs(mpmath.tan(toe) - nearer / (rear[0] - front[0])) < mpf("1e-55")
+    assert abs(toe) < mpmath.pi / 2
+    assert (toe > 0) == (nearer > 0)
+
+
+def test_a_tie_rod_ahead_of_the_axle_that_is_pulled_inboard_toes_the_wheel_in() -> None:
+    car = CARS["double wishbone"]
+    assert car.points["tie_rod_outer"][0] < car.points["wheel_centre"][0]
+    # The right wheel's: S moves the rack to the left.
+    toes = [car.solve({**car.still, "rack": (travel, 0, 0)}).effects["toe"] for travel in (-20, 0, 20)]
+    assert toes == sorted(toes)
+    assert toes[0] < 0 < toes[2]
+
+
+def test_a_level_spin_axis_that_points_forward_by_3_in_4_toes_in_by_its_angle() -> None:
+    car = CARS["double wishbone"]
+    x, y, z = car.points["wheel_centre"]
+    known = replace(car, points={**car.points, "wheel_axis_inner": (x + 3, y - 4, z)})
+    assert abs(known.close().instant.effects["toe"] - mpmath.atan(mpf(3) / 4)) < mpf("1e-70")
+
+
+UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
+
+
+def axes(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Axes:
+    def balls(vector: tuple[float, ...]) -> Vector:
+        return arb(vector[0]), arb(vector[1]), arb(vector[2])
+
+    lines = {WHEEL: balls(wheel), STEERING: balls(steering)}
+    return Axes(lines, balls(UP), balls(FORWARD), balls((0, out, 0)))
+
+
+@pytest.mark.parametrize("out", [-1, 1])
+@pytest.mark.parametrize("lean", [-2.5, -0.2, 0.3, 1.9])
+def test_a_wheel_leans_out_at_the_top_and_its_steering_axis_in(lean: float, out: int) -> None:
+    sine, cosine = float(np.sin(lean)), float(np.cos(lean))
+    # The spin axis of a wheel that leans out points down on its way out; the steering axis leads in on its
+    # way up. Neither angle sees what is along the car.
+    turned = axes((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
+    for name in ("camber", "kingpin"):
+        assert float(EFFECTS[name].value(turned)) == pytest.approx(lean, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("y", "x", "slope"),
+    [
+        # d atan2(y, x) = (x dy - y dx) / (x^2 + y^2)
+        (Dual(arb(3), arb(2)), Dual(arb(4), arb(-5)), Fraction(4 * 2 + 3 * 5, 25)),
+        (Dual(arb(3), arb(2)), arb(4), Fraction(8, 25)),
+        (arb(3), Dual(arb(4), arb(-5)), Fraction(15, 25)),
+        (Dual(arb(-1), arb(7)), Dual(arb(-2), arb(1)), Fraction(-14 + 1, 5)),
+    ],
+)
+def test_an_angle_turns_with_both_of_its_components(y: Dual | arb, x: Dual | arb, slope: Fraction) -> None:
+    found = angle(y, x)
+    assert isinstance(found, Dual)
+    assert found.slope.overlaps(arb(slope.numerator) / slope.denominator)
+    values = [float(part.value) if isinstance(part, Dual) else float(part) for part in (y, x)]
+    assert float(found.value) == pytest.approx(np.arctan2(*values), abs=1e-15)
+
+
+def test_an_angle_of_plain_numbers_is_a_plain_number() -> None:
+    assert isinstance(angle(arb(3), arb(4)), arb)
+    assert angle(np.array([3.0, -1.0]), np.array([4.0, -1.0])).tolist() == [np.arctan2(3, 4), -0.75 * np.pi]

@@ -17,13 +17,11 @@ from plain_mechanisms import design_of, solve_car
 from validate.reference import (
     AmbiguousAssemblyError,
     BadInputError,
-    InfeasibleError,
     NoReferenceError,
     instants_of,
 )
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction
-from validate.reference.jet import Jet
 from validate.reference.vectors import minus
 
 Table = dict[str, tuple[Any, ...]]
@@ -80,11 +78,6 @@ def test_a_mechanism_without_extent_is_refused(
         solve_car({**table, name: place}, STILL, closure="collinear")
 
 
-def test_a_strut_top_in_the_ball_joint_is_an_error_and_never_a_number(table: Table) -> None:
-    with pytest.raises(NoReferenceError):
-        solve_car({**table, "strut_top": table["lower_ball_joint"]}, STILL, closure="collinear")
-
-
 def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) -> None:
     hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
     reference = solve_car(hub_in_axis, STILL, closure="collinear")
@@ -100,10 +93,6 @@ def test_a_polynomial_of_floats_is_exact() -> None:
     assert tuple(as_fraction(x, "x") for x in (value, rate, acceleration)) == expected
 
 
-def test_a_constant_rests() -> None:
-    assert time_function_value({"constant": -2.5}, 1e9) == (-2.5, 0, 0)
-
-
 @pytest.mark.parametrize("t", [0, 0.3, 1e12, Fraction(1, 3)])
 @pytest.mark.parametrize("digits", [30, 60, 150])
 def test_the_sine_has_all_its_digits_even_at_late_times(t: Any, digits: int) -> None:
@@ -116,46 +105,6 @@ def test_the_sine_has_all_its_digits_even_at_late_times(t: Any, digits: int) -> 
         expected = (mpf(0.1) + a * sine, a * w * cosine, -a * w**2 * sine)
         for got, want in zip(time_function_value({"sine": given}, t, digits), expected, strict=True):
             assert abs(got - want) <= abs(want) * mpf(10) ** -digits
-
-
-def test_a_sine_next_to_a_zero_keeps_its_relative_digits() -> None:
-    with mpmath.workdps(300):
-        t = Fraction(mpmath.nstr(mpmath.pi, 60))
-        expected = mpmath.sin(mpf(t.numerator) / t.denominator)
-        value, _, _ = time_function_value({"sine": {"amplitude": 1, "angular_frequency": 1}}, t, 60)
-        assert abs(expected) < mpf("1e-55")
-        assert abs(value - expected) <= abs(expected) * mpf("1e-60")
-
-
-def test_a_sine_that_vanishes_is_exactly_zero() -> None:
-    value, rate, acceleration = time_function_value({"sine": {"amplitude": 3, "angular_frequency": 2}}, 0)
-    assert (value, rate, acceleration) == (0, 6, 0)
-
-
-@pytest.mark.parametrize(
-    "definition",
-    [
-        {},
-        {"table": [1]},
-        {"constant": 1, "polynomial": [1]},
-        {"polynomial": []},
-        {"polynomial": "12"},
-        {"polynomial": [math.nan]},
-        {"sine": {"amplitude": 1}},
-        {"sine": {"amplitude": 1, "angular_frequency": 1, "frequency": 2}},
-        {"sine": 3},
-    ],
-)
-def test_a_time_function_that_makes_no_sense_is_refused(definition: dict[str, Any]) -> None:
-    with pytest.raises(BadInputError):
-        time_function_value(definition, 1.0)
-
-
-def test_jets_combine_with_plain_numbers_from_both_sides() -> None:
-    jet = Jet(3, 5, 7)
-    assert 2 * jet == jet * 2 == Jet(6, 10, 14)
-    assert 2 + jet == jet + 2 == Jet(5, 5, 7)
-    assert 2 - jet == Jet(-1, -5, -7)
 
 
 def test_an_effect_that_does_not_exist_is_refused_and_the_message_names_those_that_do(table: Table) -> None:
@@ -179,11 +128,3 @@ def test_one_car_at_many_inputs_is_the_car_at_each_of_them(table: Table) -> None
         for name, place in one.position.items():
             assert max(abs(x) for x in minus(place, other.position[name])) <= one.radius + other.radius
     assert len({instant.position["wheel_centre"] for instant in together}) == 3
-
-
-def test_an_input_that_has_no_pose_is_found_when_its_instant_is_reached(table: Table) -> None:
-    design = design_of(table, closure="collinear")
-    instants = instants_of(design, [STILL, {**STILL, "rack": (1e4, 0, 0)}])
-    next(instants)
-    with pytest.raises(InfeasibleError):
-        next(instants)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from flint import arb, ctx
@@ -13,13 +12,10 @@ from mpmath import mpf
 from reference_cars import ReferenceCar
 
 from validate.reference import NotDecidedError, instant
-from validate.reference.certificate import certify
-from validate.reference.exact import as_ball, as_fraction, bits
+from validate.reference.exact import as_fraction, bits
 from validate.reference.instant import prove_instant, prove_pose
-from validate.reference.krawczyk import newton
-from validate.reference.mechanism import Mechanism
 from validate.reference.route import CLEAR, reached
-from validate.reference.vectors import Scalar, Vector, minus
+from validate.reference.vectors import minus
 
 
 def anything(_: Sequence[arb]) -> bool:
@@ -90,24 +86,3 @@ def test_a_car_that_goes_fast_without_pushing_takes_no_more_digits(car: Referenc
     apart = minus(found.velocity["wheel_centre"], found.velocity["lower_arm_front"])
     assert max(abs(x) for x in apart) <= found.error_bound["velocity"]
     assert max(abs(x) for x in found.acceleration["wheel_centre"]) <= found.error_bound["acceleration"]
-
-
-def test_what_turns_has_room_for_all_points_in_the_box(
-    car: ReferenceCar, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    box, seen = Fraction(1, 10**40), []
-    with ctx.workprec(bits(60)):
-        known, start = car.known(), start_of(car)
-        read = Mechanism.unknown_of
-
-        def spied(mechanism: Mechanism, points: Mapping[str, Vector], exact: Any) -> list[Scalar]:
-            seen.append(points)
-            return read(mechanism, points, exact)
-
-        monkeypatch.setattr(Mechanism, "unknown_of", spied)
-        certify(newton(known.system, start)[0], known, box)
-        (near,) = seen
-        assert set(near) == set(car.design.names)
-        for name, place in near.items():
-            fixed = name in car.design.plain["bodies"]["chassis"]
-            assert all((x.rad() < 1e-50) if fixed else (x.rad() >= as_ball(box)) for x in map(arb, place))

@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from counted_study import worked_out
 from hypothesis import assume, given, settings, target
@@ -11,14 +12,22 @@ from hypothesis import strategies as st
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.cars.accepted import cars
 from validate.cars.base_cars import variants
 from validate.cars.near_singular import NearPose, approach, near_pose
 from validate.cars.scene_content import content_of
 from validate.exit_status import ExitStatus
 from validate.output.table import text_of
 from validate.reference import InfeasibleError
-from validate.studies.bounds import Checks, bounds, fitted, held_pose, moving_instants
+from validate.strategies import cars
+from validate.studies.bounds import (
+    bounds,
+    error_over_distance,
+    error_over_rounding,
+    fitted,
+    held_pose,
+    measured,
+    moving_instants,
+)
 from validate.studies.study import Row, Study
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
@@ -30,7 +39,7 @@ ENDS = (4, 5, 7, 8)
 
 
 @st.composite
-def checks(draw: st.DrawFn) -> Checks:
+def checks(draw: st.DrawFn) -> pd.DataFrame:
     """A random car held near the end of an input, at a distance that a search can move."""
     car, variant = draw(cars())
     names = draw(st.sampled_from(variant.input_sets))
@@ -47,13 +56,13 @@ def checks(draw: st.DrawFn) -> Checks:
     assert pose is not None
     (row,) = held_pose(pose)
     assume("refusal" not in row)
-    return Checks((row,))
+    return measured([row])
 
 
 @searched
 @given(check=checks())
-def test_no_search_finds_an_error_above_its_bound_or_a_sudden_loss_of_digits(check: Checks) -> None:
-    (share,), (loss,) = check.share, check.loss
+def test_no_search_finds_an_error_above_its_bound_or_a_sudden_loss_of_digits(check: pd.DataFrame) -> None:
+    (share,), (loss,) = check["share"], check["loss"]
     if 0.0 < share < math.inf:
         target(math.log10(share), label="error / bound")
         target(-math.log10(share), label="bound / error")
@@ -66,8 +75,8 @@ def test_no_search_finds_an_error_above_its_bound_or_a_sudden_loss_of_digits(che
 @settings(searched, max_examples=EXAMPLES if EXAMPLES > 100 else 2)
 @given(number=NUMBERS)
 def test_bounds_hold_between_the_ends_of_the_segments_of_a_motion(number: int) -> None:
-    answered = Checks(tuple(row for row in moving_instants(number, seed=1) if "refusal" not in row))
-    assert (answered.share <= 1.0).all(), answered
+    answered = measured(moving_instants(number, seed=1))
+    assert (answered["share"] <= 1.0).all(), answered
 
 
 def beside(pose: NearPose, distance: float) -> NearPose:
@@ -91,14 +100,14 @@ def held(poses: list[NearPose]) -> list[Row]:
 
 
 def test_bounds_are_loose_by_about_one_digit_and_errors_follow_the_condition_number(held: list[Row]) -> None:
-    found = Checks(tuple(row for row in held if "refusal" not in row))
-    assert len(found.rows) >= 26
-    assert (found.share <= 1.0).all()
-    assert np.median(found.looseness["solved points"]) < 20.0
+    found = measured(held)
+    assert len(found) >= 26
+    assert (found["share"] <= 1.0).all()
+    assert found["solved points"].median() < 20.0
     # Errors scatter by 0.6 decades, over 6 decades of distance (deviation 2) and 3 of rounding (1): slopes of
     # a fit of 26 vary by 0.6 / (sqrt(26) 2) = 0.06 and 0.6 / (sqrt(26) 1) = 0.12; three times that is let.
-    assert abs(found.error_over_rounding.slope - 1.0) < 0.36
-    assert abs(found.error_over_distance.slope + 0.5) < 0.18
+    assert abs(error_over_rounding(found).slope - 1.0) < 0.36
+    assert abs(error_over_distance(found).slope + 0.5) < 0.18
 
 
 def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
@@ -139,7 +148,7 @@ def test_a_mechanism_without_carried_points_has_no_error_of_them() -> None:
     (row,) = worked_out(replace(bounds(), tasks=bounds(6, 0).tasks[5:]))
     assert row["suspension"] == "n four bar"
     assert row["carried_error"] is row["carried_bound"] is None
-    assert Checks((row,)).share <= 1.0
+    assert (measured([row])["share"] <= 1.0).all()
 
 
 @pytest.mark.parametrize("number", range(4))

@@ -20,7 +20,6 @@ from validate.hard.trial import Facts, Tried, scene_case
 
 GROUP = "Body rates"
 VALUES = (*decades(-12, -1), 0.0)
-ALL = dict.fromkeys(SOLVERS, RIGHT) | {"printed": FAILS}
 # Of points and bodies; where points are, and angles of the wheel, are no rates.
 RATES = tuple(q.name for q in QUANTITIES.values() if q.of != "car" and q.name != "position")
 RACK_RATE = 150.0  # mm/s, the paper's steering scene
@@ -49,27 +48,13 @@ def largest_rates(tried: Tried) -> Facts:
     return facts
 
 
-def _steered(value: float) -> Content:
-    return paper_car([SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
-
-
-def _in_the_plane(value: float) -> Content:
-    return paper_car([PLANE_ANGLE + value, 1.0])
-
-
 # Of the two suspensions that the catalogue began with, the one at rest leans every way, or is far off too.
 LEANING = {"paper": CARS["other"], "wishbone": CARS["wishbone-turned"]}
 
 
 def _resting(subject: Subject, value: float) -> Content:
-    car = LEANING.get(subject.name, subject.car)
-    return subject.content(
-        [value, 0.0, 0.0],
-        [20.0 if subject.level else value, 0.0],
-        0.0 if subject.heaves else None,
-        car=car,
-        stop=1.0,
-    )
+    still = [value, 0.0, 0.0], [20.0 if subject.level else value, 0.0], 0.0 if subject.heaves else None
+    return subject.content(*still, car=LEANING.get(subject.name, subject.car), stop=1.0)
 
 
 def _one_rate(driven: str, subject: Subject, value: float) -> Content:
@@ -78,33 +63,29 @@ def _one_rate(driven: str, subject: Subject, value: float) -> Content:
     return {**whole, "inputs": {**whole["inputs"], driven: {"polynomial": [home, value]}}}
 
 
+_printed = partial(
+    scene_case,
+    group=GROUP,
+    values=VALUES,
+    expected={**dict.fromkeys(SOLVERS, RIGHT), "printed": FAILS},
+    behaviour="pointcoord and the absolute model are right; the printed omega loses all its digits",
+    measure=omega_errors,
+)
 WORDS = {"arm_angle": ("arm", "rad/s"), "rack": ("rack", "mm/s")}
 INPUTS = {name: unit for subject in SUBJECTS for name, unit in subject.units.items()}
-TINY = (*(float(f"1e-{25 * k}") for k in range(1, 13)), 0.0)
-
 
 CASES: tuple[Case, ...] = (
-    scene_case(
+    _printed(
         name="arm-all-but-held",
-        group=GROUP,
         why="points 5 and 7 stand almost still while the rack moves: the printed omega is 0/0",
         parameter="rate of the arm while the rack is driven, rad/s; then the arm is held",
-        values=VALUES,
-        scene=_steered,
-        expected=ALL,
-        behaviour="pointcoord and the absolute model are right; the printed omega loses all its digits",
-        measure=omega_errors,
+        scene=lambda value: paper_car([SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4),
     ),
-    scene_case(
+    _printed(
         name="omega-in-the-knuckle-plane",
-        group=GROUP,
         why="omega lies in the plane of the knuckle's points: the divisor of the printed quotient is zero",
         parameter="distance of the turning arm from the angle at which it does, rad; then at it",
-        values=VALUES,
-        scene=_in_the_plane,
-        expected=ALL,
-        behaviour="pointcoord and the absolute model are right; the printed omega loses all its digits",
-        measure=omega_errors,
+        scene=lambda value: paper_car([PLANE_ANGLE + value, 1.0]),
     ),
     *(
         case
@@ -115,7 +96,7 @@ CASES: tuple[Case, ...] = (
             group=GROUP,
             why=f"only the {label} moves, slower and slower: rates keep their digits down to zero",
             parameter=f"rate of the {label}, {per_second}; then at rest",
-            values=TINY,
+            values=(*(float(f"1e-{25 * k}") for k in range(1, 13)), 0.0),
             scene=partial(_one_rate, name),
             expected=RIGHT,
             behaviour="right, and exactly zero at rest",

@@ -1,9 +1,14 @@
-"""Inputs that are very fast, very slow, very long or not smooth."""
+"""Inputs that are very fast, very slow, very long, not smooth, or small beside the terms they are made of.
+
+Where terms all but cancel, the input itself is an ordinary one. The reference, and the absolute model, take
+each law in many digits and round it once; pointcoord sums in twice the working precision and counts what that
+may be off into its bound.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -11,12 +16,14 @@ from typing import Any
 
 import numpy as np
 
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.input_rates import rates
 from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, decades
-from validate.hard.family import SOLVERS, Content, Subject, family, moved_by
+from validate.hard.cases.ends import NEAR_END
+from validate.hard.family import SOLVERS, SUBJECTS, Content, Subject, family, hyphens, moved_by
+from validate.hard.last_values import ends_of, last_value
 from validate.hard.trial import Facts, Tried
 
-GROUP = "Laws of the inputs"
 OURS = dict.fromkeys(SOLVERS, RIGHT)
 # A motion by series may take too many of them, or need steps below the rounding of time, and has to say
 # so; solving at its instants needs no steps.
@@ -50,22 +57,10 @@ def _phase(subject: Subject, turns: float) -> Content:
 STOPPING = (0.0, 0.0, 16.0, -32.0, 16.0)
 
 
-def _at_rest(size: float = 1.0) -> tuple[list[float], list[float]]:
-    """That way of an angle and of a length, of some size."""
-    return [0.2 * size * c for c in STOPPING], [30.0 * size * c for c in STOPPING]
-
-
-def _starting(subject: Subject, value: float) -> Content:
-    return subject.content(*_at_rest(), start=0.0, stop=value)
-
-
-def _stopping(subject: Subject, value: float) -> Content:
-    return subject.content(*_at_rest(), start=1.0 - value, stop=1.0)
-
-
-def _seen_at_rest(subject: Subject, size: float) -> Content:
-    """The three instants are those where the rates are zero."""
-    return subject.content(*_at_rest(size), stop=1.0)
+def _at_rest(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
+    """That way of every input, of some size, from one time to another."""
+    laws = ([0.2 * size * c for c in STOPPING], [30.0 * size * c for c in STOPPING])
+    return subject.content(*laws, start=start, stop=stop)
 
 
 def rate_rounding(tried: Tried) -> Facts:
@@ -110,36 +105,12 @@ def _jerk(subject: Subject, value: float) -> Content:
     return {**whole, "inputs": {**whole["inputs"], first: jump}}
 
 
-def law_cases(
-    name: str,
-    why: str,
-    parameter: str,
-    values: tuple[float, ...],
-    scene: Callable[[Subject, float], Content],
-    behaviour: str = "right within the bound",
-    expected: Mapping[str, Expected] = OURS,
-    **options: Any,
-) -> tuple[Case, ...]:
-    """A case of this group for every mechanism; see `family`."""
-    return family(
-        name=name,
-        group=GROUP,
-        why=why,
-        parameter=parameter,
-        values=values,
-        scene=scene,
-        behaviour=behaviour,
-        expected=expected,
-        **options,
-    )
-
-
-def told_as_rough(trial: Trial, driven: str) -> Trial:
-    """The trial with every refusal wrong that does not name the input as what the series cannot follow.
+def told_as_rough(subject: Subject, value: float, trial: Trial) -> Trial:
+    """The trial with every refusal wrong that does not name the first input as what the series cannot follow.
 
     The mechanism is nowhere near a singular pose, and must not be given as the reason.
     """
-    expected = f"MotionTooRough: input '{driven}'"
+    expected = f"MotionTooRough: input '{next(iter(subject.kinds))}'"
     answers = tuple(
         replace(a, outcome="wrong", reason=f"refused for another reason: {a.reason}")
         if a.outcome == "refused" and (not a.reason.startswith(expected) or "singular" in a.reason)
@@ -149,94 +120,247 @@ def told_as_rough(trial: Trial, driven: str) -> Trial:
     return replace(trial, answers=answers)
 
 
-def _jump_cases() -> Iterator[Case]:
-    for case in law_cases(
-        "jump-of-a-table",
-        "an input moves within a very short time: accelerations grow as its inverse square",
-        "time of the jump, s",
-        decades(-12, -1),
-        _jerk,
-        "by series right, or refused as too rough, the input named; at its instants right",
-        JUMP,
-    ):
-        yield replace(case, examine=partial(_told_as_rough_by, case))
+def _far_in_time(subject: Subject, start: float) -> Content:
+    swings = ({"sine": {"amplitude": size, "angular_frequency": 1.0}} for size in (0.2, 20.0))
+    return subject.content(*swings, start=start, stop=start + 1.0)
 
 
-def _told_as_rough_by(case: Case, value: float) -> Trial:
-    assert case.content is not None  # a family's cases are scenes
-    return told_as_rough(case.examine(value), next(iter(case.content(value)["inputs"])))
+def _heaving(subject: Subject, value: float) -> Content:
+    wave = {"amplitude": 100.0 * value, "angular_frequency": 3.0}
+    return subject.content(heave={"sine": wave}, stop=1.0)
 
 
+def _short(subject: Subject, value: float, start: float = 0.0) -> Content:
+    return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=start, stop=start + value, samples=4)
+
+
+def _before_a_lock(subject: Subject, value: float) -> Content:
+    """The motion would lock right after its end: at time 1, and it stops this much earlier."""
+    driven, ahead = ("rack", False) if subject.level else ends_of(subject)[0]
+    way = float(last_value(subject, driven, ahead).value) - subject.home[driven]
+    return subject.content([0.0, way], [0.0, way], only=driven, stop=1.0 - value)
+
+
+def _tolerance(subject: Subject, value: float) -> Content:
+    return subject.content([-0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
+
+
+# Sums whose terms all but cancel.
+PHASE = 0.5  # rad: neither the sine nor its slope is near zero
+AMPLITUDES = tuple(float(f"1e{k}") for k in range(10))
+# How far from home each input is while its swing passes, and how fast: rad or mm, per s.
+ORDINARY: Mapping[str, tuple[float, float]] = {"rad": (0.0, 0.1), "mm": (10.0, 20.0)}
+POWERS = (4, 6)
+MOST = 20
+
+
+def cancelling_sine(unit: str, value: float) -> dict[str, Any]:
+    """An offset that all but cancels the swing at time 0, by the reciprocal of the amplitude."""
+    (wanted, rate), amplitude = ORDINARY[unit], 1.0 / value
+    wave = {
+        "amplitude": amplitude,
+        "angular_frequency": rate / (amplitude * math.cos(PHASE)),
+        "phase": PHASE,
+        "offset": wanted - amplitude * math.sin(PHASE),
+    }
+    return {"sine": wave}
+
+
+def _of_one_input(driven: str, subject: Subject, value: float) -> Content:
+    if driven == "heave":
+        return subject.content(heave=cancelling_sine("mm", value), stop=0.5)
+    laws = (cancelling_sine(unit, value) for unit in ORDINARY)
+    return subject.content(*laws, only=driven, stop=0.5)
+
+
+def expanded(power: int, start: float) -> list[float]:
+    """Coefficients of 16 (t - start)^power, which doubles hold exactly for a start that is a power of two."""
+    return [16.0 * math.comb(power, k) * (-start) ** (power - k) for k in range(power + 1)]
+
+
+def cancelling_polynomial(power: int, subject: Subject, value: float) -> Content:
+    """16 mm, or 1/8 rad, in the second after a late start, all terms as large as that is late."""
+    start, last = 1.0 / value, list(subject.kinds)[-1]
+    law = expanded(power, start)
+    # A power of two keeps every coefficient exact.
+    angle = [c / 128.0 for c in law]
+    return subject.content(angle, law, only=last, start=start, stop=start + 1.0)
+
+
+def right_from(power: int) -> float:
+    """The reciprocal of the latest start at which twice the precision leaves the law its digits.
+
+    The sum of n terms is off by 4 n^2 u^2 of their magnitudes (Graillat, Langlois, Louvet), which add up to
+    16 (2 start)^power: that must stay below a rounding of 16 mm.
+    """
+    count = power + 1
+    latest = 0.5 * (1.0 / (4.0 * count**2 * UNIT_ROUNDOFF)) ** (1.0 / power)
+    return 2.0 ** -math.floor(math.log2(latest))
+
+
+def _cancelling_polynomials(power: int) -> tuple[Case, ...]:
+    ours = Expected(("right", "refused"), right_from(power))
+    times = math.floor(math.log10(2.0 ** ((MOST + 1) * power)))
+    return _laws(
+        name=f"cancelling-polynomial-{power}",
+        why=f"16 (t - start)^{power}, multiplied out: terms up to 1e{times} times their sum",
+        parameter="1 s over the start of a motion of 1 s",
+        values=tuple(2.0**-k for k in range(1, MOST + 1)),
+        scene=partial(cancelling_polynomial, power),
+        expected={"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT, "relative": RIGHT},
+    )
+
+
+_laws = partial(family, group="Laws of the inputs")
+_right = partial(_laws, expected=OURS)
+RISING, FALLING, WITHIN = decades(0, 12)[::-1], decades(-12, 0), decades(-12, -1)
+BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
 ARM_RATE = "rate of the arm, rad/s"
+
 CASES: tuple[Case, ...] = (
-    *law_cases(
-        "slow-inputs",
-        "the same way in ever longer time: rates lie far below the lengths",
-        ARM_RATE,
-        decades(-12, 0),
-        _scaled,
+    *_right(
+        name="slow-inputs",
+        why="the same way in ever longer time: rates lie far below the lengths",
+        parameter=ARM_RATE,
+        values=FALLING,
+        scene=_scaled,
     ),
-    *law_cases(
-        "fast-inputs",
-        "the same way in ever shorter time: rates and their squares lie far above the lengths",
-        ARM_RATE,
-        decades(0, 12)[::-1],
-        _scaled,
+    *_right(
+        name="fast-inputs",
+        why="the same way in ever shorter time: rates and their squares lie far above the lengths",
+        parameter=ARM_RATE,
+        values=RISING,
+        scene=_scaled,
     ),
-    *law_cases(
-        "long-sine",
-        "a swing a second for ever longer: a motion by series needs some segments for each swing",
-        "duration, s",
-        (1.0, 1e3, 1e6),  # few: each refusal takes two thousand segments
-        _long_sine,
-        "by series right, or refused as too long; at its instants right",
-        BY_STEPS,
+    *_laws(
+        name="long-sine",
+        why="a swing a second for ever longer: a motion by series needs some segments for each swing",
+        parameter="duration, s",
+        values=(1.0, 1e3, 1e6),  # few: each refusal takes two thousand segments
+        scene=_long_sine,
+        expected=BY_STEPS,
         second=(1e3,),
         others=(1.0,),
         also_answered=(1e2,),  # few enough swings for any solver
     ),
-    *law_cases(
-        "phase-of-many-turns",
-        "added to the angle, a large phase would swallow the digits of time",
-        "turns in the phase of a sine",
-        decades(0, 12)[::-1],
-        _phase,
+    *_right(
+        name="phase-of-many-turns",
+        why="added to the angle, a large phase would swallow the digits of time",
+        parameter="turns in the phase of a sine",
+        values=RISING,
+        scene=_phase,
     ),
-    *law_cases(
-        "start-from-rest",
-        "the inputs start from rest: rates tend to zero, accelerations do not",
-        "time since the start, s",
-        decades(-12, -1),
-        _starting,
+    *_right(
+        name="start-from-rest",
+        why="the inputs start from rest: rates tend to zero, accelerations do not",
+        parameter="time since the start, s",
+        values=WITHIN,
+        scene=lambda subject, value: _at_rest(subject, 0.0, value),
     ),
-    *law_cases(
-        "come-to-rest",
-        "the inputs come to rest: rates tend to zero as a difference of large terms",
-        "time to the end, s",
-        decades(-12, -1),
-        _stopping,
+    *_right(
+        name="come-to-rest",
+        why="the inputs come to rest: rates tend to zero as a difference of large terms",
+        parameter="time to the end, s",
+        values=WITHIN,
+        scene=lambda subject, value: _at_rest(subject, 1.0 - value, 1.0),
         measure=rate_rounding,
     ),
-    *law_cases(
-        "seen-at-rest-only",
-        "every instant of the scene is one where the inputs rest for a moment, between which they move",
-        "size of the motion: 0.2 rad and 30 mm times this",
-        decades(-12, 0),
-        _seen_at_rest,
+    *_right(
+        name="seen-at-rest-only",
+        why="every instant of the scene is one where the inputs rest for a moment, between which they move",
+        parameter="size of the motion: 0.2 rad and 30 mm times this",
+        values=FALLING,
+        scene=lambda subject, size: _at_rest(subject, 0.0, 1.0, size),
     ),
-    *law_cases(
-        "kink-of-a-table",
-        "the third derivative jumps at a time of a spline",
-        "time before and after the kink, s",
-        decades(-12, -1),
-        _about_a_kink,
+    *_right(
+        name="kink-of-a-table",
+        why="the third derivative jumps at a time of a spline",
+        parameter="time before and after the kink, s",
+        values=WITHIN,
+        scene=_about_a_kink,
     ),
-    *law_cases(
-        "close-times-of-a-table",
-        "two times of a spline lie close together: rounding of their values is divided by their distance",
-        "distance of the times, s",
-        decades(-12, -1),
-        _close_knots,
+    *_right(
+        name="close-times-of-a-table",
+        why="two times of a spline lie close together: rounding of their values is divided by their distance",
+        parameter="distance of the times, s",
+        values=WITHIN,
+        scene=_close_knots,
     ),
-    *_jump_cases(),
+    *_laws(
+        name="jump-of-a-table",
+        why="an input moves within a very short time: accelerations grow as its inverse square",
+        parameter="time of the jump, s",
+        values=WITHIN,
+        scene=_jerk,
+        behaviour="by series right, or refused as too rough, the input named; at its instants right",
+        expected=JUMP,
+        judged=told_as_rough,
+    ),
+    *_right(
+        name="far-in-time",
+        why="time itself has few digits left for the swing",
+        parameter="start of a second of a sine, s",
+        values=RISING,
+        scene=_far_in_time,
+    ),
+    *_right(
+        name="only-heave",
+        why="the whole car moves while arm and rack rest: the knuckle must not turn",
+        parameter="amplitude of the heave, 100 mm",
+        values=(*FALLING, 0.0),
+        scene=_heaving,
+        needs_heave=True,
+    ),
+    *_right(
+        name="short-scene",
+        why="every instant must stay inside a scene however short",
+        parameter="duration, s",
+        values=(*BY_25, 5e-324),
+        scene=_short,
+    ),
+    *_right(
+        name="short-scene-late",
+        why="a scene of a few roundings of its time",
+        parameter="duration after t = 1 s, s",
+        values=(*decades(-15, -1), 2.0**-52),
+        scene=partial(_short, start=1.0),
+    ),
+    *_laws(
+        name="stop-before-a-lock",
+        why="the motion ends just before its links lock, and its law goes on beyond",
+        parameter="time left to the lock, s, of a way that takes one second",
+        values=WITHIN,
+        scene=_before_a_lock,
+        # As for `ends`: the lock is at the end of the whole way.
+        expected={**NEAR_END, "pointcoord-newton": NEAR_END["pointcoord"]},
+        subjects=[one for one in SUBJECTS if one.level or ends_of(one)],
+    ),
+    *_right(
+        name="fine-tolerance",
+        why="a tolerance below what rounding allows",
+        parameter="tolerance of the scene, mm",
+        values=BY_25[1:],
+        scene=_tolerance,
+    ),
+    *_laws(
+        name="loose-tolerance",
+        why="a tolerance above the size of the car",
+        parameter="tolerance of the scene, mm",
+        values=tuple(1.0 / x for x in BY_25),
+        scene=_tolerance,
+        expected={**OURS, "pointcoord-as-asked": RIGHT},
+    ),
+    *(
+        case
+        for driven in dict.fromkeys(name for subject in SUBJECTS for name in (*subject.kinds, "heave"))
+        for case in _right(
+            name=f"cancelling-sine-{hyphens(driven)}",
+            why="a large swing is all but cancelled by its offset, and what is left drives the input",
+            parameter="1 rad or 1 mm over the amplitude",
+            values=tuple(1.0 / amplitude for amplitude in AMPLITUDES),
+            scene=partial(_of_one_input, driven),
+            subjects=[one for one in SUBJECTS if driven in one.kinds or (driven == "heave" and one.heaves)],
+        )
+    ),
+    *(case for power in POWERS for case in _cancelling_polynomials(power)),
 )

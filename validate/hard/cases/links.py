@@ -9,11 +9,11 @@ leave no motion, however near to each other they are.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -23,9 +23,8 @@ from validate.cars.car import Car, as_tuple
 from validate.cars.scene_content import content_of
 from validate.hard.cars import drawn_at
 from validate.hard.case import IF_ANY, REFUSED, Case, Expected, Trial, decades
-from validate.hard.family import BESIDE, SUBJECTS, Content, Kind, Subject, expected_of, values_of
+from validate.hard.family import BESIDE, SUBJECTS, Content, Kind, Subject, counted, family, values_of
 from validate.hard.last_values import last_value
-from validate.hard.trial import try_scene
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
@@ -147,46 +146,53 @@ def named(trial: Trial, names: frozenset[str]) -> Trial:
     return replace(trial, answers=answers)
 
 
-def missing(subject: Subject, number: float) -> Trial:
-    """The mechanism without one of its pieces."""
-    piece, tables = pieces(subject.plain)[int(number) - 1], tables_of(subject)
-    piece.dropped(tables)
-    trial = try_scene(number, changed(subject, tables, subject.drawn), SOLVERS)
-    return replace(named(trial, piece.names), facts={"missing": piece.words})
-
-
-def twice(subject: Subject, number: float) -> Trial:
-    """Two points that are held apart, by a rod once more."""
-    pair, tables = held_apart(subject.plain)[int(number) - 1], tables_of(subject)
-    tables["rods"][AGAIN] = list(pair)
-    trial = try_scene(number, changed(subject, tables, subject.drawn), SOLVERS)
-    names = frozenset((AGAIN, *pair, *subject.kinds))
-    return replace(named(trial, names), facts={"twice": " - ".join(pair)})
-
-
-def exchanged(subject: Subject, number: float) -> Trial:
-    """A rod as often again as makes up for a piece that is missing: as many rows as unknowns."""
-    piece, tables = _exchangeable(subject)[int(number) - 1], tables_of(subject)
-    rod = next(name for name in tables["rods"] if name != piece.key)
-    ends = tables["rods"][rod]
-    piece.dropped(tables)
-    tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(piece.rows)}
-    trial = try_scene(number, changed(subject, tables, subject.drawn), SOLVERS)
-    return replace(named(trial, piece.names | {rod, AGAIN}), facts={"twice": rod, "missing": piece.words})
-
-
-def _exchangeable(subject: Subject) -> tuple[Piece, ...]:
+def exchangeable(subject: Subject) -> tuple[Piece, ...]:
+    """The pieces without which there is another rod left."""
     rods = set(subject.plain["rods"])
     return tuple(piece for piece in pieces(subject.plain) if rods - {piece.key})
 
 
-def driven_twice(subject: Subject, gap: float) -> Trial:
+Change = tuple[Content, frozenset[str], dict[str, str]]
+"""A changed mechanism at rest, what an error has to name one of, and the change as facts."""
+
+
+def without(subject: Subject, number: float) -> Change:
+    """The mechanism without one of its pieces."""
+    piece, tables = pieces(subject.plain)[int(number) - 1], tables_of(subject)
+    piece.dropped(tables)
+    return changed(subject, tables, subject.drawn), piece.names, {"missing": piece.words}
+
+
+def twice(subject: Subject, number: float) -> Change:
+    """Two points that are held apart, by a rod once more."""
+    pair, tables = held_apart(subject.plain)[int(number) - 1], tables_of(subject)
+    tables["rods"][AGAIN] = list(pair)
+    names = frozenset((AGAIN, *pair, *subject.kinds))
+    return changed(subject, tables, subject.drawn), names, {"twice": " - ".join(pair)}
+
+
+def exchanged(subject: Subject, number: float) -> Change:
+    """A rod as often again as makes up for a piece that is missing: as many rows as unknowns."""
+    piece, tables = exchangeable(subject)[int(number) - 1], tables_of(subject)
+    rod = next(name for name in tables["rods"] if name != piece.key)
+    ends = tables["rods"][rod]
+    piece.dropped(tables)
+    tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(piece.rows)}
+    facts = {"twice": rod, "missing": piece.words}
+    return changed(subject, tables, subject.drawn), piece.names | {rod, AGAIN}, facts
+
+
+def driven_twice(subject: Subject, gap: float) -> Change:
     """The first input by two laws, whose values are `gap` apart."""
     tables, first = tables_of(subject), next(iter(subject.kinds))
     tables["inputs"][AGAIN] = deepcopy(tables["inputs"][first])
     inputs = {**subject.drawn, AGAIN: subject.drawn[first] + gap}
-    trial = try_scene(gap, changed(subject, tables, inputs), SOLVERS)
-    return named(trial, frozenset((AGAIN, first)))
+    return changed(subject, tables, inputs), frozenset((AGAIN, first)), {}
+
+
+def contradictory(subject: Subject, share: float) -> Change:
+    """A driven link with another beside it that agrees as drawn, and at no other pose."""
+    return _with_third_link(subject, share, True), frozenset((AGAIN, PIVOT, *subject.kinds)), {}
 
 
 def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
@@ -211,6 +217,11 @@ def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
     return changed(subject, tables, inputs if driven else subject.drawn, {PIVOT: as_tuple(pivot)})
 
 
+def held(subject: Subject, share: float) -> Content:
+    """The other link in place of the first input: one assembly, or too near to none."""
+    return _with_third_link(subject, share, False)
+
+
 def _turns_about_up(subject: Subject, places: Mapping[str, np.ndarray], moving: str) -> bool:
     """Whether a body with this point is hinged on the chassis along up."""
     chassis = subject.plain["bodies"]["chassis"]
@@ -220,17 +231,6 @@ def _turns_about_up(subject: Subject, places: Mapping[str, np.ndarray], moving: 
         if moving in points
         for first, last in itertools.combinations([name for name in points if name in chassis], 2)
     )
-
-
-def contradictory(subject: Subject, share: float) -> Trial:
-    """A driven link with another beside it that agrees as drawn, and at no other pose."""
-    trial = try_scene(share, _with_third_link(subject, share, True), SOLVERS)
-    return named(trial, frozenset((AGAIN, PIVOT, *subject.kinds)))
-
-
-def held(subject: Subject, share: float) -> Trial:
-    """The other link in place of the first input: one assembly, or too near to none."""
-    return try_scene(share, _with_third_link(subject, share, False), SOLVERS)
 
 
 @cache
@@ -251,135 +251,126 @@ def overlong(subject: Subject, share: float) -> Content:
     return other.absolute({**other.drawn, LENGTH: float(longest * (1 + Fraction(share)))})
 
 
-def too_long(subject: Subject, share: float) -> Trial:
-    """The scene of an overlong rod."""
-    return try_scene(share, overlong(subject, share), SOLVERS)
+def _family(
+    name: str,
+    why: str,
+    parameter: str,
+    behaviour: str,
+    change: Callable[[Subject, float], Change],
+    values: Sequence[float] | Callable[[Subject], tuple[float, ...]],
+    subjects: Sequence[Subject],
+    expected: Expected = REFUSED,
+) -> tuple[Case, ...]:
+    """Changes of mechanisms, of which pointcoord has to name what is at fault."""
+
+    def judged(subject: Subject, value: float, trial: Trial) -> Trial:
+        _, names, facts = change(subject, value)
+        return named(trial if not facts else replace(trial, facts=facts), names)
+
+    return family(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter=parameter,
+        behaviour=behaviour,
+        values=values,
+        scene=lambda subject, value: change(subject, value)[0],
+        expected=dict.fromkeys(SOLVERS, expected),
+        subjects=subjects,
+        judged=judged,
+        given=False,
+    )
 
 
-def _counted(count: int) -> tuple[float, ...]:
-    return tuple(float(n) for n in range(1, count + 1))
+def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject], tuple[float, ...]]:
+    """A number for each thing that a mechanism has; of mechanisms after the second, one amid them."""
 
+    def values(subject: Subject) -> tuple[float, ...]:
+        numbers = counted(len(found(subject)))
+        return numbers if subject.level else values_of(subject, numbers)
 
-@dataclass(frozen=True)
-class Change:
-    """A family of changes.
-
-    Attributes:
-        count: how many there are of a subject, for those that are counted; its values are these numbers.
-    """
-
-    name: str
-    why: str
-    parameter: str
-    behaviour: str
-    examine: Callable[[Subject, float], Trial]
-    expected: Expected = REFUSED
-    values: tuple[float, ...] = (*decades(), 0.0)
-    count: Callable[[Subject], int] | None = None
-
-    def of(self, subject: Subject) -> Case:
-        """The case of a mechanism."""
-        content = partial(overlong, subject) if self.examine is too_long else None
-        values = values_of(subject, self.values)
-        if self.count is not None:
-            numbers = _counted(self.count(subject))
-            values = numbers if subject.level else values_of(subject, numbers)
-        return Case(
-            name=f"{self.name}{subject.suffix}",
-            group=GROUP,
-            why=self.why,
-            parameter=self.parameter,
-            values=values,
-            expected=expected_of(subject, dict.fromkeys(SOLVERS, self.expected)),
-            behaviour=self.behaviour,
-            examine=partial(self.examine, subject),
-            content=content,
-            without_pose=content is not None,
-        )
+    return values
 
 
 PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
-# Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is nearer
-# to another than this is that one again, as in `link-twice`.
-NEARLY_ONE = decades(low=-11)
-MISSING, TWO, EXCHANGED = (
-    Change(
-        "link-missing",
-        "A point, or a body, is free to move although all inputs are held.",
-        PIECE,
-        "refused; pointcoord names what is missing, or what is free without it",
-        missing,
-        count=lambda subject: len(pieces(subject.plain)),
+EVERY = (*SUBJECTS, BESIDE)
+WITH_RODS = [subject for subject in SUBJECTS if subject.plain["rods"]]
+
+CASES: tuple[Case, ...] = (
+    *(
+        case
+        for name, subjects in (("link-missing", SUBJECTS), ("constraint-missing", (BESIDE,)))
+        for case in _family(
+            name,
+            "A point, or a body, is free to move although all inputs are held.",
+            PIECE,
+            "refused; pointcoord names what is missing, or what is free without it",
+            without,
+            _numbers(lambda subject: pieces(subject.plain)),
+            subjects,
+        )
     ),
-    Change(
+    *_family(
         "link-twice",
         "There are more rows than unknowns, and two of them say the same.",
         "number of the pair of points that are held apart",
         "right without it, or refused; pointcoord names one of the two, or the inputs that are too many then",
         twice,
+        _numbers(lambda subject: held_apart(subject.plain)),
+        [one for one in EVERY if held_apart(one.plain)],
         IF_ANY,
-        count=lambda subject: len(held_apart(subject.plain)),
     ),
-    Change(
+    *_family(
         "link-twice-for-another",
         "There are as many rows as unknowns, but some say nothing new and some are missing.",
         PIECE,
         "refused; pointcoord names what is missing or there twice",
         exchanged,
-        count=lambda subject: len(_exchangeable(subject)),
+        _numbers(exchangeable),
+        [one for one in EVERY if exchangeable(one)],
     ),
-)
-CHANGES = (
-    Change(
+    *_family(
         "input-twice",
         "Two inputs drive one coordinate and contradict each other by less and less; at last they agree.",
         "difference of their values, rad or mm",
         "refused, by pointcoord before there are values; it names one of them",
         driven_twice,
+        (*decades(), 0.0),
+        WITH_RODS,
     ),
-    Change(
+    *_family(
         "contradictory-links",
         "A further link agrees with the others as drawn and nowhere else.",
         PIVOT_AT,
         "refused as soon as anything moves; pointcoord names the further link, or the inputs",
         contradictory,
-        values=NEARLY_ONE,
+        # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
+        # nearer to another than this is that one again, as in `link-twice`.
+        decades(low=-11),
+        WITH_RODS,
     ),
-    Change(
-        "link-too-long",
-        "A rod is made longer than its ends can be apart, by less and less.",
-        "what it is too long by, in parts of the longest that closes",
-        "refused: there is no pose",
-        too_long,
+    *family(
+        name="link-too-long",
+        group=GROUP,
+        why="A rod is made longer than its ends can be apart, by less and less.",
+        parameter="what it is too long by, in parts of the longest that closes",
         values=decades(),
+        scene=overlong,
+        expected=dict.fromkeys(SOLVERS, REFUSED),
+        subjects=[one for one in WITH_RODS if one.name not in ANY_LENGTH],
     ),
-    Change(
-        "arm-held-by-a-third-link",
-        "A further link in place of an input holds the mechanism, by less and less; at last it is a copy.",
-        f"{PIVOT_AT}; then a copy of it",
-        "right from 1e-6 up, nearer right or refused",
-        held,
-        HELD,
-    ),
-)
-
-CASES: tuple[Case, ...] = (
-    *(
-        change.of(subject)
-        for change in (MISSING, TWO, EXCHANGED)
-        for subject in SUBJECTS
-        if change.count is not None and change.count(subject)
-    ),
-    replace(MISSING, name="constraint-missing").of(BESIDE),
-    *(change.of(BESIDE) for change in (TWO, EXCHANGED)),
-    *(
-        change.of(subject)
-        for change in CHANGES
-        for subject in SUBJECTS
+    *family(
+        name="arm-held-by-a-third-link",
+        group=GROUP,
+        why="A further link in place of an input holds the mechanism, by less and less; "
+        "at last it is a copy.",
+        parameter=f"{PIVOT_AT}; then a copy of it",
+        values=(*decades(), 0.0),
+        scene=held,
+        expected=dict.fromkeys(SOLVERS, HELD),
         # What is held by a link in place of its only input is driven by none.
-        if subject.plain["rods"]
-        and (change.examine is not held or len(subject.kinds) > 1)
-        and (change.examine is not too_long or subject.name not in ANY_LENGTH)
+        subjects=[one for one in WITH_RODS if len(one.kinds) > 1],
+        given=False,
     ),
 )

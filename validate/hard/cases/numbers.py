@@ -2,25 +2,41 @@
 
 A number that is none, infinite, huge or below the smallest normal one must be refused with a reason, or the
 answer must be right. Every place of a scene that holds a number is tried, with the other numbers left alone.
+
+Heave is tried by a law of every kind. It drives no coordinate: it is added to what was solved, so that
+nothing else meets its numbers and refuses them. What is too large to be added to anything must be refused
+with a reason. The reference gives up on a car that is displaced by 1e308 times its size. There it is the
+reference without heave, with the law's value, rate and acceleration added along up.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
-from validate.hard.case import IF_ANY, REFUSED, RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial
-from validate.hard.cases.links import GROUP, held_apart
-from validate.hard.family import BESIDE, SOLVERS, SUBJECTS, Content, Subject
-from validate.hard.trial import try_scene
+import numpy as np
+from numpy.typing import NDArray
 
+from pointcoord import Scene
+from pointcoord.numerics.rounding import EPS
+from validate.adjudication.reference_solution import reference_solution
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Solution
+from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
+from validate.hard.cases.links import GROUP, held_apart
+from validate.hard.classify import judged_answer
+from validate.hard.family import BESIDE, SUBJECTS, Content, Subject, counted, family
+from validate.hard.trial import solved
+
+Array = NDArray[np.float64]
 LEAST = math.ulp(0.0)  # 5e-324
 Place = tuple[str | int, ...]
-Pairs = tuple[tuple[str, str], ...]
+Pair = tuple[str, str]
 
 
 def content(subject: Subject = SUBJECTS[0]) -> Content:
@@ -54,9 +70,8 @@ def told(place: Place) -> str:
     return ".".join(str(key) for key in place)
 
 
-def with_number(place: Place, number: object, subject: Subject = SUBJECTS[0]) -> Content:
-    """The scene with another number at one place."""
-    whole = content(subject)
+def with_number(whole: Content, place: Place, number: object) -> Content:
+    """A scene, or a part of one, with another number at one place, where it is changed."""
     part: Any = whole
     for key in place[:-1]:
         part = part[key]
@@ -64,82 +79,19 @@ def with_number(place: Place, number: object, subject: Subject = SUBJECTS[0]) ->
     return whole
 
 
-def with_number_at(value: float, number: object, subject: Subject) -> Content:
-    """The scene with another number at the place of this number, counted from 1."""
-    return with_number(places(subject)[int(value) - 1], number, subject)
+def _place_at(subject: Subject, value: float) -> Place:
+    return places(subject)[int(value) - 1]
 
 
-def anywhere(value: float, number: object, subject: Subject) -> Trial:
-    """Tries a number at the place of a number counted from 1."""
-    trial = try_scene(value, with_number_at(value, number, subject), SOLVERS)
-    return replace(trial, facts={**trial.facts, "place": told(places(subject)[int(value) - 1])})
+def _some(subject: Subject, count: int, step: int = 1) -> tuple[float, ...]:
+    """Every number of the first car, or each of a step; a seventh of these of the second; one of others."""
+    numbers = counted(count)
+    if not subject.level:
+        return numbers[count // 2 : count // 2 + 1]
+    return numbers[:: step if subject is SUBJECTS[0] else 7 * step]
 
 
-@cache
-def pairs_of(subject: Subject, apart: bool) -> Pairs:
-    """The pairs that cannot be in one place, or all others."""
-    held = {frozenset(pair) for pair in held_apart(subject.plain)}
-    pairs = itertools.combinations(subject.car.points, 2)
-    return tuple(pair for pair in pairs if (frozenset(pair) in held) == apart)
-
-
-def in_one_place(value: float, pairs: Pairs, subject: Subject) -> Content:
-    """The scene with the second point of this pair, counted from 1, put on the first."""
-    onto, moved = pairs[int(value) - 1]
-    points = {**subject.car.points, moved: subject.car.points[onto]}
-    inputs = {**subject.home, "arm_angle": 1.65} if subject.level else subject.home
-    return subject.absolute(inputs, replace(subject.car, points=points))
-
-
-def coincident(value: float, pairs: Pairs, subject: Subject) -> Trial:
-    """Tries a car with the points of one pair in one place."""
-    onto, moved = pairs[int(value) - 1]
-    trial = try_scene(value, in_one_place(value, pairs, subject), SOLVERS)
-    return replace(trial, facts={**trial.facts, "place": f"{moved} on {onto}"})
-
-
-# A rod without length has no answer in the reference: which way its end lies is not drawn.
-PAIRS_BESIDE = tuple(
-    pair for pair in itertools.combinations(BESIDE.car.points, 2) if pair != ("strut_top", "strut_rod_end")
-)
-# Pairs that may be in one place in any car: what the knuckle carries is no joint, nor is the rack's middle.
-SOUND = (
-    ("rack_centre", "tie_rod_inner"),
-    *itertools.product(
-        ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer"), ("wheel_centre", "wheel_axis_inner")
-    ),
-)
-
-
-def _counted(number: int) -> tuple[float, ...]:
-    return tuple(float(n) for n in range(1, number + 1))
-
-
-def _case(
-    name: str,
-    why: str,
-    examine: Callable[[float], Trial],
-    values: tuple[float, ...],
-    expected: Expected,
-    parameter: str = "number of the place in the scene",
-    content: Callable[[float], Content] | None = None,
-    sound: Callable[[float], bool] | None = None,
-) -> Case:
-    behaviour = {REFUSED: "refused, by all", RIGHT: "right, by all"}.get(expected, "right, or refused")
-    return Case(
-        name=name,
-        group=GROUP,
-        why=why,
-        parameter=parameter,
-        values=values,
-        expected=dict.fromkeys(SOLVERS, expected),
-        behaviour=behaviour,
-        examine=examine,
-        content=content,
-        also_answered=tuple(v for v in values if sound is not None and sound(v)),
-    )
-
-
+# Name, why, the number, what has to come of it.
 NUMBERS: tuple[tuple[str, str, object, Expected], ...] = (
     ("not-a-number", "A NaN spreads through everything that it meets.", math.nan, REFUSED),
     ("infinity", "An infinity makes a NaN of every difference.", math.inf, REFUSED),
@@ -160,70 +112,235 @@ NUMBERS: tuple[tuple[str, str, object, Expected], ...] = (
 PHASE = "inputs.rack.sine.phase"
 SMALL = (PHASE, "inputs.heave.table.values.3", "mechanism.points.lower_ball_joint.2")
 HARMLESS = {"huge": (PHASE,), "minus-huge": (PHASE,), "tiny": SMALL, "denormal": SMALL}
-EVERY_PAIR = "number of the pair of points"
 
 
-def _is_harmless(value: float, name: str, subject: Subject) -> bool:
-    return told(places(subject)[int(value) - 1]) in HARMLESS.get(name, ())
+def _with_place(trial: Trial, place: str) -> Trial:
+    return replace(trial, facts={**trial.facts, "place": place})
 
 
-def _cases(subject: Subject) -> tuple[Case, ...]:
-    # Of the second car every seventh place or pair must do, of the others one amid them.
-    first, second = subject is SUBJECTS[0], bool(subject.level)
+def _number_case(
+    subject: Subject, name: str, why: str, number: object, expected: Expected
+) -> tuple[Case, ...]:
+    def scene(one: Subject, value: float) -> Content:
+        return with_number(content(one), _place_at(one, value), number)
 
-    def some(count: int, step: int = 1) -> tuple[float, ...]:
-        numbers = _counted(count)
-        return numbers[:: 7 ** (not first) * step] if second else numbers[count // 2 : count // 2 + 1]
+    def is_harmless(one: Subject, value: float) -> bool:
+        return told(_place_at(one, value)) in HARMLESS.get(name, ())
 
-    suffix, every = subject.suffix, len(places(subject))
-    apart, others = pairs_of(subject, True), pairs_of(subject, False)
-    return (
-        _case(
-            f"link-without-length{suffix}",
-            "Two points that a link or an axis holds apart are drawn in one place.",
-            partial(coincident, pairs=apart, subject=subject),
-            _counted(len(apart)) if second else some(len(apart)),
-            # Elsewhere two rods may meet in one point of a body, and a crank have no length.
-            REFUSED if subject.level else IF_ANY,
-            EVERY_PAIR,
-        ),
-        _case(
-            f"points-in-one-place{suffix}",
-            "Two points without a link are drawn in one place, which may be a mechanism or not.",
-            partial(coincident, pairs=others, subject=subject),
-            some(len(others)),
-            RIGHT_OR_REFUSED,
-            EVERY_PAIR,
-            partial(in_one_place, pairs=others, subject=subject),
-            lambda value: others[int(value) - 1] in SOUND,
-        ),
-        *(
-            # A scene with a tiny number is solved, which takes time: every third place must do.
-            _case(
-                f"{name}{suffix}",
-                why,
-                partial(anywhere, number=number, subject=subject),
-                some(every, 3 if name == "tiny" else 1),
-                ends,
-                # What has to be refused is no scene, and cannot be given to a solver.
-                content=None if ends == REFUSED else partial(with_number_at, number=number, subject=subject),
-                sound=partial(_is_harmless, name=name, subject=subject),
-            )
-            for name, why, number, ends in NUMBERS
-        ),
+    return family(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter="number of the place in the scene",
+        # A scene with a tiny number is solved, which takes time: every third place must do.
+        values=partial(_some, count=len(places(subject)), step=3 if name == "tiny" else 1),
+        scene=scene,
+        expected=expected,
+        subjects=[subject],
+        strict=True,
+        judged=lambda one, value, trial: _with_place(trial, told(_place_at(one, value))),
+        # What has to be refused is no scene, and cannot be given to a solver.
+        given=expected != REFUSED,
+        also_answered=is_harmless,
+    )
+
+
+@cache
+def pairs_of(subject: Subject, apart: bool) -> tuple[Pair, ...]:
+    """The pairs that cannot be in one place, or all others."""
+    held = {frozenset(pair) for pair in held_apart(subject.plain)}
+    pairs = itertools.combinations(subject.car.points, 2)
+    return tuple(pair for pair in pairs if (frozenset(pair) in held) == apart)
+
+
+# A rod without length has no answer in the reference: which way its end lies is not drawn.
+PAIRS_BESIDE = tuple(
+    pair for pair in itertools.combinations(BESIDE.car.points, 2) if pair != ("strut_top", "strut_rod_end")
+)
+# Pairs that may be in one place in any car: what the knuckle carries is no joint, nor is the rack's middle.
+SOUND = (
+    ("rack_centre", "tie_rod_inner"),
+    *itertools.product(
+        ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer"), ("wheel_centre", "wheel_axis_inner")
+    ),
+)
+
+
+def in_one_place(pairs: Sequence[Pair], subject: Subject, value: float) -> Content:
+    """The scene with the second point of this pair, counted from 1, put on the first."""
+    onto, moved = pairs[int(value) - 1]
+    points = {**subject.car.points, moved: subject.car.points[onto]}
+    inputs = {**subject.home, "arm_angle": 1.65} if subject.level else subject.home
+    return subject.absolute(inputs, replace(subject.car, points=points))
+
+
+def _pair_case(
+    subject: Subject,
+    name: str,
+    why: str,
+    pairs: Sequence[Pair],
+    expected: Expected = RIGHT_OR_REFUSED,
+    every: bool = False,
+    given: bool = True,
+) -> tuple[Case, ...]:
+    def judged(one: Subject, value: float, trial: Trial) -> Trial:
+        onto, moved = pairs[int(value) - 1]
+        return _with_place(trial, f"{moved} on {onto}")
+
+    return family(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter="number of the pair of points",
+        values=lambda one: counted(len(pairs)) if every else _some(one, len(pairs)),
+        scene=partial(in_one_place, pairs),
+        expected=expected,
+        subjects=[subject],
+        strict=True,
+        judged=judged,
+        given=given,
+        also_answered=lambda one, value: given and pairs[int(value) - 1] in SOUND,
+    )
+
+
+def _cases(subject: Subject) -> Iterator[Case]:
+    yield from _pair_case(
+        subject,
+        "link-without-length",
+        "Two points that a link or an axis holds apart are drawn in one place.",
+        pairs_of(subject, True),
+        # Elsewhere two rods may meet in one point of a body, and a crank have no length.
+        REFUSED if subject.level else IF_ANY,
+        every=bool(subject.level),
+        given=False,
+    )
+    yield from _pair_case(
+        subject,
+        "points-in-one-place",
+        "Two points without a link are drawn in one place, which may be a mechanism or not.",
+        pairs_of(subject, False),
+    )
+    for row in NUMBERS:
+        yield from _number_case(subject, *row)
+
+
+# Heave by a law of every kind, and every place of each.
+LAWS: dict[str, dict[str, Any]] = {
+    "constant": {"constant": 10.0},
+    "polynomial": {"polynomial": [10.0, 20.0, 30.0]},
+    "sine": {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}},
+}
+NOT_FINITE = (math.nan, math.inf, -math.inf)
+EXTREME = (1.2e308, -1.2e308, 1e-308, LEAST)
+# Their squares, which an acceleration takes, are at the end of the range and beyond it.
+FREQUENCIES = (1e100, 1e200)
+Heave = tuple[Place, float]
+
+
+def law(place: Place, number: float) -> dict[str, Any]:
+    """A law with another number at one place; the first key of that is its kind."""
+    kind = str(place[0])
+    return with_number(deepcopy(LAWS[kind]), place, number)
+
+
+def _each(numbers: Sequence[float]) -> tuple[Heave, ...]:
+    return tuple((place, n) for kind in LAWS for place in _places(LAWS[kind]) for n in numbers)
+
+
+def heaved(heave: dict[str, Any] | None, subject: Subject = SUBJECTS[0]) -> Content:
+    """A scene in which all inputs move; of body rates and angles heave is no part."""
+    effects = ("velocity", "acceleration")
+    return subject.content((0.0, 0.1), (0.0, 5.0), heave, stop=0.2, samples=2, effects=effects)
+
+
+def displaced(trial: Trial, heave: dict[str, Any], subject: Subject = SUBJECTS[0]) -> Trial:
+    """The trial, with what the reference could not judge held to that of the car without heave, displaced."""
+    if all(answer.outcome != "unjudged" for answer in trial.answers):
+        return trial
+    scene, plain = (Scene.from_mapping(heaved(h, subject)) for h in (heave, None))
+    law = rates(scene.inputs["heave"], scene.instants)
+    reference = added(reference_solution(plain), law, scene.mechanism.up)
+    answers = []
+    for answer in trial.answers:
+        one = solved(answer.formulation, scene) if answer.outcome == "unjudged" else answer
+        answers.append(one if isinstance(one, Answer) else judged_answer(scene, one, reference))
+    return Trial(trial.value, tuple(answers), {**trial.facts, "reference": "that without heave, displaced"})
+
+
+def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
+    """A solution displaced along up by a law's value, rate and acceleration, shape (N, 3)."""
+    more = dict(zip(("position", "velocity", "acceleration"), heave.T, strict=True))
+    numbers, claims = {}, {}
+    for quantity, size in more.items():
+        away = size[:, None] * np.array(up)
+        sums = {name: array + away for name, array in home.numbers[quantity].items()}
+        numbers[quantity] = sums
+        claims[quantity] = _rounded(home.accuracy.claims[quantity], sums, away)
+    return replace(home.with_numbers(numbers), accuracy=home.accuracy.with_claims(claims))
+
+
+def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], away: Array) -> dict[str, Array]:
+    """What is claimed at home; what is added is rounded once, and so is the sum."""
+    return {name: claims[name] + EPS * np.abs(array) + EPS * np.abs(away) for name, array in sums.items()}
+
+
+def _heave_case(
+    subject: Subject, name: str, why: str, every: tuple[Heave, ...], expected: Expected
+) -> tuple[Case, ...]:
+    def law_at(value: float) -> dict[str, Any]:
+        return law(*every[int(value) - 1])
+
+    def judged(one: Subject, value: float, trial: Trial) -> Trial:
+        place, number = every[int(value) - 1]
+        trial = _with_place(displaced(trial, law_at(value), one), told(place))
+        return replace(trial, facts={**trial.facts, "number": f"{number:g}"})
+
+    def is_harmless(one: Subject, value: float) -> bool:
+        """A phase is taken modulo a turn, and what is small is as good as 0."""
+        place, number = every[int(value) - 1]
+        return expected != REFUSED and (place[-1] == "phase" or abs(number) < 1.0)
+
+    return family(
+        name=name,
+        group=GROUP,
+        why=why,
+        parameter="number of the place and what stands there",
+        values=counted(len(every)),
+        scene=lambda one, value: heaved(law_at(value), one),
+        expected=expected,
+        subjects=[subject],
+        strict=True,
+        judged=judged,
+        given=expected != REFUSED,
+        also_answered=is_harmless,
+    )
+
+
+def _heave_cases(subject: Subject) -> Iterator[Case]:
+    yield from _heave_case(
+        subject,
+        "heave-not-finite",
+        "A displacement of the whole car that is no number makes none of every place.",
+        _each(NOT_FINITE),
+        REFUSED,
+    )
+    yield from _heave_case(
+        subject,
+        "heave-huge-or-tiny",
+        "Heave meets no constraint that would refuse it, and its rates overflow before it does.",
+        (*_each(EXTREME), *((("sine", "angular_frequency"), number) for number in FREQUENCIES)),
+        RIGHT_OR_REFUSED,
     )
 
 
 CASES: tuple[Case, ...] = (
     *(case for subject in SUBJECTS for case in _cases(subject)),
-    _case(
-        "points-in-one-place-beside",
+    *_pair_case(
+        BESIDE,
+        "points-in-one-place",
         "Of a strut beside its ball joint any two points are drawn in one place, links without length too.",
-        partial(coincident, pairs=PAIRS_BESIDE, subject=BESIDE),
-        _counted(len(PAIRS_BESIDE)),
-        RIGHT_OR_REFUSED,
-        EVERY_PAIR,
-        partial(in_one_place, pairs=PAIRS_BESIDE, subject=BESIDE),
-        lambda value: PAIRS_BESIDE[int(value) - 1] in SOUND,
+        PAIRS_BESIDE,
+        every=True,
     ),
+    *(case for subject in SUBJECTS if subject.heaves for case in _heave_cases(subject)),
 )

@@ -72,7 +72,6 @@ CASES: tuple[Case, ...] = (
             "absolute": RIGHT_OR_REFUSED,
             "relative": RIGHT_OR_REFUSED,
         },
-        behaviour="pointcoord is right within its bound, by however little; the absolute model may refuse",
     ),
     scene_case(
         name="turn-at-a-coarse-tolerance",
@@ -103,6 +102,5 @@ CASES: tuple[Case, ...] = (
             "absolute": RIGHT_OR_REFUSED,
             "relative": RIGHT_OR_REFUSED,
         },
-        behaviour="right, as it is drawn, or refused with a reason",
     ),
 )

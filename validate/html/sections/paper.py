@@ -12,8 +12,8 @@ from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.report import findings_table, paper_sentence, paper_tables
 from validate.output.table import Table
+from validate.paper.errata import errata
 from validate.paper.figures import Figure, figures
-from validate.paper.measured_errata import errata
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow
 
 FIGURES = (

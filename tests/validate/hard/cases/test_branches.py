@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -13,16 +12,8 @@ from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import paper_car
 from validate.hard.case import unexpected
-from validate.hard.cases.branches import CASES, flat_car
-from validate.hard.cases.counting import (
-    DEGREE,
-    MEETINGS,
-    beside_meeting,
-    counted,
-    near_greatest_rack,
-    near_lowest_arm,
-)
-from validate.hard.family import NAMED, Subject
+from validate.hard.cases.branches import CASES, DEGREE, MEETINGS, STARTS, flat_car
+from validate.hard.family import NAMED
 from validate.hard.last_values import reachable
 from validate.hard.trial import try_scene
 
@@ -47,35 +38,23 @@ def test_branches_meet_where_the_reference_loses_its_pose(car: str) -> None:
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("share", [1.0, 1e-6, 1e-11])
 def test_the_flat_drawing_stands_at_its_height_and_on_its_side(share: float, mirrored: bool) -> None:
-    p = flat_car(share, mirrored)
-    a, b, c = (p[name] - p["lower_ball_joint"] for name in ("strut_lower", "tie_rod_inner", "tie_rod_outer"))
-    height = float(np.cross(a, b) @ c) / float(np.linalg.norm(np.cross(a, b)))
-    whole = flat_car(1.0, False)["tie_rod_outer"] - p["lower_ball_joint"]
-    expected = (
-        (-share if mirrored else share) * float(np.cross(a, b) @ whole) / np.linalg.norm(np.cross(a, b))
-    )
+    p, whole = flat_car(share, mirrored), flat_car(1.0, False)
+    a, b = (p[name] - p["lower_ball_joint"] for name in ("strut_lower", "tie_rod_inner"))
+    normal = np.cross(a, b) / np.linalg.norm(np.cross(a, b))
+    height, drawn = (float(normal @ (q["tie_rod_outer"] - q["lower_ball_joint"])) for q in (p, whole))
     # Coordinates below 600 mm are rounded to 1e-13 mm.
-    assert abs(height - expected) < 1e-12
-    assert (height * expected > 0.0) or abs(expected) < 1e-12
+    assert abs(height - (-share if mirrored else share) * drawn) < 1e-12
 
 
-@pytest.mark.parametrize(
-    "name", ["crooked-drawing", "flat-drawing", "far-start-rack", "assemblies-counted-arm"]
-)
+@pytest.mark.parametrize("name", ["crooked-drawing", "flat-drawing", "far-start-rack"])
 def test_the_branch_of_the_drawing_is_kept_far_from_the_singular_place(name: str) -> None:
     case = BY_NAME[name]
     surely = max(v for v in case.values if not case.expected["pointcoord"].met(v, "refused"))
     assert surely >= 0.1
-    trial = case.examine(surely)
-    assert {answer.outcome for answer in trial.answers} == {"right"}
+    assert {answer.outcome for answer in case.examine(surely).answers} == {"right"}
 
 
-def test_a_gap_is_not_leapt() -> None:
-    trial = BY_NAME["branches-met"].examine(1e-3)
-    assert {answer.outcome for answer in trial.answers} == {"refused"}
-
-
-def mirror(scene: Scene, solution: Solution) -> Solution:
+def mirror(solution: Solution) -> Solution:
     """The other assembly of the same pose: the tie rod's outer end reflected in the plane of the rest."""
     p = solution.position
     ball = p["lower_ball_joint"]
@@ -88,9 +67,8 @@ def mirror(scene: Scene, solution: Solution) -> Solution:
 
 def test_a_jump_to_the_mirror_image_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     content = paper_car((1.5, 0.1), (0.0, 20.0), stop=0.5)
-    scene = Scene.from_mapping(content)
-    straight = formulation("absolute").solve(scene)
-    other = mirror(scene, straight)
+    straight = formulation("absolute").solve(Scene.from_mapping(content))
+    other = mirror(straight)
     # The mirror image closes all links as well.
     for end in ("lower_ball_joint", "strut_lower", "tie_rod_inner"):
         lengths = [
@@ -99,33 +77,20 @@ def test_a_jump_to_the_mirror_image_is_wrong(monkeypatch: pytest.MonkeyPatch) ->
         assert np.allclose(lengths[0], lengths[1], rtol=1e-14, atol=0.0)
 
     class Jumping:
-        name = "absolute"
-
         def solve(self, scene: Scene) -> Solution:
             return other
 
     monkeypatch.setattr("validate.hard.trial.formulation", lambda _: Jumping())
-    trial = try_scene(1.0, content, ("absolute",))
-    assert trial.answers[0].outcome == "wrong"
+    assert try_scene(1.0, content, ("absolute",)).answers[0].outcome == "wrong"
 
 
-@pytest.mark.parametrize("pose", [near_greatest_rack, near_lowest_arm, beside_meeting])
-def test_several_assemblies_are_found_far_from_a_singular_pose(
-    pose: Callable[[Subject, float], tuple[float, float]],
-) -> None:
-    facts = counted(0.1, pose).facts
-    # Both sides of the tie rod at least.
-    assert 2.0 <= float(facts["assemblies found, proven"]) <= DEGREE
-    assert float(facts["starts"]) >= 1000.0
-
-
-@pytest.mark.parametrize("share", BY_NAME["assemblies-counted-drawing"].values)
-def test_at_the_drawing_and_beside_it_the_drawn_one_of_several_assemblies_is_answered(
-    share: float,
-) -> None:
-    case = BY_NAME["assemblies-counted-drawing"]
-    trial = case.examine(share)
+@pytest.mark.parametrize("where", ["drawing", "rack", "arm", "meeting"])
+def test_of_several_assemblies_that_of_the_drawing_is_answered(where: str) -> None:
+    case = BY_NAME[f"assemblies-counted-{where}"]
+    trial = case.examine(case.values[0])
     assert not unexpected(case, trial)
-    found = float(trial.facts["assemblies found, proven"])
-    assert 2.0 <= found <= DEGREE
-    assert all(answer.condition is not None and answer.condition < 1e3 for answer in trial.answers)
+    # Both sides of the tie rod at least.
+    assert 2.0 <= float(trial.facts["assemblies found, proven"]) <= DEGREE
+    assert trial.facts["starts"] == STARTS
+    if where == "drawing":
+        assert all(answer.condition is not None and answer.condition < 1e3 for answer in trial.answers)

@@ -35,9 +35,3 @@ def test_a_turn_leads_to_another_branch_where_the_branch_is_not_followed(
 
     monkeypatch.setattr(pointcoord.solve.taylor, "on_branch", blind)
     assert "wrong" in outcomes(case, near)
-
-
-def test_a_folded_strut_is_solved_as_it_is_drawn() -> None:
-    case = BY_NAME["strut-drawn-folded"]
-    assert outcomes(case, (1.0, 1e-2)) == ["right", "right"]
-    assert outcomes(case, (1.0, 1e-2), "absolute") == ["right", "right"]

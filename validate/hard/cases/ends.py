@@ -1,4 +1,4 @@
-"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock.
+"""The ends of the inputs, where arm, tie rod or the knuckle's upper end lock: near each, and beyond it.
 
 An end is a fold: two assemblies meet there as the root of the distance, rates grow as its inverse root and
 the condition number with them. A value held inside an end has a pose, one beyond it has none.
@@ -15,49 +15,30 @@ from validate.hard.family import NAMED, OTHERS, Content, Subject, hyphens
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.trial import scene_case
 
-ARM_GROUP = "The arm at its dead points"
-TOGGLE_GROUP = "Tie rod and steering arm in line"
-UPPER_GROUP = "The knuckle's upper end out of reach"
-OTHER_GROUP = "Inputs at their ends, of every mechanism"
-DISTANCE = "distance from the end, in parts of the input's range"
-
-# Where pointcoord has to be right, by how it comes near the end. Held: a path is followed until its steps
-# shrink below 1e-13 of it, which is at 1e-12 of the way to the end from the drawing, half a range away; ten
-# times that is always reached. Moving: a motion goes on while a segment, some tenth of the time that is left,
-# is 1e-15 of the whole. Two branches 1e-6 of the car apart, the root of 1e-12, are told apart where the
-# condition number, 1e6 or some ten times that, leaves half of the digits; ten times that always is.
-RIGHT_FROM = {"held": 1e-11, "moving": 1e-11}
+# Down to where each model has to be right; nearer it may refuse with a reason.
+# pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which is at 1e-12 of the way
+# to the end from the drawing, half a range away; ten times that is always reached. Moving: a motion goes on
+# while a segment, some tenth of the time that is left, is 1e-15 of the whole. Two branches 1e-6 of the car
+# apart, the root of 1e-12, are told apart where the condition number, 1e6 or some ten times that, leaves half
+# of the digits; ten times that always is.
 # The absolute model stops where its condition number exceeds 6.7e7, the inverse root of the rounding unit. In
 # its own scaling that is 10 to 40 over the root of the distance, so it stops below (40 / 6.7e7)^2 = 4e-13 of
 # the range, and at ten times the nearest decade above that no end is near enough to be a reason.
-ABSOLUTE_FROM = 1e-11
 # The relative model stops where the error that rounding may make of a pose changes its Jacobian by an eighth.
 # At the share d of the range from an end that is 2e-15 / d, times five deviations and a factor of the car
 # that is a few: some 1e-12, and ten times that is always reached.
-RELATIVE_FROM = 1e-11
+NEAR_END = dict.fromkeys(("pointcoord", "absolute", "relative"), Expected(("right", "refused"), 1e-11))
 FULL = decades(-12, -1)
 COARSE = (*decades(-11, -1)[::2], 1e-2, 1e-12)
 SPARSE = (1e-1, 1e-4, 1e-8, 1e-12)
-OUTSIDE = "refused: there is no pose"
-LAWS = ("held", "moving", "beyond")
-
-
-def near_end(law: str) -> dict[str, Expected]:
-    """Right down to where each model can still tell the two assemblies apart; then refused with a reason."""
-    return {
-        "pointcoord": Expected(("right", "refused"), RIGHT_FROM[law]),
-        "absolute": Expected(("right", "refused"), ABSOLUTE_FROM),
-        "relative": Expected(("right", "refused"), RELATIVE_FROM),
-    }
-
-
-def inside(law: str) -> str:
-    """What is expected of values inside an end."""
-    return (
-        f"right within the bound, by pointcoord down to {RIGHT_FROM[law]:g}, by the absolute model down to "
-        f"{ABSOLUTE_FROM:g} and by the relative one down to {RELATIVE_FROM:g}; nearer right or refused, with "
-        "a reason"
-    )
+WAYS = (False, True)
+HIGHEST, LEAST = ("highest", "lowest"), ("least", "greatest")  # the ball joint is highest at the least angle
+# How the input comes to its end, and what that adds to the reason.
+LAWS = {
+    "held": "",
+    "moving": "; the motion ends near it, with rates as the inverse root of the distance",
+    "beyond": "; the input is beyond that",
+}
 
 
 def near_content(
@@ -80,13 +61,6 @@ def near_content(
     return subject.absolute({**held, driven: way}, stop=1.0 if law == "moving" else None)
 
 
-MORE = {
-    "held": "",
-    "moving": "; the motion ends near it, with rates as the inverse root of the distance",
-    "beyond": "; the input is beyond that",
-}
-
-
 def _cases(
     name: str,
     group: str,
@@ -97,35 +71,27 @@ def _cases(
     arm_angle: float | None = None,
     values: tuple[float, ...] | None = None,
     newton: bool = False,
-    laws: Sequence[str] = LAWS,
+    laws: Sequence[str] = tuple(LAWS),
     suffix: str = "",
 ) -> tuple[Case, ...]:
-    def expected(law: str) -> dict[str, Expected]:
-        found = (
-            dict.fromkeys(("pointcoord", "absolute", "relative"), REFUSED)
-            if law == "beyond"
-            else near_end(law)
-        )
-        return found | ({"pointcoord-newton": found["pointcoord"]} if newton else {})
-
-    return tuple(
-        scene_case(
+    def case(law: str) -> Case:
+        beyond = law == "beyond"
+        expected = dict.fromkeys(NEAR_END, REFUSED) if beyond else NEAR_END
+        return scene_case(
             name=f"{name}{f'-{law}' if len(laws) > 1 else ''}{suffix}",
             group=group,
-            why=why + MORE[law],
-            parameter=DISTANCE + (", beyond it" if law == "beyond" else ""),
+            why=why + LAWS[law],
+            parameter="distance from the end, in parts of the input's range"
+            + (", beyond it" if beyond else ""),
             # A motion takes longest; with another car than the first few values must do.
             values=values or (COARSE if law == "moving" and suffix else FULL),
             scene=partial(near_content, NAMED[car], driven, ahead, arm_angle, law),
-            expected=expected(law),
-            behaviour=OUTSIDE if law == "beyond" else inside(law),
+            expected=expected | ({"pointcoord-newton": expected["pointcoord"]} if newton else {}),
         )
-        for law in laws
-    )
+
+    return tuple(case(law) for law in laws)
 
 
-WAYS = (False, True)
-HIGHEST, LEAST = ("highest", "lowest"), ("least", "greatest")  # the ball joint is highest at the least angle
 ARMS = (("paper", "", None), ("other", "-turned", None), ("short-arm", "-wishbone", SPARSE))
 RACKS = (
     ("paper", "", SQUARE, "", None),
@@ -134,6 +100,7 @@ RACKS = (
     ("paper", "", 1.25, "-arm-high", None),
     ("paper", "", 1.9, "-arm-low", None),
 )
+UPPER_GROUP = "The knuckle's upper end out of reach"
 CASES: tuple[Case, ...] = (
     *(
         case
@@ -141,7 +108,7 @@ CASES: tuple[Case, ...] = (
         for ahead in WAYS
         for case in _cases(
             f"arm-{HIGHEST[ahead]}",
-            ARM_GROUP,
+            "The arm at its dead points",
             f"the ball joint is {HIGHEST[ahead]} on its circle: its height says no more",
             car,
             "arm_angle",
@@ -156,7 +123,7 @@ CASES: tuple[Case, ...] = (
         for ahead in WAYS
         for case in _cases(
             f"rack-{LEAST[ahead]}{where}",
-            TOGGLE_GROUP,
+            "Tie rod and steering arm in line",
             f"the rack is at its {LEAST[ahead]} travel at {angle:.4g} rad: "
             "tie rod and steering arm lie in line",
             car,
@@ -164,7 +131,7 @@ CASES: tuple[Case, ...] = (
             ahead,
             angle,
             values,
-            laws=("held",) if where else LAWS,
+            laws=("held",) if where else tuple(LAWS),
             suffix=suffix,
         )
     ),
@@ -194,7 +161,7 @@ CASES: tuple[Case, ...] = (
         for driven, ahead in ends_of(subject)
         for case in _cases(
             f"{hyphens(driven)}-{LEAST[ahead]}",
-            OTHER_GROUP,
+            "Inputs at their ends, of every mechanism",
             f"{driven} is at its {LEAST[ahead]} and goes no further, the other inputs as drawn",
             subject.name,
             driven,

@@ -1,4 +1,4 @@
-"""Far and mixed cars are what they are said to be, and an error that grows with the distance is found out."""
+"""Far and scaled cars are what they are said to be, and errors that grow with the distance are found out."""
 
 from __future__ import annotations
 
@@ -12,38 +12,21 @@ from pointcoord import Scene
 from validate.cars.paper_car import PAPER
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.hard.cases.far_and_mixed import AWAY, CASES, SOLVERS, far, lengthened, moved_car, scaled_car
-from validate.hard.cases.near_points import assembled
-
-BY_NAME = {case.name: case for case in CASES}
+from validate.hard.cases.far import AWAY, far, heaved_back, moved_car, scaled_car
+from validate.hard.family import PAPER as STRUT
+from validate.hard.family import SOLVERS
 
 
 @pytest.mark.parametrize("distance", [1.0, 1e9, 1e12])
-def test_the_shift_is_exact(distance: float) -> None:
+def test_a_shift_of_the_car_is_exact_and_so_is_the_heave_that_brings_it_back(distance: float) -> None:
     points = moved_car(distance)["mechanism"]["points"]
+    content = heaved_back(STRUT, 1.0 / distance)
+    back = Fraction(content["inputs"]["heave"]["polynomial"][0])
     for name, place in PAPER.items():
         for axis in range(3):
             shift = Fraction(distance) * Fraction(AWAY[axis])
             assert Fraction(points[name][axis]) - shift == Fraction(place[axis])
-
-
-def test_every_length_is_scaled_and_no_angle() -> None:
-    content = scaled_car(2.0**-19)
-    plain = scaled_car(1.0)
-    for name, place in PAPER.items():
-        assert content["mechanism"]["points"][name] == [2.0**-19 * x for x in place]
-    assert content["inputs"]["arm_angle"] == plain["inputs"]["arm_angle"]
-    rack = plain["inputs"]["rack"]["polynomial"]
-    assert content["inputs"]["rack"]["polynomial"] == [2.0**-19 * x for x in rack]
-
-
-@pytest.mark.parametrize("value", [1.0, 1e-4])
-def test_a_long_tie_rod_is_as_long_as_the_value_says(value: float) -> None:
-    p = lengthened(value, ("tie_rod_inner", "rack_centre"), "tie_rod_outer")
-    whole = float(np.linalg.norm(assembled()["tie_rod_inner"] - assembled()["tie_rod_outer"]))
-    assert np.linalg.norm(p["tie_rod_inner"] - p["tie_rod_outer"]) == pytest.approx(whole / value, rel=1e-12)
-    assert np.array_equal(p["tie_rod_inner"], p["rack_centre"])
-    assert np.array_equal(p["lower_ball_joint"], assembled()["lower_ball_joint"])
+        assert Fraction(content["mechanism"]["points"][name][2]) + back == Fraction(place[2])
 
 
 @pytest.mark.parametrize("value", [1e-3, 1e-6, 1e-9])
@@ -88,7 +71,11 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
 
 @pytest.mark.parametrize("scale", [2.0**-19, 2.0**11])
 def test_a_car_scaled_by_a_power_of_two_moves_by_scaled_bits(scale: float) -> None:
-    plain, scaled = (Scene.from_mapping(scaled_car(s)) for s in (1.0, scale))
+    content, whole = scaled_car(scale), scaled_car(1.0)
+    for name, drawn in PAPER.items():
+        assert content["mechanism"]["points"][name] == [scale * x for x in drawn]
+    assert content["inputs"]["arm_angle"] == whole["inputs"]["arm_angle"]
+    plain, scaled = Scene.from_mapping(whole), Scene.from_mapping(content)
     for name in ("pointcoord", "pointcoord-newton"):
         one, other = formulation(name).solve(plain), formulation(name).solve(scaled)
         for point, place in one.position.items():

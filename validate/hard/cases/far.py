@@ -1,4 +1,4 @@
-"""Cars far from the origin, very small and very large cars, and links of very different length in one car.
+"""Cars far from the origin, and very small and very large cars.
 
 The error has to grow with the size of the mechanism, not with its distance from the origin. The paper's
 hardpoints are whole millimetres, so a shift by whole millimetres is exact, and so is a scale by a power of
@@ -7,7 +7,7 @@ two: nothing changes but the place or the unit. The car at home says what a rate
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache, partial
 
@@ -22,10 +22,10 @@ from validate.cars.car import moved, scaled
 from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.cars import SQUARE
 from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, decades
-from validate.hard.cases.near_points import assembled, motion_from, nearer
+from validate.hard.cases.points import OUT_OF_PROPORTION
 from validate.hard.classify import judged_answer
-from validate.hard.family import BESIDE, NAMED, SOLVERS, SUBJECTS, Content, Subject, family, values_of
-from validate.hard.trial import Tried, scene_case, solved, try_scene
+from validate.hard.family import BESIDE, SOLVERS, SUBJECTS, Content, Subject, family, values_of
+from validate.hard.trial import Tried, solved, try_scene
 
 Array = NDArray[np.float64]
 
@@ -37,8 +37,6 @@ PLACED = 8.0
 # A car at home may happen to be off by less than another by this factor: errors of a few roundings each.
 LUCKY = 16.0
 RATES = tuple(quantity for quantity in QUANTITIES if quantity != "position")
-# A thousand times the rest of the car is as mixed as parts of one machine are.
-MIXED = Expected(("right", "refused"), right_from=1e-3)
 
 # From home, rad and mm over s: from 1.5 rad where that is a right angle.
 RAD, MM = (1.5 - SQUARE, 0.25, 0.125), (0.0, 30.0, 10.0)
@@ -115,9 +113,8 @@ def _as_at_home(answer: Answer, tried: Tried, subject: Subject) -> Answer:
         )
         judged = judged_answer(tried.scene, strict, tried.reference)
         if judged.outcome != "right":
-            return replace(
-                answer, outcome="wrong", reason=f"by the bounds of the car at home: {judged.reason}"
-            )
+            reason = f"by the bounds of the car at home: {judged.reason}"
+            return replace(answer, outcome="wrong", reason=reason)
     return answer
 
 
@@ -146,108 +143,6 @@ def heaved_back(subject: Subject, value: float) -> Content:
     return subject.content(RAD, MM, (-distance, 20.0), car=there, stop=0.4)
 
 
-def lengthened(value: float, points: tuple[str, ...], base: str, car: str = "paper") -> dict[str, Array]:
-    """Points moved away from another until they are 1 / value times as far from it."""
-    p = assembled(car)
-    return {n: p[base] + (x - p[base]) / value if n in points else x for n, x in p.items()}
-
-
-def mixed(car: str, points: Callable[[float], Mapping[str, Array]], shrinking: bool, value: float) -> Content:
-    """A motion of a car with a link that is out of proportion; a short link follows no more than itself."""
-    share = value if shrinking else 1.0
-    rates = (0.1 * share, 0.05 * share), (10.0 * share, 5.0 * share)
-    return motion_from(NAMED[car].drawn["arm_angle"], NAMED[car].car.drawn_as(points(value)), *rates)
-
-
-ARM_AXIS = ("lower_arm_front", "lower_arm_rear")
-LONG = "how long it is in the paper's car over how long it is"
-PARTS = "distance, in parts of what it is in the paper's car"
-# Name, why, what is moved away from what (or nearer to it), whether the motion shrinks as well.
-MIXED_CARS: tuple[tuple[str, str, str, tuple[str, ...], str, bool], ...] = (
-    (
-        "tie-rod-long-wishbone",
-        "The tie rod of a double wishbone is up to 1e14 mm long.",
-        "wishbone",
-        ("tie_rod_inner",),
-        "tie_rod_outer",
-        False,
-    ),
-    (
-        "arm-long-wishbone",
-        "The lower arm of a double wishbone is up to 1e14 mm long; its angle shrinks with it.",
-        "wishbone",
-        ARM_AXIS,
-        "lower_ball_joint",
-        True,
-    ),
-    (
-        "upper-arm-long-wishbone",
-        "The upper arm is up to 1e14 mm long, so that its ball joint moves on what is nearly a plane.",
-        "wishbone",
-        ("upper_arm_front", "upper_arm_rear"),
-        "upper_ball_joint",
-        False,
-    ),
-    (
-        "tie-rod-long",
-        "The tie rod is up to 1e14 mm long, so that its outer end moves on what is nearly a plane.",
-        "paper",
-        ("tie_rod_inner", "rack_centre"),
-        "tie_rod_outer",
-        False,
-    ),
-    (
-        "strut-long",
-        "The strut is up to 1e14 mm long, so that its direction hardly changes.",
-        "paper",
-        ("strut_top", "strut_rod_end"),
-        "lower_ball_joint",
-        False,
-    ),
-    (
-        "arm-long",
-        "The arm is up to 1e14 mm long, so that a small angle is a long way; the angle shrinks with it.",
-        "paper",
-        ARM_AXIS,
-        "lower_ball_joint",
-        True,
-    ),
-    (
-        "strut-long-beside",
-        "The strut's top is up to 5e14 mm above a ball joint beside its axis, in a car of 500 mm.",
-        "beside",
-        ("strut_top", "strut_rod_end"),
-        "strut_lower",
-        False,
-    ),
-    (
-        "arm-long-beside",
-        "The arm is as long, its ball joint beside the axis of the strut.",
-        "beside",
-        ARM_AXIS,
-        "lower_ball_joint",
-        True,
-    ),
-)
-
-
-Row = tuple[str, str, str, str, Callable[[float], Mapping[str, Array]], bool]
-MIXED_ROWS: tuple[Row, ...] = (
-    *(
-        (name, why, LONG, car, partial(lengthened, points=away, base=base, car=car), shrinking)
-        for name, why, car, away, base, shrinking in MIXED_CARS
-    ),
-    (
-        "tie-rod-at-the-strut",
-        "The tie rod ends as little as 1e-10 mm from the strut's foot, in a car of 500 mm.",
-        PARTS,
-        "paper",
-        nearer("tie_rod_outer", "strut_lower"),
-        True,
-    ),
-)
-
-
 def _far_case(subject: Subject) -> Case:
     whys = {
         "paper": "Far from the origin coordinates keep few digits of the car, and differences lose more.",
@@ -267,19 +162,13 @@ def _far_case(subject: Subject) -> Case:
     )
 
 
-def _sizes(name: str, why: str, values: tuple[float, ...], subjects: tuple[Subject, ...]) -> tuple[Case, ...]:
-    return family(
-        name=name,
-        group=GROUP,
-        why=why,
-        parameter="size, in parts of a car of some 500 mm",
-        values=values,
-        scene=lambda subject, scale: scaled_car(scale, subject),
-        expected=RIGHT,
-        behaviour="right at every size, 1e-3 mm to 1e6 mm",
-        subjects=subjects,
-    )
-
+_sizes = partial(
+    family,
+    group=GROUP,
+    parameter="size, in parts of a car of some 500 mm",
+    scene=lambda subject, scale: scaled_car(scale, subject),
+    expected=RIGHT,
+)
 
 CASES: tuple[Case, ...] = (
     *(_far_case(subject) for subject in (SUBJECTS[0], BESIDE, *SUBJECTS[1:])),
@@ -291,34 +180,25 @@ CASES: tuple[Case, ...] = (
         values=decades(-9),
         scene=heaved_back,
         expected=RIGHT,
-        behaviour="right within the bound, rates and angles as right as at home",
         needs_heave=True,
     ),
     *_sizes(
-        "sizes-by-powers-of-two",
-        "Squares of small and large lengths differ by twice as many decades as the lengths.",
-        tuple(2.0**k for k in range(11, -20, -3)),
-        SUBJECTS[:1],
+        name="sizes-by-powers-of-two",
+        why="Squares of small and large lengths differ by twice as many decades as the lengths.",
+        values=tuple(2.0**k for k in range(11, -20, -3)),
+        subjects=SUBJECTS[:1],
     ),
     *_sizes(
-        "sizes-by-powers-of-ten",
-        "As by powers of two, and every coordinate is rounded anew.",
-        decades(-6, 4),
-        SUBJECTS[:1],
+        name="sizes-by-powers-of-ten",
+        why="As by powers of two, and every coordinate is rounded anew.",
+        values=decades(-6, 4),
+        subjects=SUBJECTS[:1],
     ),
-    *_sizes("sizes", "By powers of ten, another mechanism.", decades(-6, 4), (BESIDE, *SUBJECTS[1:])),
-    *(
-        scene_case(
-            name=name,
-            group=GROUP,
-            why=why,
-            parameter=parameter,
-            # Where it is refused, each refusal takes a second.
-            values=(1.0, 1e-3, 1e-6, 1e-12) if car == "wishbone" else (*decades(-4), 1e-6, 1e-9, 1e-12),
-            expected=dict.fromkeys(SOLVERS, MIXED),
-            behaviour=f"right within the bound, or refused; right from {MIXED.right_from:g} up",
-            scene=partial(mixed, car, points, shrinking),
-        )
-        for name, why, parameter, car, points, shrinking in MIXED_ROWS
+    *_sizes(
+        name="sizes",
+        why="By powers of ten, another mechanism.",
+        values=decades(-6, 4),
+        subjects=(BESIDE, *SUBJECTS[1:]),
     ),
+    *OUT_OF_PROPORTION,
 )

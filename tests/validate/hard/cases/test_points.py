@@ -1,0 +1,138 @@
+"""Cars drawn out of proportion: each parameter leads where it says, and sides are told however near."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from validate.adjudication.reference_solution import inputs_at, reference_instant, reference_solution
+from validate.cars.car import as_tuples
+from validate.cars.paper_car import PAPER
+from validate.formulations.registry import formulation
+from validate.hard.cars import BESIDE, CARS, drawn_angle, paper_car
+from validate.hard.cases import points as cases
+from validate.hard.cases.links import held_apart
+from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, motion_from, put
+from validate.hard.family import PAPER as STRUT
+from validate.reference import AmbiguousAssemblyError
+
+EPS = float(np.finfo(float).eps)
+ROUNDING = 8 * EPS * 600  # of lengths made of six coordinates below 600 mm
+Points = cases.Points
+
+
+def from_line(p: Points, name: str, start: str, end: str) -> float:
+    """Distance of a point from a line, mm."""
+    axis = p[end] - p[start]
+    return float(np.linalg.norm(np.cross(p[name] - p[start], axis)) / np.linalg.norm(axis))
+
+
+def sine_with_plane(p: Points) -> float:
+    """Of the angle between the strut's axis and the plane of the knuckle's three points."""
+    ball, outer, lower = (p[n] for n in ("lower_ball_joint", "tie_rod_outer", "strut_lower"))
+    normal, axis = np.cross(outer - ball, lower - ball), p["strut_top"] - lower
+    return abs(float(normal @ axis)) / float(np.linalg.norm(normal) * np.linalg.norm(axis))
+
+
+def test_the_assembled_car_has_the_links_of_the_paper_and_its_strut_on_a_line() -> None:
+    p = assembled()
+    for a, b in held_apart(STRUT.plain):
+        drawn = np.linalg.norm(np.subtract(PAPER[a], PAPER[b]))
+        assert abs(np.linalg.norm(p[a] - p[b]) - drawn) < ROUNDING
+    for name in ("strut_lower", "strut_rod_end"):
+        assert from_line(p, name, "lower_ball_joint", "strut_top") < ROUNDING
+    beside = {name: np.array(place) for name, place in BESIDE.items()}
+    assert from_line(beside, "strut_rod_end", "strut_top", "strut_lower") == 0.0
+    assert from_line(beside, "lower_ball_joint", "strut_top", "strut_lower") == pytest.approx(OFF, abs=0.5)
+
+
+@pytest.mark.parametrize("value", [1.0, 1e-3, 1e-6, 0.0])
+def test_a_parameter_leads_where_it_says(value: float) -> None:
+    p, beside = assembled(), assembled("beside")
+
+    def length(q: Points, a: str, b: str) -> float:
+        return float(np.linalg.norm(q[a] - q[b]))
+
+    for moved, onto in (("strut_rod_end", "strut_top"), ("lower_arm_rear", "lower_arm_front")):
+        near = put(moved, from_=onto)(p, value)
+        assert abs(length(near, moved, onto) - value * length(p, moved, onto)) < ROUNDING
+        assert all(np.array_equal(near[name], p[name]) for name in p if name != moved)
+    rod, ends = cases.short_tie_rod(p, value), ("tie_rod_outer", "tie_rod_inner")
+    assert abs(length(rod, *ends) - value * length(p, *ends)) < ROUNDING
+    thin, kingpin = cases.thin_knuckle(LOWER)(p, value), (OUTER, LOWER, "lower_ball_joint")
+    assert abs(from_line(thin, *kingpin) - value * from_line(p, *kingpin)) < 2 * ROUNDING
+    near = cases.ball_joint_near_axis(beside, value)
+    # An axis past a point at a distance across the line to the top passes it a little nearer.
+    off = from_line(near, "lower_ball_joint", "strut_lower", "strut_top")
+    assert off == pytest.approx(OFF * value, rel=3e-3, abs=1e-12)
+    through = cases.axis_near_tie_rod_end(beside, value)
+    off = from_line(through, "tie_rod_outer", "strut_lower", "strut_top")
+    assert off == pytest.approx(OFF * value, rel=0.1, abs=1e-12)
+    # 100 mm across, over the height of strut_lower above the line of the others, some 50 mm.
+    assert sine_with_plane(cases.axis_in_the_triangle(beside, value)) <= 3.0 * value + 1e-15
+    assert 1.0 - sine_with_plane(cases.axis_across_the_triangle(beside, value)) <= value + 1e-15
+    q = cases.slide_drawn_run_out(beside, value)
+    axis, strut = q["strut_top"] - q["strut_lower"], q["strut_top"] - q["lower_ball_joint"]
+    cosine = float(axis @ strut) / float(np.linalg.norm(axis) * np.linalg.norm(strut))
+    assert cosine == pytest.approx(value / np.hypot(1.0, value), rel=1e-9, abs=1e-15)
+
+
+@pytest.mark.parametrize("value", [1.0, 1e-4])
+def test_a_long_tie_rod_is_as_long_as_the_value_says(value: float) -> None:
+    p, q = assembled(), cases.lengthened("tie_rod_inner", "rack_centre", from_=OUTER)(assembled(), value)
+    whole = float(np.linalg.norm(p["tie_rod_inner"] - p[OUTER]))
+    assert np.linalg.norm(q["tie_rod_inner"] - q[OUTER]) == pytest.approx(whole / value, rel=1e-12)
+    assert np.array_equal(q["tie_rod_inner"], q["rack_centre"])
+    assert np.array_equal(q["lower_ball_joint"], p["lower_ball_joint"])
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        cases.ball_joint_near_axis,
+        cases.axis_in_the_triangle,
+        cases.axis_across_the_triangle,
+        cases.axis_near_tie_rod_end,
+        cases.axis_near_ball_joint,
+        cases.thin_knuckle("strut_top"),
+    ],
+)
+@pytest.mark.parametrize("value", [1.0, 1e-1, 1e-2])
+def test_what_a_case_draws_closes(draw: cases.Draw, value: float) -> None:
+    p = draw(assembled("beside"), value)
+    car = CARS["beside"].drawn_as(p)
+    assert car.points == as_tuples(dict(p))
+    solution = formulation("pointcoord").solve(
+        Scene.from_mapping(motion_from(drawn_angle(car), car, (0.0, 0.0), (0.0, 0.0)))
+    )
+    for name, place in p.items():
+        # 1e4 roundings of 1000 mm: steering arms of a hundredth of the car's have a condition number of 1e3.
+        assert np.abs(solution.position[name][0] - place).max() < 2e-9, name
+
+
+def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
+    for rack in (-40.0, 0.0, 60.0):
+        scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
+        inputs = inputs_at(scene, 0.0)
+        expected = reference_instant(scene, inputs)
+        assert reference_instant(scene, inputs, exact_sides=True).position == expected.position
+
+
+@pytest.mark.parametrize("lift", [1e-13, -1e-13, 0.0])
+def test_a_drawing_in_the_plane_of_its_tie_rod_is_ambiguous(lift: float) -> None:
+    # In the plane y = 0 lie the strut and the tie rod's inner end; the outer end stands beside it.
+    points = {
+        "lower_arm_front": (-200.0, 300.0, 0.0),
+        "lower_arm_rear": (200.0, 300.0, 0.0),
+        "rack_centre": (100.0, 0.0, 80.0),
+        "strut_top": (0.0, 0.0, 500.0),
+        "lower_ball_joint": (0.0, 0.0, 0.0),
+        "tie_rod_outer": (110.0, lift, 100.0),
+        "strut_lower": (0.0, 0.0, 60.0),
+        "strut_rod_end": (0.0, 0.0, 300.0),
+        "tie_rod_inner": (100.0, 0.0, 80.0),
+        "wheel_centre": (0.0, -80.0, 60.0),
+    }
+    with pytest.raises(AmbiguousAssemblyError, match="another assembly"):
+        reference_solution(Scene.from_mapping(paper_car(points=points)), exact_sides=lift == 0.0)
