@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 
 import numpy as np
@@ -120,6 +120,6 @@ def touched(domain: Domain, low: Array, high: Array) -> tuple[Whole, Whole]:
     return first, np.maximum(final, first + 1)
 
 
-def part_of(low: Whole, high: Whole) -> tuple[slice, ...]:
+def part_of(low: Iterable[int], high: Iterable[int]) -> tuple[slice, ...]:
     """A box's part of a table of the smallest ones."""
     return tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
