@@ -34,9 +34,9 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import ALLOWED, Gaps, packed, unpacked
 from pointcoord.mechanism.freedoms import held_rows
-from pointcoord.numerics.monomials import monomials_of_one
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
+from pointcoord.patches.evaluation import sum_one, table_of_exponents
 from pointcoord.patches.flood import Limits, flood_from_drawing, place_of_drawing
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup, part_of
@@ -378,14 +378,17 @@ class KinematicMap:
             column = values[:, i]
             # False for what is not a number as well.
             if column.size and not (column.min() >= low[i] and column.max() <= high[i]):
-                worst = column[~((column >= low[i]) & (column <= high[i]))][0]
-                raise self._out_of_range(name, float(worst))
+                worst = float(column[~((column >= low[i]) & (column <= high[i]))][0])
+                unit = self.mechanism.topology.input_units[name]
+                allowed = f"{low[i]:.10g} to {high[i]:.10g} {unit}, the range of this map"
+                raise InputOutOfRange(name, worst, allowed)
         if self._lookup.single:
             return np.zeros(len(values), dtype=np.int64)
         number = self._lookup.at(values)
         if (number < 0).any():
             gaps = np.flatnonzero(number < 0)
-            raise self._not_covered(values[gaps[0]], int(number[gaps[0]]), len(gaps), len(values))
+            inputs = dict(zip(self.inputs, values[gaps[0]].tolist(), strict=True))
+            raise NotCovered(inputs, self.gaps[-1 - number[gaps[0]]][1], len(gaps), len(values))
         return number
 
     def _require_finite_rates(self, states: Sequence[Array]) -> None:
@@ -406,54 +409,24 @@ class KinematicMap:
 
     def _one(self, states: Sequence[list[float]]) -> Array:
         """The same of one pose, (derivatives + 1, points, 3), in a tenth of the time."""
-        number = self._patch_of(states[0])
-        first, later, boxes, order = self._ready[number]
+        number = self._lookup.at_one(states[0])
+        if number < 0:
+            self._patches_of(np.array(states[:1]))  # says why there is none
+        ready = self._ready[number]
+        if ready is None:
+            boxes = np.stack(self.series.boxes, axis=-1)[number].tolist()
+            parts = table_of_exponents(self.series.coefficients[number], len(boxes), self.order)
+            ready = self._ready[number] = (boxes, *parts)
+        boxes, first, table = ready
         local = [[(x - middle) / half for x, (middle, half) in zip(states[0], boxes, strict=True)]]
         for state in states[1:]:
             local.append([x / half for x, (_, half) in zip(state, boxes, strict=True)])
-        found: list[Array] = [row.dot(later) for row in monomials_of_one(local, order)]
-        found[0] += first
-        whole = found[0] if len(found) == 1 else np.array(found)
-        return whole.reshape(len(found), -1, 3)
+        return sum_one(first, table, local).reshape(len(states), -1, 3)
 
     @cached_property
-    def _ready(self) -> list[tuple[Array, Array, list[tuple[float, float]], int]]:
-        """Of each patch the first coefficients, all with 0 for the first, the box, and the order."""
-        later = self.series.coefficients.copy()
-        later[:, 0] = 0.0
-        boxes = (list(zip(*box, strict=True)) for box in np.stack(self.series.boxes, axis=1).tolist())
-        parts = zip(self.series.coefficients[:, 0], later, boxes, strict=True)
-        return [(first, rest, box, self.order) for first, rest, box in parts]
-
-    @cached_property
-    def _ends(self) -> tuple[list[tuple[str, float, float, float]], int, memoryview]:
-        """Each input with its ends and the smallest boxes per unit, how many of these lie along a range, and
-        the patch of each of them."""
-        table = np.ascontiguousarray(self._lookup.table).ravel()
-        return list(zip(self.inputs, *self._lookup.corner, strict=True)), self.domain.parts, table.data
-
-    def _patch_of(self, value: list[float]) -> int:
-        """The patch of one pose."""
-        ends, parts, table = self._ends
-        box = 0
-        for number, (name, low, high, along) in zip(value, ends, strict=True):
-            if not low <= number <= high:
-                raise self._out_of_range(name, number)
-            place = int((number - low) * along)
-            box = box * parts + (place if place < parts else parts - 1)
-        patch: int = table[box]
-        if patch < 0:
-            raise self._not_covered(np.array(value), patch, 1, 1)
-        return patch
-
-    def _out_of_range(self, name: str, value: float) -> InputOutOfRange:
-        low, high = self.domain.ranges[name]
-        unit = self.mechanism.topology.input_units[name]
-        return InputOutOfRange(name, value, f"{low:.10g} to {high:.10g} {unit}, the range of this map")
-
-    def _not_covered(self, value: Array, number: int, count: int, asked: int) -> NotCovered:
-        inputs = {name: float(value[i]) for i, name in enumerate(self.inputs)}
-        return NotCovered(inputs, self.gaps[-1 - number][1], count, asked)
+    def _ready(self) -> list[tuple[list[list[float]], Array, Array] | None]:
+        """Of each patch that one pose has been on, its box and its table."""
+        return [None] * len(self.series.low)
 
     def _split(
         self, given: Sequence[Mapping[str, ArrayLike]]
@@ -584,7 +557,10 @@ def kinematic_map(
     require_scene(scene)
     scene = Scene.checked(scene, scene.title or "scene")
     mechanism = scene_mechanism(scene)
-    domain = Domain(mechanism, _checked_ranges(mechanism, ranges), _checked_halvings(halvings))
+    whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
+    if not (whole and 0 <= halvings <= MOST_HALVINGS):
+        raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
+    domain = Domain(mechanism, _checked_ranges(mechanism, ranges), int(halvings))
     if not 1 <= len(domain.free) <= VARIABLES:
         raise MapError("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
     number = isinstance(tolerance, int | float | np.integer | np.floating) and not isinstance(tolerance, bool)
@@ -643,13 +619,6 @@ def _file(path: object) -> str:
     return f"file {fspath(path)!r}"
 
 
-def _checked_halvings(halvings: int) -> int:
-    whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
-    if not (whole and 0 <= halvings <= MOST_HALVINGS):
-        raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
-    return int(halvings)
-
-
 def _numbers(what: str, value: ArrayLike) -> Array:
     """Numbers as doubles."""
     try:
@@ -674,11 +643,8 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
         raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
         if name in topology.chassis_inputs:
-            raise MapError(
-                f"ranges[{name!r}]",
-                "is given",
-                "no range: it moves the whole chassis, whatever it is",
-            )
+            allowed = "no range: it moves the whole chassis, whatever it is"
+            raise MapError(f"ranges[{name!r}]", "is given", allowed)
         if name not in topology.required_inputs:
             raise UnknownName("driving input", name, topology.required_inputs)
     found = {}
@@ -689,17 +655,14 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
             low, high = (float(end) for end in ranges[name])
         except (TypeError, ValueError):
             low, high = np.nan, np.nan
-        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+        # Comparisons are false of what is not a number.
+        within = max(abs(low), abs(high)) <= FARTHEST
+        if not (within and (low == high or high - low >= NARROWEST)):
             raise MapError(
                 f"ranges[{name!r}]",
                 f"is {ranges[name]!r}",
-                "two finite numbers, the lower first; the same to hold it",
-            )
-        if max(abs(low), abs(high)) > FARTHEST or 0.0 < high - low < NARROWEST:
-            raise MapError(
-                f"ranges[{name!r}]",
-                f"is {ranges[name]!r}",
-                f"ends within {FARTHEST:g} that are {NARROWEST:g} apart at least, or the same to hold it",
+                f"two finite numbers within {FARTHEST:g}, the lower first and {NARROWEST:g} apart at least, "
+                "or the same to hold it",
             )
         found[name] = (low + 0.0, high + 0.0)
     return found

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.data_classes import dataclass
-from pointcoord.numerics.multi_index import powers
 
 Array = NDArray[np.float64]
 
@@ -79,72 +78,3 @@ def monomials(states: Sequence[Array], order: int, room: Array | None = None) ->
                 found[2][here] += np.multiply(twice[i], found[1][before], out=product)
                 found[2][here] += np.multiply(states[2][i], found[0][before], out=product)
     return found
-
-
-@dataclass(frozen=True)
-class _Exponents:
-    """Of one place's powers.
-
-    Attributes:
-        which: exponents of every power, by variable.
-        lowered, factors: exponents and factors of x^k and of its first two derivatives, (3, order + 1).
-        signed: factors of the powers of a negative number's magnitude, likewise.
-    """
-
-    which: tuple[NDArray[np.intp], ...]
-    lowered: Array
-    factors: Array
-    signed: Array
-
-
-@lru_cache(maxsize=32)
-def _exponents(inputs: int, order: int) -> _Exponents:
-    each = np.arange(order + 1.0)
-    lowered = np.maximum(each - np.arange(3.0)[:, None], 0.0)
-    factors = np.stack([np.ones(order + 1), each, each * (each - 1.0)])
-    which = tuple(np.ascontiguousarray(k) for k in powers(inputs, order).exponents.T)
-    return _Exponents(which, lowered, factors, factors * np.where(lowered % 2.0, -1.0, 1.0))
-
-
-def monomials_of_one(states: Sequence[Sequence[float]], order: int) -> list[Array]:
-    """The same at one place, in a tenth of the time: one call for the powers of each variable.
-
-    By the chain rule f(x)' = f_x x' and f(x)'' = f_x x'' + f_xx x'^2 for the powers of each variable, and by
-    Leibniz' rule for their products.
-
-    Args:
-        states: the variables and as many of their derivatives as are wanted, each (p,).
-    Returns:
-        As many arrays of shape (powers,).
-    """
-    exponents = _exponents(len(states[0]), order)
-    if len(states) == 1:
-        return [_values_of_one(states[0], exponents)]
-    bends = len(states) > 2
-    rows: list[Array] = []
-    for i, (x, which) in enumerate(zip(states[0], exponents.which, strict=True)):
-        by_x = abs(x) ** exponents.lowered * (exponents.factors if x >= 0.0 else exponents.signed)
-        rate = states[1][i]
-        own = [by_x[0].take(which), (rate * by_x[1]).take(which)]
-        if bends:
-            own.append((states[2][i] * by_x[1] + rate * rate * by_x[2]).take(which))
-        if not rows:
-            rows = own
-            continue
-        product = [rows[0] * own[0], rows[1] * own[0] + rows[0] * own[1]]
-        if bends:
-            product.append(rows[2] * own[0] + 2.0 * (rows[1] * own[1]) + rows[0] * own[2])
-        rows = product
-    return rows
-
-
-def _values_of_one(values: Sequence[float], exponents: _Exponents) -> Array:
-    """The powers alone, with as few calls as possible."""
-    each, signs = exponents.lowered[0], exponents.signed[0]
-    row: Array | None = None
-    for x, which in zip(values, exponents.which, strict=True):
-        # Powers of a negative number take three times as long as those of its magnitude.
-        own = (x**each if x >= 0.0 else (-x) ** each * signs).take(which)
-        row = own if row is None else row * own
-    assert row is not None  # a series has a variable
-    return row
