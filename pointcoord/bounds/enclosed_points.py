@@ -58,7 +58,7 @@ def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Coordinates]) ->
         found.append({name: state.take(list(layout.vector(name))) for name in names})
     frames = {carriers: _frame(found, carriers) for carriers in set(topology.carried.values())}
     for name, carriers in topology.carried.items():
-        weights = _weights(mechanism, name, carriers)
+        weights = exact_weights(mechanism, name)
         for points, part in zip(found, _carried(weights, *frames[carriers]), strict=True):
             points[name] = points[carriers[0]] + part
     return found
@@ -95,12 +95,13 @@ def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
     return result
 
 
-def _weights(mechanism: Mechanism, name: str, carriers: tuple[str, str, str]) -> Enclosed:
+def exact_weights(mechanism: Mechanism, name: str) -> Enclosed:
     """The weights that give the drawn point exactly, (3,).
 
     What the computed ones leave of it is solved once more; |W| of what these then leave, W the inverse of
     the frame up to a defect below one half, is at most half of what they are off.
     """
+    carriers = mechanism.topology.carried[name]
     vectors = {point: Enclosed.of(mechanism.drawing.vectors[point]) for point in (*carriers, name)}
     edges = edges_of(vectors, carriers)
     normals = [cross(*edges)]

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from os import PathLike
+from os import PathLike, fspath
 from types import MappingProxyType
 
 import numpy as np
@@ -26,32 +26,26 @@ from numpy.typing import ArrayLike, NDArray
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from pointcoord.errors import (
-    InputOutOfRange,
-    MapError,
-    NotComputed,
-    NotCovered,
-    UnknownName,
-)
+from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered, UnknownName
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.effect_bounds import Evaluated
-from pointcoord.mapping.stored import Stored, read, write
+from pointcoord.mapping.stored import ALLOWED, Gaps, packed, unpacked
 from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import OnePatch, sum_series
-from pointcoord.patches.flood import Limits, Patches, flood
+from pointcoord.patches.evaluation import sum_one, table_of_exponents
+from pointcoord.patches.flood import Limits, flood_from_drawing, place_of_drawing
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup, part_of
+from pointcoord.patches.patches import Patches, ProvenPatches
 from pointcoord.patches.reported_points import moving_points
-from pointcoord.patches.way_map import order_for
 from pointcoord.results.closing import closing
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
-from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.assembly import close_drawing
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -156,17 +150,22 @@ class KinematicMap:
     Attributes:
         scene: whose suspension it is, and which effects it gives.
         tolerance: largest bound of a position on any patch, before the user's origin is added, mm.
-        stored: its patches.
+        series: its patches, read-only. gaps: boxes that are not covered, by their corners, and why.
     """
 
     scene: Scene
     tolerance: float
-    stored: Stored
+    series: Patches
+    gaps: Gaps
+
+    def __post_init__(self) -> None:
+        for array in (self.series.coefficients, *self.series.off.parts):
+            array.setflags(write=False)
 
     @property
     def ranges(self) -> Ranges:
         """Of every input that drives the suspension, rad or mm; held where both ends are the same."""
-        return MappingProxyType(dict(self.stored.ranges))
+        return MappingProxyType(dict(self.domain.ranges))
 
     @cached_property
     def inputs(self) -> tuple[str, ...]:
@@ -181,60 +180,55 @@ class KinematicMap:
     @property
     def order(self) -> int:
         """Total degree of its series."""
-        return self.stored.order
+        return self.series.order
 
-    @cached_property
+    @property
     def mechanism(self) -> Mechanism:
         """The mechanism of the scene."""
-        return scene_mechanism(self.scene)
+        return self.domain.mechanism
 
-    @cached_property
+    @property
     def domain(self) -> Domain:
         """Its ranges, cut into boxes."""
-        return Domain(self.mechanism, self.stored.ranges, self.stored.halvings)
+        return self.series.domain
 
     @cached_property
     def bound(self) -> Bound:
         """What is proven of all that it covers."""
-        return Bound.of(self.stored.off, self._boxes[1], self.inputs, self._shifted)
+        return Bound.of(self.series.off, self.series.boxes[1], self.inputs, self._shifted)
 
     @cached_property
     def _shifted(self) -> float:
         """Rounding of a sum with the mechanism's origin, mm; none where that is zero."""
         origin = float(np.abs(self.mechanism.origin).max())
-        reach = float(np.abs(self.stored.coefficients).sum(axis=1).max())
+        reach = float(np.abs(self.series.coefficients).sum(axis=1).max())
         return 1.01 * UNIT_ROUNDOFF * (origin + reach) if origin > 0.0 else 0.0
 
     @property
     def patches(self) -> tuple[Patch, ...]:
         """Its patches."""
-        half, off = self._boxes[1], self.stored.off
         found = []
-        for place in range(len(half)):
-            here = slice(place, place + 1)
-            bound = Bound.of(Jet(*(part[here] for part in off.parts)), half[here], self.inputs, self._shifted)
-            ranges = self._ranges_of(self.stored.low[place], self.stored.high[place])
-            condition, rest = self.stored.condition[place], self.stored.contraction[place]
-            found.append(Patch(ranges, bound, float(condition), float(rest)))
+        for place in range(len(self.series.low)):
+            one = self.series.taken(np.array([place]))
+            bound = Bound.of(one.off, one.boxes[1], self.inputs, self._shifted)
+            ranges = self._ranges_of(one.low[0], one.high[0])
+            found.append(Patch(ranges, bound, float(one.condition[0]), float(one.contraction[0])))
         return tuple(found)
 
     @property
     def uncovered(self) -> tuple[Uncovered, ...]:
         """Where nothing is proven."""
-        boxes = zip(self.stored.gap_low, self.stored.gap_high, self.stored.gap_reason, strict=True)
-        return tuple(
-            Uncovered(self._ranges_of(low, high), self.stored.reasons[reason]) for low, high, reason in boxes
-        )
+        return tuple(Uncovered(self._ranges_of(*map(np.array, key)), reason) for key, reason in self.gaps)
 
     @cached_property
     def share_covered(self) -> float:
         """Share of its range that is covered, 0 to 1."""
-        covered = (self.stored.high - self.stored.low).prod(axis=-1).sum()
+        covered = (self.series.high - self.series.low).prod(axis=-1).sum()
         return float(covered / self.domain.parts ** len(self.inputs))
 
     def __repr__(self) -> str:
         over = ", ".join(f"{name} {low:.6g} to {high:.6g}" for name, (low, high) in self.ranges.items())
-        count, bound = len(self.stored.low), self.bound.position
+        count, bound = len(self.series.low), self.bound.position
         part = "" if self.share_covered == 1.0 else f", {self.share_covered:.1%} covered"
         return (
             f"<KinematicMap over {over}{part}: {count} patches of order {self.order} within {bound:.2g} mm>"
@@ -265,21 +259,23 @@ class KinematicMap:
             NotComputed: accelerations without rates.
             MapError: what is no number, or shapes that do not broadcast.
         """
-        given = [inputs] if rates is None else [inputs, rates]
-        if accelerations is not None:
-            if rates is None:
-                raise _needs_rates()
-            given.append(accelerations)
+        if rates is None and accelerations is not None:
+            raise _needs_rates()
+        given = [state for state in (inputs, rates, accelerations) if state is not None]
         states, laws, shape = self._split(given)
-        found = self.evaluate(*states)
-        places = [
-            self._chassis(d, shape) | {name: state[..., i, :] for i, name in enumerate(self.points)}
-            for d, state in enumerate(found)
-        ]
-        numbers = self._read(places, laws)
+        self._require_finite_rates(states)
+        patch = self._patches_of(states[0])
+        moving = self._sums(states, patch)
+        axes = CarAxes.of(self.mechanism.drawing, self.scene.mechanism.outboard)
+        numbers = self._read(moving, laws, axes)
+        found = {name: channel.with_arrays(_shaped(channel, shape)) for name, channel in numbers.items()}
         if not bounds:
-            return MappedPoses(numbers)
-        return MappedPoses(numbers, self._bounds(states, found, laws, numbers))
+            return MappedPoses(found)
+        evaluated = Evaluated(
+            self.series, axes, patch, states[1:], moving, self._motion, laws, numbers
+        ).bounds(self._effects[len(states) - 1])
+        proven = {name: _shaped(numbers[name].with_arrays(b), shape) for name, b in evaluated.items() if b}
+        return MappedPoses(found, proven)
 
     def evaluate(
         self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
@@ -301,43 +297,35 @@ class KinematicMap:
         """
         states = [_numbers(STATES[0], values)]
         if rates is None and accelerations is None and states[0].shape == self._single_shape:
-            place = states[0].tolist()
-            return self._ready[self._patch_of(place)].at(place).reshape(1, -1, 3)
+            return self._one([states[0].tolist()])
         if accelerations is not None and rates is None:
             raise _needs_rates()
         given = zip(STATES[1:], (rates, accelerations), strict=True)
         states += [_numbers(what, state) for what, state in given if state is not None]
+        inputs = len(self.inputs)
         for d, state in enumerate(states):
-            if state.shape[-1:] != (len(self.inputs),):
-                allowed = f"(..., {len(self.inputs)}), a column for each of {', '.join(self.inputs)}"
+            if state.shape[-1:] != (inputs,):
+                allowed = f"(..., {inputs}), a column for each of {', '.join(self.inputs)}"
                 raise MapError(STATES[d], f"have the shape {state.shape}", allowed)
-            if d > 0 and not np.isfinite(state).all():
-                place = tuple(np.argwhere(~np.isfinite(state))[0])
-                raise InputOutOfRange(
-                    self.inputs[place[-1]], float(state[place]), f"{STATES[d]} that are finite"
-                )
-        middle, half = self._boxes
-        table, order = self.stored.coefficients, self.order
+        self._require_finite_rates(states)
         if all(state.ndim == 1 for state in states):
-            single = [state.tolist() for state in states]
-            return self._ready[self._patch_of(single[0])].moving(single).reshape(len(states), -1, 3)
+            return self._one([state.tolist() for state in states])
         batch = _common_shape([state.shape[:-1] for state in states], "arrays")
-        flat = [np.broadcast_to(s, (*batch, len(self.inputs))).reshape(-1, len(self.inputs)) for s in states]
-        patch = self._patches_of(flat[0])
-        found = sum_series(table, middle, half, order, patch, flat)
-        return found.reshape(len(states), *batch, len(self.points), 3)
+        flat = [np.broadcast_to(state, (*batch, inputs)).reshape(-1, inputs) for state in states]
+        found = np.stack(self._sums(flat, self._patches_of(flat[0])))
+        return np.moveaxis(found.reshape(len(states), len(self.points), 3, *batch), (1, 2), (-2, -1))
 
-    def __reduce__(self) -> tuple[type[KinematicMap], tuple[Scene, float, Stored]]:
+    def __reduce__(self) -> tuple[object, tuple[bytes]]:
         """What is made of it for quicker calls is made again."""
-        return type(self), (self.scene, self.tolerance, self.stored)
+        return _unpickled, (packed((self.scene, self.tolerance, self.series, self.gaps)),)
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
         """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
-        (values,), _, _ = self._split([inputs])
+        (values,), _, shape = self._split([inputs])
         low, high = self.domain.ends
         inside = np.asarray(((values >= low) & (values <= high)).all(axis=-1))
-        number = self._lookup.at(np.where(inside[..., None], values, low))
-        return np.asarray(inside & (number >= 0))
+        number = self._lookup.at(np.where(inside[:, None], values, low))
+        return np.asarray(inside & (number >= 0)).reshape(shape)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write it to an npz file, which `load` and any program that reads numpy's files can read.
@@ -345,7 +333,12 @@ class KinematicMap:
         Raises:
             MapError: the file cannot be written.
         """
-        write(path, self.scene, self.tolerance, self.stored)
+        what, data = _file(path), packed((self.scene, self.tolerance, self.series, self.gaps))
+        try:
+            with open(path, "wb") as stream:
+                stream.write(data)
+        except OSError as error:
+            raise MapError(what, f"cannot be written: {error.strerror}", "a path to write to") from error
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> KinematicMap:
@@ -354,28 +347,23 @@ class KinematicMap:
         Raises:
             MapError: there is no such file, it is another one, of another version, or damaged.
         """
-        return cls(*read(path))
-
-    def _chassis(self, derivative: int, shape: tuple[int, ...]) -> dict[str, Array]:
-        """The points of the chassis, which are where they are drawn, (..., 3), mm."""
-        mechanism, factor = self.mechanism, 0.0 if derivative else float(self.mechanism.unit)
-        vectors = mechanism.drawing.vectors
-        names = mechanism.topology.chassis
-        return {name: np.broadcast_to(vectors[name] * factor, (*shape, 3)) for name in names}
-
-    @cached_property
-    def _boxes(self) -> tuple[Array, Array]:
-        """Middles and half widths of the patches, (P, p)."""
-        return self.domain.middle_and_half(self.stored.low, self.stored.high)
+        what = _file(path)
+        try:
+            with open(path, "rb") as stream:
+                data = stream.read()
+        except FileNotFoundError as error:
+            raise MapError(what, "does not exist", ALLOWED) from error
+        except OSError as error:
+            raise MapError(what, f"cannot be read: {error.strerror or error}", ALLOWED) from error
+        return cls(*unpacked(data, what))
 
     @cached_property
     def _lookup(self) -> Lookup:
-        """The patch of each of the smallest boxes, or -1 - the place of the reason why there is none."""
-        lookup = Lookup.of(self.domain, self.stored.low, self.stored.high)
-        boxes = zip(self.stored.gap_low, self.stored.gap_high, self.stored.gap_reason, strict=True)
-        for low, high, reason in boxes:
-            lookup.table[part_of(low, high)] = -1 - reason
-        return lookup
+        """The patch of each of the smallest boxes, or -1 - the place of the gap that it lies in."""
+        table = self.series.lookup.table.copy()
+        for number, ((low, high), _) in enumerate(self.gaps):
+            table[part_of(low, high)] = -1 - number
+        return Lookup(self.domain, table)
 
     def _ranges_of(self, low: Whole, high: Whole) -> Ranges:
         """The ranges of a box."""
@@ -389,65 +377,64 @@ class KinematicMap:
             column = values[:, i]
             # False for what is not a number as well.
             if column.size and not (column.min() >= low[i] and column.max() <= high[i]):
-                worst = column[~((column >= low[i]) & (column <= high[i]))][0]
-                raise self._out_of_range(name, float(worst))
+                worst = float(column[~((column >= low[i]) & (column <= high[i]))][0])
+                unit = self.mechanism.topology.input_units[name]
+                allowed = f"{low[i]:.10g} to {high[i]:.10g} {unit}, the range of this map"
+                raise InputOutOfRange(name, worst, allowed)
         if self._lookup.single:
             return np.zeros(len(values), dtype=np.int64)
         number = self._lookup.at(values)
         if (number < 0).any():
             gaps = np.flatnonzero(number < 0)
-            raise self._not_covered(values[gaps[0]], int(number[gaps[0]]), len(gaps), len(values))
+            inputs = dict(zip(self.inputs, values[gaps[0]].tolist(), strict=True))
+            raise NotCovered(inputs, self.gaps[-1 - number[gaps[0]]][1], len(gaps), len(values))
         return number
+
+    def _require_finite_rates(self, states: Sequence[Array]) -> None:
+        """Refuse rates and accelerations, each (..., p), that are not finite."""
+        for what, state in zip(STATES[1:], states[1:], strict=False):
+            if not np.isfinite(state).all():
+                place = tuple(np.argwhere(~np.isfinite(state))[0])
+                raise InputOutOfRange(self.inputs[place[-1]], float(state[place]), f"{what} that are finite")
 
     @cached_property
     def _single_shape(self) -> tuple[int]:
         """Of one pose's inputs."""
         return (len(self.inputs),)
 
-    @cached_property
-    def _ready(self) -> tuple[OnePatch, ...]:
-        """The patches, for one pose at a time."""
-        parts = zip(self.stored.coefficients, *self._boxes, strict=True)
-        return tuple(OnePatch.of(table, middle, half, self.order) for table, middle, half in parts)
+    def _sums(self, states: Sequence[Array], patch: Whole) -> list[Array]:
+        """States of the points that move, by derivative, each (3 points, N), mm per s^d."""
+        return self.series.sums([self.series.coefficients] * len(states), states, patch)
+
+    def _one(self, states: Sequence[list[float]]) -> Array:
+        """The same of one pose, (derivatives + 1, points, 3), in a tenth of the time."""
+        number = self._lookup.at_one(states[0])
+        if number < 0:
+            self._patches_of(np.array(states[:1]))  # says why there is none
+        ready = self._ready[number]
+        if ready is None:
+            boxes = np.stack(self.series.boxes, axis=-1)[number].tolist()
+            parts = table_of_exponents(self.series.coefficients[number], len(boxes), self.order)
+            ready = self._ready[number] = (boxes, *parts)
+        boxes, first, table = ready
+        local = [[(x - middle) / half for x, (middle, half) in zip(states[0], boxes, strict=True)]]
+        for state in states[1:]:
+            local.append([x / half for x, (_, half) in zip(state, boxes, strict=True)])
+        return sum_one(first, table, local).reshape(len(states), -1, 3)
 
     @cached_property
-    def _ends(self) -> tuple[list[tuple[str, float, float, float]], int, memoryview]:
-        """Each input with its ends and the smallest boxes per unit, how many of these lie along a range, and
-        the patch of each of them."""
-        table = np.ascontiguousarray(self._lookup.table).ravel()
-        return list(zip(self.inputs, *self._lookup.corner, strict=True)), self.domain.parts, table.data
-
-    def _patch_of(self, value: list[float]) -> int:
-        """The patch of one pose."""
-        ends, parts, table = self._ends
-        box = 0
-        for number, (name, low, high, along) in zip(value, ends, strict=True):
-            if not low <= number <= high:
-                raise self._out_of_range(name, number)
-            place = int((number - low) * along)
-            box = box * parts + (place if place < parts else parts - 1)
-        patch: int = table[box]
-        if patch < 0:
-            raise self._not_covered(np.array(value), patch, 1, 1)
-        return patch
-
-    def _out_of_range(self, name: str, value: float) -> InputOutOfRange:
-        low, high = self.stored.ranges[name]
-        unit = self.mechanism.topology.input_units[name]
-        return InputOutOfRange(name, value, f"{low:.10g} to {high:.10g} {unit}, the range of this map")
-
-    def _not_covered(self, value: Array, number: int, count: int, asked: int) -> NotCovered:
-        inputs = {name: float(value[i]) for i, name in enumerate(self.inputs)}
-        return NotCovered(inputs, self.stored.reasons[-1 - number], count, asked)
+    def _ready(self) -> list[tuple[list[list[float]], Array, Array] | None]:
+        """Of each patch that one pose has been on, its box and its table."""
+        return [None] * len(self.series.low)
 
     def _split(
         self, given: Sequence[Mapping[str, ArrayLike]]
     ) -> tuple[list[Array], dict[str, list[Array]], tuple[int, ...]]:
-        """The map's inputs as columns, (..., p); what moves the chassis by input and derivative, each of the
-        poses' shape, (...); and this shape.
+        """The map's inputs as columns, (N, p); what moves the chassis by input and derivative, each (N,); and
+        the shape of what is given, of N numbers.
         """
         topology = self.mechanism.topology
-        held = {name: low for name, (low, high) in self.stored.ranges.items() if low == high}
+        held = {name: low for name, (low, high) in self.domain.ranges.items() if low == high}
         for d, state in enumerate(given):
             if not isinstance(state, Mapping):
                 raise MapError(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
@@ -465,13 +452,14 @@ class KinematicMap:
                     raise UnknownName(f"given {kind}", name, state)
         arrays = [{name: np.asarray(value, dtype=float) for name, value in state.items()} for state in given]
         shape = _common_shape([value.shape for state in arrays for value in state.values()], "inputs")
+        count = int(np.prod(shape))
         columns = [
-            np.stack([np.broadcast_to(state[name], shape) for name in self.inputs], axis=-1)
+            np.stack([np.broadcast_to(state[name], shape).reshape(count) for name in self.inputs], axis=-1)
             for state in arrays
         ]
         named = (name for name in self._motion.directions if any(name in state for state in arrays))
         laws = {
-            name: [np.broadcast_to(state.get(name, np.zeros(())), shape) for state in arrays]
+            name: [np.broadcast_to(state.get(name, np.zeros(())), shape).reshape(count) for state in arrays]
             for name in named
         }
         for name, law in laws.items():
@@ -485,69 +473,34 @@ class KinematicMap:
         """How the chassis moves by what is given."""
         return ChassisMotion.of(self.mechanism, {})
 
-    def _bounds(
-        self,
-        states: Sequence[Array],
-        found: Array,
-        laws: Mapping[str, Sequence[Array]],
-        numbers: Mapping[str, Channel],
-    ) -> dict[str, dict[str, Array]]:
-        """Proven errors of all numbers, of their shapes."""
-        flat = [np.ascontiguousarray(state).reshape(-1, len(self.inputs)) for state in states]
-        count = len(flat[0])
-        axes = CarAxes.of(self.mechanism.drawing, self.scene.mechanism.outboard)
-
-        def one_by_one(array: Array, of: str) -> Array:
-            return array.reshape((count,) if of == "car" else (count, 3))
-
-        evaluated = Evaluated(
-            self.mechanism,
-            axes,
-            self.points,
-            self.stored.off,
-            self._boxes[1],
-            self._patches_of(flat[0]),
-            flat[1:],
-            found.reshape(len(flat), count, len(self.points), 3),
-            self._motion,
-            {name: [value.reshape(count) for value in law] for name, law in laws.items()},
-            {
-                quantity: {name: one_by_one(array, channel.quantity.of) for name, array in channel.items()}
-                for quantity, channel in numbers.items()
-            },
-        )
-        bounds = evaluated.bounds(self._effects[len(states) - 1])
-        return {
-            quantity: {name: array.reshape(numbers[quantity][name].shape) for name, array in arrays.items()}
-            for quantity, arrays in bounds.items()
-            if arrays
-        }
-
     @cached_property
-    def _effects(self) -> tuple[tuple[Effect, ...], tuple[Effect, ...], tuple[Effect, ...]]:
+    def _effects(self) -> tuple[tuple[Effect, ...], ...]:
         """What is evaluated with values alone, with rates, and with accelerations."""
         asked = plan_effects((*self.scene.effects, *POINT_STATES)).computed
-        always = set(POINT_STATES)
-        found = []
-        for derivative in range(3):
-            states = [e for e in asked if e.name not in always or e.derivative <= derivative]
-            found.append(tuple(e for e in states if e.derivative <= derivative))
-        return found[0], found[1], found[2]
+        return tuple(tuple(effect for effect in asked if effect.derivative <= d) for d in range(3))
 
     def _read(
-        self, places: Sequence[Mapping[str, Array]], laws: Mapping[str, Sequence[Array]]
+        self, moving: Sequence[Array], laws: Mapping[str, Sequence[Array]], axes: CarAxes
     ) -> dict[str, Channel]:
-        """Effects of states in the chassis' frame, which moves."""
-        mechanism = self.mechanism
+        """Effects of states in the chassis' frame, which moves.
+
+        Args:
+            moving: states of the points that move, by derivative, each (3 points, N), mm per s^d.
+        """
+        mechanism, count = self.mechanism, moving[0].shape[-1]
+        topology, vectors = mechanism.topology, mechanism.drawing.vectors
+        places: Sequence[Mapping[str, Array]] = [
+            {
+                name: np.broadcast_to(vectors[name] * (float(mechanism.unit) * (d == 0)), (count, 3))
+                for name in topology.chassis
+            }
+            | {name: state[3 * i : 3 * i + 3].T for i, name in enumerate(self.points)}
+            for d, state in enumerate(moving)
+        ]
         places = self._motion.turned_by(laws, places)
-        flat = {name: [value.ravel() for value in law] for name, law in laws.items()}
-        shape = next((law[0].shape for law in laws.values()), ())
-        lifts: list[Array | None] = [s.reshape(*shape, 3) for s in self._motion.shifts(flat)]
-        axes = CarAxes.of(mechanism.drawing, self.scene.mechanism.outboard)
-        origin = mechanism.origin if mechanism.origin.any() else None
-        added = lifts or [None] * len(places)
-        if origin is not None:
-            added[0] = origin if added[0] is None else origin + added[0]
+        added: list[Array | None] = [*self._motion.shifts(laws)] or [None] * len(places)
+        if mechanism.origin.any():
+            added[0] = mechanism.origin if added[0] is None else mechanism.origin + added[0]
         poses = Poses(mechanism, axes, states=places, added=added)
         found: dict[str, dict[str, Array]] = {quantity: {} for quantity in QUANTITIES}
         computed = self._effects[len(places) - 1]
@@ -603,31 +556,28 @@ def kinematic_map(
     require_scene(scene)
     scene = Scene.checked(scene, scene.title or "scene")
     mechanism = scene_mechanism(scene)
-    domain = Domain(mechanism, _checked_ranges(mechanism, ranges), _checked_halvings(halvings))
+    whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
+    if not (whole and 0 <= halvings <= MOST_HALVINGS):
+        raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
+    domain = Domain(mechanism, _checked_ranges(mechanism, ranges), int(halvings))
     if not 1 <= len(domain.free) <= VARIABLES:
         raise MapError("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
-    if not (_is_number(tolerance) and np.isfinite(tolerance) and tolerance > 0.0):
+    number = isinstance(tolerance, int | float | np.integer | np.floating) and not isinstance(tolerance, bool)
+    if not (number and np.isfinite(tolerance) and tolerance > 0.0):
         raise MapError("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
     domain.known_at(np.stack(domain.ends))
     closed = close_drawing(mechanism)
-    moved = closing(mechanism, closed.y)
-    require_the_drawn_car(scene, moved)
-    twice = domain.nearest_place(mechanism.input_values(closed.y[mechanism.map.unknowns :]))
-    values = domain.inputs_at(twice)
-    held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}
-    start = assemble(mechanism, held | dict(zip(domain.free, values, strict=True)), None, closed)
-    order = order_for(tolerance, float(mechanism.unit), 0, len(domain.free))
-    cover = flood(domain, order, Limits(tolerance), (twice, start.y), MOST)
-    reasons = tuple(dict.fromkeys(reason for _, reason in cover.given_up))
-    if cover.patches is None:
-        inputs = {name: float(value) for name, value in zip(domain.free, values, strict=True)}
-        raise NotCovered(inputs, reasons[0], 1, 1)
+    require_the_drawn_car(scene, closing(mechanism, closed.y))
+    cover = flood_from_drawing(domain, domain.order_for(tolerance), Limits(tolerance), closed, MOST)
+    if not len(cover.patches.low):
+        values = domain.inputs_at(place_of_drawing(domain, closed)).tolist()
+        raise NotCovered(dict(zip(domain.free, values, strict=True)), cover.reasons[0], 1, 1)
     if mechanism.topology.left_out:
-        _hold_rows(domain, order, cover.patches)
-    return KinematicMap(scene, tolerance, Stored.of(domain, order, cover, reasons))
+        _hold_rows(cover.patches)
+    return KinematicMap(scene, tolerance, cover.patches.reported, cover.given_up)
 
 
-def _hold_rows(domain: Domain, order: int, patches: Patches) -> None:
+def _hold_rows(patches: ProvenPatches) -> None:
     """Look at the rows that were left out, all over some patches.
 
     A row has products of two coordinates, each a series of the map's order; so of each input it is a
@@ -637,27 +587,35 @@ def _hold_rows(domain: Domain, order: int, patches: Patches) -> None:
     Raises:
         MechanismError: one is violated.
     """
-    count = 2 * order + 1
+    domain, count = patches.domain, 2 * patches.order + 1
     nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
     places = np.stack(np.meshgrid(*[nodes] * len(domain.free), indexing="ij"), -1)
-    middle, half = domain.middle_and_half(patches.low, patches.high)
-    for number, (centre, width) in enumerate(zip(middle, half, strict=True)):
+    for number, (centre, width) in enumerate(zip(*patches.boxes, strict=True)):
         values = (centre + width * places).reshape(-1, len(centre))
-        patch = np.full(len(values), number)
-        unknown = sum_series(patches.series, middle, half, order, patch, [values])[0]
-        y = np.concatenate([unknown, domain.known_at(values)], axis=-1)
+        (unknown,) = patches.sums([patches.series], [values], np.full(len(values), number))
+        y = np.concatenate([unknown.T, domain.known_at(values)], axis=-1)
         held_rows(domain.mechanism, y, np.full(len(values), patches.error[number].max()))
 
 
-def _checked_halvings(halvings: int) -> int:
-    whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
-    if not (whole and 0 <= halvings <= MOST_HALVINGS):
-        raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
-    return int(halvings)
+def _unpickled(data: bytes) -> KinematicMap:
+    return KinematicMap(*unpacked(data, "pickle"))
 
 
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+def _shaped(channel: Channel, shape: tuple[int, ...]) -> dict[str, Array]:
+    """Its arrays, of N poses, for poses of a shape of N numbers."""
+    vector = () if channel.quantity.of == "car" else (3,)
+    return {name: array.reshape((*shape, *vector)) for name, array in channel.items()}
+
+
+def _file(path: object) -> str:
+    """A file in words.
+
+    Raises:
+        MapError: what is given is no path.
+    """
+    if not isinstance(path, str | PathLike):
+        raise MapError(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
+    return f"file {fspath(path)!r}"
 
 
 def _numbers(what: str, value: ArrayLike) -> Array:
@@ -684,11 +642,8 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
         raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
         if name in topology.chassis_inputs:
-            raise MapError(
-                f"ranges[{name!r}]",
-                "is given",
-                "no range: it moves the whole chassis, whatever it is",
-            )
+            allowed = "no range: it moves the whole chassis, whatever it is"
+            raise MapError(f"ranges[{name!r}]", "is given", allowed)
         if name not in topology.required_inputs:
             raise UnknownName("driving input", name, topology.required_inputs)
     found = {}
@@ -699,17 +654,14 @@ def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[flo
             low, high = (float(end) for end in ranges[name])
         except (TypeError, ValueError):
             low, high = np.nan, np.nan
-        if not (np.isfinite(low) and np.isfinite(high) and low <= high):
+        # Comparisons are false of what is not a number.
+        within = max(abs(low), abs(high)) <= FARTHEST
+        if not (within and (low == high or high - low >= NARROWEST)):
             raise MapError(
                 f"ranges[{name!r}]",
                 f"is {ranges[name]!r}",
-                "two finite numbers, the lower first; the same to hold it",
-            )
-        if max(abs(low), abs(high)) > FARTHEST or 0.0 < high - low < NARROWEST:
-            raise MapError(
-                f"ranges[{name!r}]",
-                f"is {ranges[name]!r}",
-                f"ends within {FARTHEST:g} that are {NARROWEST:g} apart at least, or the same to hold it",
+                f"two finite numbers within {FARTHEST:g}, the lower first and {NARROWEST:g} apart at least, "
+                "or the same to hold it",
             )
         found[name] = (low + 0.0, high + 0.0)
     return found

@@ -1,7 +1,7 @@
-"""The numbers of a kinematic map, and the npz file that keeps them.
+"""The npz file that keeps a kinematic map.
 
-The file holds plain arrays and texts, nothing that runs when it is read: `format` and `version`; the scene as
-JSON; ranges, order, halvings and tolerance; of each patch its corners (in parts of the smallest box), its
+It holds plain arrays and texts, nothing that runs when it is read: `format` and `version`; the scene as JSON;
+ranges, order, halvings and tolerance; of each patch its corners (in parts of the smallest box), its
 coefficients and its bounds; of each gap its corners and its reason; and `digest`, a SHA-256 of all of these.
 """
 
@@ -15,24 +15,30 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike, fspath
 from typing import Any, BinaryIO
+from collections.abc import Mapping, Sequence
+from io import BytesIO
+from tokenize import TokenError
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MapError, PointcoordError
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.flood import Cover
+from pointcoord.patches.flood import Key
 from pointcoord.patches.jet import Jet
+from pointcoord.patches.patches import Patches
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import scene_mechanism
 
-Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
+Gaps = Sequence[tuple[Key, str]]
+Content = tuple[Scene, float, Patches, Gaps]
+"""A map: its scene, its tolerance, and its patches and gaps."""
 
 FORMAT, VERSION = "pointcoord kinematic map", 1
+ALLOWED = "a map as KinematicMap.save writes it"
 DAMAGED = (
     ValueError,
     EOFError,
@@ -41,185 +47,107 @@ DAMAGED = (
     TypeError,
     MemoryError,  # a size that was never written
     RuntimeError,  # a way of packing that there is not, or a password
+    TokenError,  # an array whose header is no Python
     zipfile.BadZipFile,
     zlib.error,
 )
 """What reading other bytes than those of a map's file ends with."""
 
 
-@dataclass(frozen=True)
-class Stored:
-    """Patches and gaps of a map, read-only.
-
-    Attributes:
-        ranges: of every driving input.
-        order: total degree of the series. halvings: of a range, down to the smallest box.
-        low, high: corners of the patches, in smallest boxes, (P, p).
-        coefficients: of the reported points, (P, powers, 3 points), mm from the mechanism's origin.
-        off: errors of their sums and of the derivatives of these by parts of the half widths, (P, 3
-        points), mm. condition, contraction: of each patch, (P,). gap_low, gap_high: corners of what is not
-        covered, (G, p). gap_reason: place among the reasons, (G,). reasons: in words.
-    """
-
-    ranges: Mapping[str, tuple[float, float]]
-    order: int
-    halvings: int
-    low: Whole
-    high: Whole
-    coefficients: Array
-    off: Jet
-    condition: Array
-    contraction: Array
-    gap_low: Whole
-    gap_high: Whole
-    gap_reason: Whole
-    reasons: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        for array in self.arrays.values():
-            array.setflags(write=False)
-
-    @classmethod
-    def of(cls, domain: Domain, order: int, cover: Cover, reasons: tuple[str, ...]) -> Stored:
-        """What a cover leaves to be kept."""
-        assert cover.patches is not None  # a map without patches is refused
-        patches = cover.patches
-        corners = [np.array([key[end] for key, _ in cover.given_up], dtype=np.int64) for end in (0, 1)]
-        gap_low, gap_high = (corner.reshape(-1, len(domain.free)) for corner in corners)
-        reason = np.array([reasons.index(reason) for _, reason in cover.given_up], dtype=np.int64)
-        return cls(
-            dict(domain.ranges),
-            order,
-            domain.halvings,
-            patches.low,
-            patches.high,
-            patches.coefficients,
-            patches.off,
-            patches.condition,
-            patches.contraction,
-            gap_low,
-            gap_high,
-            reason,
-            reasons,
-        )
-
-    @property
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """The arrays by their names in the file."""
-        return {
-            "low": self.low,
-            "high": self.high,
-            "coefficients": self.coefficients,
-            "off": self.off.value,
-            "off_first": self.off.first,
-            "off_second": self.off.second,
-            "condition": self.condition,
-            "contraction": self.contraction,
-            "gap_low": self.gap_low,
-            "gap_high": self.gap_high,
-            "gap_reason": self.gap_reason,
+def packed(content: Content) -> bytes:
+    """A map as the bytes of its file: a zip archive of one npy file for each array."""
+    scene, tolerance, patches, gaps = content
+    reasons = list(dict.fromkeys(reason for _, reason in gaps))
+    inputs = len(patches.domain.free)
+    gap_low, gap_high = (
+        np.array([key[end] for key, _ in gaps], dtype=np.int64).reshape(-1, inputs) for end in (0, 1)
+    )
+    arrays: dict[str, NDArray[Any]] = {
+        "low": patches.low,
+        "high": patches.high,
+        "coefficients": patches.coefficients,
+        "off": patches.off.value,
+        "off_first": patches.off.first,
+        "off_second": patches.off.second,
+        "condition": patches.condition,
+        "contraction": patches.contraction,
+        "gap_low": gap_low,
+        "gap_high": gap_high,
+        "gap_reason": np.array([reasons.index(reason) for _, reason in gaps], dtype=np.int64),
+    }
+    head = json.dumps(
+        {
+            "scene": scene.model_dump(mode="json", exclude_none=True),
+            "tolerance": tolerance,
+            "ranges": {name: list(ends) for name, ends in patches.domain.ranges.items()},
+            "order": patches.order,
+            "halvings": patches.domain.halvings,
+            "reasons": reasons,
         }
-
-
-def write(path: str | PathLike[str], scene: Scene, tolerance: float, stored: Stored) -> None:
-    """Write a map; see `KinematicMap.save`."""
-    what = _named(path)
-    head = {
-        "scene": scene.model_dump(mode="json", exclude_none=True),
-        "tolerance": tolerance,
-        "ranges": {name: list(ends) for name, ends in stored.ranges.items()},
-        "order": stored.order,
-        "halvings": stored.halvings,
-        "reasons": list(stored.reasons),
-    }
-    text = json.dumps(head)
-    words = {
-        "format": np.array(FORMAT),
-        "version": np.array(VERSION),
-        "head": np.array(text),
-        "digest": np.array(_digest(text, stored.arrays)),
-    }
-    try:
-        with open(path, "wb") as stream:
-            _save(stream, words | stored.arrays)
-    except OSError as error:
-        raise MapError(what, f"cannot be written: {error.strerror}", "a path to write to") from error
-
-
-def _named(path: object) -> str:
-    """A file in words.
-
-    Raises:
-        MapError: what is given is no path.
-    """
-    if not isinstance(path, str | PathLike):
-        raise MapError(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
-    return f"file {fspath(path)!r}"
-
-
-def _save(stream: BinaryIO, arrays: Mapping[str, NDArray[Any]]) -> None:
-    """An npz file: a zip archive of one npy file for each array."""
+    )
+    words = {"format": FORMAT, "version": VERSION, "head": head, "digest": _digest(head, arrays)}
+    stream = BytesIO()
     with zipfile.ZipFile(stream, "w") as archive:
-        for name, array in arrays.items():
+        for name, array in (words | arrays).items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as part:
                 np.lib.format.write_array(part, np.asarray(array, order="C"), allow_pickle=False)
+    return stream.getvalue()
 
 
-def read(path: str | PathLike[str]) -> tuple[Scene, float, Stored]:
-    """Read a map; see `KinematicMap.load`."""
-    what = _named(path)
-    allowed = "a map as KinematicMap.save writes it"
+def unpacked(data: bytes, what: str) -> Content:
+    """A map from the bytes of its file.
+
+    Args:
+        what: the file, in words.
+    Raises:
+        MapError: they are another file's, of another version, or damaged.
+    """
     try:
-        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
-            found = {name: file[name] for name in file.files}
-    except FileNotFoundError as error:
-        raise MapError(what, "does not exist", allowed) from error
-    except OSError as error:
-        raise MapError(what, f"cannot be read: {error.strerror or error}", allowed) from error
+        with zipfile.ZipFile(BytesIO(data)) as archive:
+            # A part is read to its end, where its checksum stands, before anything is made of it.
+            parts = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
+        found = {name: np.lib.format.read_array(BytesIO(part)) for name, part in parts.items()}
     except DAMAGED as error:
-        raise MapError(what, "is no npz file, or a damaged one", allowed) from error
-    if str(found.get("format", "")) != FORMAT:
-        raise MapError(what, "is no kinematic map", allowed)
-    if str(found.get("version", "")) != str(VERSION):
-        raise MapError(
-            what, f"is of version {found.get('version', 'none')}", f"version {VERSION}; make it again"
-        )
+        raise MapError(what, "is no npz file, or a damaged one", ALLOWED) from error
+    if str(found.pop("format", "")) != FORMAT:
+        raise MapError(what, "is no kinematic map", ALLOWED)
+    version = str(found.pop("version", "none"))
+    if version != str(VERSION):
+        raise MapError(what, f"is of version {version}", f"version {VERSION}; make it again")
     try:
         text, digest = str(found.pop("head")), str(found.pop("digest"))
-        arrays = {name: found[name] for name in found if name not in ("format", "version")}
-        if _digest(text, arrays) != digest:
-            raise MapError(what, "is damaged: its numbers are not those that were saved", allowed)
-        head = json.loads(text)
-        scene = Scene.from_mapping(head["scene"], what)
-        stored = Stored(
-            {name: (float(low), float(high)) for name, (low, high) in head["ranges"].items()},
-            int(head["order"]),
-            int(head["halvings"]),
-            arrays["low"],
-            arrays["high"],
-            arrays["coefficients"],
-            Jet(arrays["off"], arrays["off_first"], arrays["off_second"]),
-            arrays["condition"],
-            arrays["contraction"],
-            arrays["gap_low"],
-            arrays["gap_high"],
-            arrays["gap_reason"],
-            tuple(head["reasons"]),
-        )
-        _require_shapes(what, scene_mechanism(scene), stored)
-        return scene, float(head["tolerance"]), stored
+        if _digest(text, found) != digest:
+            raise MapError(what, "is damaged: its numbers are not those that were saved", ALLOWED)
+        return _content(json.loads(text), found, what)
     except MapError:
         raise
     except (KeyError, ValueError, TypeError, PointcoordError) as error:
-        raise MapError(what, f"does not hold a whole map: {error}", allowed) from error
+        raise MapError(what, f"does not hold a whole map: {error}", ALLOWED) from error
 
 
-def _require_shapes(what: str, mechanism: Mechanism, stored: Stored) -> None:
-    """Find arrays that do not fit the scene's points."""
-    free = sum(low < high for low, high in stored.ranges.values())
-    wanted = (len(stored.low), powers(free, stored.order).count, 3 * len(moving_points(mechanism.topology)))
-    if stored.coefficients.shape != wanted:
-        raise MapError(what, f"has coefficients of shape {stored.coefficients.shape}", f"{wanted}")
+def _content(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], what: str) -> Content:
+    """A map from what its file holds."""
+    scene = Scene.from_mapping(head["scene"], what)
+    ranges = {name: (float(low), float(high)) for name, (low, high) in head["ranges"].items()}
+    domain, order = Domain(scene_mechanism(scene), ranges, int(head["halvings"])), int(head["order"])
+    points = moving_points(domain.mechanism.topology)
+    wanted = (len(arrays["low"]), powers(len(domain.free), order).count, 3 * len(points))
+    if arrays["coefficients"].shape != wanted:
+        raise MapError(what, f"has coefficients of shape {arrays['coefficients'].shape}", f"{wanted}")
+    patches = Patches(
+        domain,
+        order,
+        arrays["low"],
+        arrays["high"],
+        arrays["coefficients"],
+        Jet(arrays["off"], arrays["off_first"], arrays["off_second"]),
+        arrays["condition"],
+        arrays["contraction"],
+    )
+    corners = zip(arrays["gap_low"].tolist(), arrays["gap_high"].tolist(), strict=True)
+    reasons = (head["reasons"][place] for place in arrays["gap_reason"])
+    keys = ((tuple(low), tuple(high)) for low, high in corners)
+    return scene, float(head["tolerance"]), patches, tuple(zip(keys, reasons, strict=True))
 
 
 def _digest(text: str, arrays: Mapping[str, NDArray[Any]]) -> str:

@@ -22,6 +22,11 @@ from pointcoord.patches.jet import Jet
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
+# Orders: fewer show nothing, a double has no more digits; of three inputs 12 are 455 powers.
+LEAST_ORDER, MOST_DIGITS, MOST_ORDER = 6, 16, {1: 20, 2: 20, 3: 12}
+# Least width of a range, in parts of its size or of 1, of an input that hardly moves.
+NARROWEST = 2.0**-20
+
 
 @dataclass(frozen=True)
 class Domain:
@@ -76,11 +81,25 @@ class Domain:
         series |= {name: values[..., i, None] for i, name in enumerate(self.free)}
         return self.mechanism.known_series(series)[..., 0, :]
 
-    def nearest_place(self, values: Mapping[str, Array]) -> Whole:
-        """The place that is nearest to values of the inputs, in halves of the smallest box, (p,)."""
+    def nearest_place(self, values: Array) -> Whole:
+        """The place that is nearest to values of the free inputs, in halves of the smallest box, (p,)."""
         low, high = self.ends
-        share = (np.array([float(values[name]) for name in self.free]) - low) / (high - low)
+        share = (values - low) / (high - low)
         return np.clip(np.round(share * 2 * self.parts), 0, 2 * self.parts).astype(np.int64)
+
+    def order_for(self, tolerance: float, derivative: int = 0) -> int:
+        """Total degree of the series: one for each digit of a tolerance, relative to the mechanism's size.
+
+        A pose costs in proportion to the number of powers, order^p, and the number of patches falls with the
+        order; between half and twice this order both together change little. A derivative loses as many
+        digits as two orders gain; of more inputs fewer orders are as many powers.
+
+        Args:
+            tolerance: mm. derivative: highest that the limits hold.
+        """
+        digits = round(-np.log10(tolerance / float(self.mechanism.unit)))
+        kept = int(np.clip(digits, LEAST_ORDER, MOST_DIGITS))
+        return min(kept + 2 * derivative, MOST_ORDER.get(len(self.free), LEAST_ORDER))
 
     def known_over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Jet]:
         """Series of the known coordinates over boxes, shapes (P, p).
@@ -121,3 +140,9 @@ class Domain:
             return (*drive.series_over(middle[:, i], half[:, i], order, drawing), i)
         held = np.full(len(middle), self.ranges[drive.input][0])
         return (*drive.series_over(held, np.zeros(len(middle)), order, drawing), None)
+
+
+def widened(low: float, high: float) -> tuple[float, float]:
+    """A range that is no narrower than can be divided."""
+    room = NARROWEST * max(abs(low), abs(high), 1.0) - (high - low)
+    return (low - 0.5 * room, high + 0.5 * room) if room > 0.0 else (low, high)

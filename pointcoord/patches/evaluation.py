@@ -6,6 +6,9 @@ With the powers of a pose's inputs and their time derivatives (see `numerics.mon
     b'^2
 
 are three products with one and the same matrix of coefficients.
+
+One pose alone, as another program's time loop asks for it, is summed variable by variable instead: nearly all
+of its time goes into calls, and these are a tenth as many.
 """
 
 from __future__ import annotations
@@ -28,56 +31,35 @@ BLOCK = 512
 
 
 def sum_series(
-    coefficients: Array,
-    middle: Array,
-    half: Array,
-    order: int,
-    patch: Whole,
-    states: Sequence[Array],
-) -> Array:
-    """Sum each pose's series, and its time derivatives.
-
-    Args:
-        coefficients: shape (P, powers, m). middle, half: of the patches' boxes, (P, p).
-        patch: which one each pose lies on, shape (N,).
-        states: inputs and their time derivatives, each (N, p).
-    Returns:
-        Shape (derivatives + 1, N, m), per s^d.
-    """
-    result = np.empty((len(states), len(patch), coefficients.shape[-1]))
-    summing = _Summing.of(coefficients, middle, half, order, states)
-    for number, members in _by_patch(patch, len(coefficients)):
-        for here, d, block in summing.blocks(number, members):
-            summed = block[1:].T @ coefficients[number, 1:]
-            if d == 0:
-                summed += coefficients[number, 0]
-            result[d, here] = summed
-    return result
-
-
-def sum_rows(
-    tables: Sequence[Array],
-    middle: Array,
-    half: Array,
-    order: int,
-    patch: Whole,
-    states: Sequence[Array],
+    tables: Sequence[Array], boxes: tuple[Array, Array], order: int, patch: Whole, states: Sequence[Array]
 ) -> list[Array]:
-    """The same with poses side by side in memory, and of each derivative only what is wanted.
+    """Sum each pose's series, and its time derivatives; poses lie side by side in memory.
 
     Args:
         tables: by derivative the coefficients of what is wanted of it, each (P, powers, m).
+        boxes: middles and half widths of the patches, each (P, p).
+        patch: which one each pose lies on, shape (N,).
+        states: inputs and their time derivatives, each (N, p).
     Returns:
-        By derivative, each (m, N).
+        By derivative, each (m, N), per s^d.
     """
     found = [np.empty((table.shape[-1], len(patch))) for table in tables]
-    summing = _Summing.of(tables[0], middle, half, order, states)
+    # Memory that the system has to map takes longer than filling it does.
+    room = np.empty((len(states) + 1, tables[0].shape[1], min(len(patch), BLOCK)))
     for number, members in _by_patch(patch, len(tables[0])):
-        for here, d, block in summing.blocks(number, members):
-            summed = tables[d][number, 1:].T @ block[1:]
-            if d == 0:
-                summed += tables[0][number, 0, :, None]
-            found[d][:, here] = summed
+        middle, scale = boxes[0][number], 1.0 / boxes[1][number]
+        count = len(patch) if members is None else len(members)
+        for low in range(0, count, BLOCK):
+            here = slice(low, min(low + BLOCK, count)) if members is None else members[low : low + BLOCK]
+            local = [np.array(state[here].T, order="C") for state in states]
+            local[0] -= middle[:, None]
+            for state in local:
+                state *= scale[:, None]
+            for d, block in enumerate(monomials(local, order, room)):
+                summed = tables[d][number, 1:].T @ block[1:]
+                if d == 0:
+                    summed += tables[0][number, 0, :, None]
+                found[d][:, here] = summed
     return found
 
 
@@ -97,132 +79,57 @@ def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp
         yield int(number), by_patch[last[number] - counts[number] : last[number]]
 
 
-@dataclass(frozen=True)
-class _Summing:
-    """Powers of the poses on a patch, in blocks that share their memory."""
+def table_of_exponents(coefficients: Array, inputs: int, order: int) -> tuple[Array, Array]:
+    """The first coefficient of each sum, (m,), and a table of the others by exponents, (order + 1, .., m).
 
-    middle: Array
-    half: Array
-    order: int
-    states: Sequence[Array]
-    room: Array
-
-    @classmethod
-    def of(
-        cls, coefficients: Array, middle: Array, half: Array, order: int, states: Sequence[Array]
-    ) -> _Summing:
-        count = min(len(states[0]), BLOCK)
-        return cls(middle, half, order, states, np.empty((len(states) + 1, coefficients.shape[1], count)))
-
-    def blocks(
-        self, number: int, members: NDArray[np.intp] | None
-    ) -> Iterator[tuple[slice | NDArray[np.intp], int, Array]]:
-        """Places of some poses, a derivative, and the powers' derivatives there, (powers, poses)."""
-        scale = 1.0 / self.half[number]
-        count = len(self.states[0]) if members is None else len(members)
-        for low in range(0, count, BLOCK):
-            here = slice(low, min(low + BLOCK, count)) if members is None else members[low : low + BLOCK]
-            local = [np.array(state[here].T, order="C") for state in self.states]
-            local[0] -= self.middle[number][:, None]
-            for state in local:
-                state *= scale[:, None]
-            for d, block in enumerate(monomials(local, self.order, self.room)):
-                yield here, d, block
-
-
-@dataclass(frozen=True)
-class _Exponents:
-    """Of one pose's powers.
-
-    Attributes:
-        each: 0 .. order. which: exponents of every power but the first, by variable.
-        lowered, factors: exponents and factors of x^k and of its first two derivatives, (3, order + 1).
-        signs: of powers of negative numbers with these exponents, likewise.
+    Args:
+        coefficients: of one patch, (powers, m).
     """
-
-    each: Array
-    which: tuple[NDArray[np.intp], ...]
-    lowered: Array
-    factors: Array
-    signs: Array
+    table = np.zeros(((order + 1,) * inputs) + coefficients.shape[1:])
+    exponents = powers(inputs, order).exponents[1:]
+    table[tuple(exponents.T)] = coefficients[1:]
+    return coefficients[0], table
 
 
-def _powers(x: float, exponents: Array, signs: Array) -> Array:
-    """Powers of a number; those of a negative one take three times as long as those of its magnitude."""
-    if x >= 0.0:
-        return np.asarray(x**exponents)
-    return np.asarray((-x) ** exponents * signs)
+def sum_one(first: Array, table: Array, states: Sequence[Sequence[float]]) -> Array:
+    """One pose's sums and their time derivatives, (derivatives + 1, m).
+
+    Args:
+        first, table: as `table_of_exponents` gives them.
+        states: inputs in half widths from the middle, and their time derivatives, each (p,).
+    """
+    count, width = len(states), len(table)
+    each, lowered, signs, factors = _powers_of_one(width)
+    if count == 1:
+        for x in states[0]:
+            # Powers of a negative number take three times as long as those of its magnitude.
+            row = x**each if x >= 0.0 else (-x) ** each * signs[0]
+            table = row.dot(table.reshape(width, -1))
+        return (table + first).reshape(1, -1)
+    # By each variable the derivatives up to the highest: all mixed ones, of which some are not wanted.
+    for i, x in enumerate(states[0]):
+        rows = abs(x) ** lowered[:count] * (factors[:count] if x >= 0.0 else (factors * signs)[:count])
+        table = rows @ table.reshape(count**i, width, -1)
+    inputs = len(states[0])
+    weights = np.zeros((count, count**inputs))
+    weights[0, 0] = 1.0
+    places = [count ** (inputs - 1 - i) for i in range(inputs)]
+    for i, place in enumerate(places):
+        weights[1, place] = states[1][i]
+        if count > 2:
+            weights[2, place] = states[2][i]
+            for j, other in enumerate(places):
+                weights[2, place + other] += states[1][i] * states[1][j]
+    found = weights @ table.reshape(count**inputs, -1)
+    found[0] += first
+    return np.asarray(found)
 
 
 @lru_cache(maxsize=32)
-def exponents(inputs: int, order: int) -> _Exponents:
-    """Of series in some inputs."""
-    each = np.arange(order + 1.0)
+def _powers_of_one(width: int) -> tuple[Array, Array, Array, Array]:
+    """Exponents 0 .. width - 1; and of x^k and its two derivatives, each (3, width), the exponents, the signs
+    for negative x, and the factors."""
+    each = np.arange(float(width))
     lowered = np.maximum(each - np.arange(3.0)[:, None], 0.0)
-    factors = np.stack([np.ones(order + 1), each, each * (each - 1.0)])
-    which = tuple(np.ascontiguousarray(k) for k in powers(inputs, order).exponents[1:].T)
-    return _Exponents(each, which, lowered, factors, np.where(lowered % 2.0 == 1.0, -1.0, 1.0))
-
-
-@dataclass(frozen=True)
-class OnePatch:
-    """A patch made ready for one pose at a time, with as few calls as possible.
-
-    Attributes:
-        places: middle and half width of each input. first: the first coefficient of each sum, (m,).
-        later: the others, (powers - 1, m).
-    """
-
-    places: tuple[tuple[float, float], ...]
-    first: Array
-    later: Array
-    exponents: _Exponents
-
-    @classmethod
-    def of(cls, coefficients: Array, middle: Array, half: Array, order: int) -> OnePatch:
-        """From its coefficients, shape (powers, m), middle and half widths, (p,)."""
-        places = tuple(zip(middle.tolist(), half.tolist(), strict=True))
-        return cls(places, coefficients[0], coefficients[1:], exponents(len(middle), order))
-
-    def at(self, values: Sequence[float]) -> Array:
-        """The sums, (m,)."""
-        row: Array | None = None
-        each, signs = self.exponents.each, self.exponents.signs[0]
-        for value, (middle, half), k in zip(values, self.places, self.exponents.which, strict=True):
-            own = _powers((value - middle) / half, each, signs).take(k)
-            row = own if row is None else row * own
-        assert row is not None  # a map has an input
-        found: Array = row.dot(self.later)
-        found += self.first
-        return found
-
-    def moving(self, states: Sequence[Sequence[float]]) -> Array:
-        """The sums and their time derivatives, (derivatives + 1, m), per s^d.
-
-        By the chain rule f(x)' = f_x x' and f(x)'' = f_x x'' + f_xx x'^2 for the powers of each variable, and
-        Leibniz' rule for their products.
-
-        Args:
-            states: inputs and their time derivatives, each (p,).
-        """
-        count = len(states)
-        rows: list[Array] = []
-        lowered, factors = self.exponents.lowered[:count], self.exponents.factors[:count]
-        for i, ((middle, half), k) in enumerate(zip(self.places, self.exponents.which, strict=True)):
-            by_x = _powers((states[0][i] - middle) / half, lowered, self.exponents.signs[:count])
-            by_x *= factors
-            rate = states[1][i] / half
-            own = [by_x[0], rate * by_x[1]]
-            if count > 2:
-                own.append(states[2][i] / half * by_x[1] + rate * rate * by_x[2])
-            here = [part.take(k) for part in own]
-            if not rows:
-                rows = here
-                continue
-            product = [rows[0] * here[0], rows[1] * here[0] + rows[0] * here[1]]
-            if count > 2:
-                product.append(rows[2] * here[0] + 2.0 * (rows[1] * here[1]) + rows[0] * here[2])
-            rows = product
-        found: Array = np.array(rows).dot(self.later)
-        found[0] += self.first
-        return found
+    factors = np.stack([np.ones(width), each, each * (each - 1.0)])
+    return each, lowered, np.where(lowered % 2.0, -1.0, 1.0), factors

@@ -17,21 +17,23 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.power_series import expand
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
+from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.reported_points import reported_points
-from pointcoord.solve.follower import follow
+from pointcoord.solve.assembly import assemble
+from pointcoord.solve.follower import Path, follow
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -109,59 +111,6 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Patches:
-    """Proven patches.
-
-    Attributes:
-        low, high: corners of the boxes, in the smallest ones, (P, p).
-        series: of the unknown coordinates, (P, powers, unknowns), in the mechanism's units.
-        error: of these on each patch, (P, unknowns). unique_within: no other assembly is nearer, likewise.
-        coefficients: of the reported points, (P, powers, 3 points), mm. off: errors of their sums.
-        condition: condition number of the Jacobian at the middle, (P,).
-        contraction: of the proof, (P,).
-    """
-
-    low: Whole
-    high: Whole
-    series: Array
-    error: Array
-    unique_within: Array
-    coefficients: Array
-    off: Jet
-    condition: Array
-    contraction: Array
-
-    def taken(self, places: NDArray[np.intp]) -> Patches:
-        """Some of them."""
-        return Patches(
-            low=self.low[places],
-            high=self.high[places],
-            series=self.series[places],
-            error=self.error[places],
-            unique_within=self.unique_within[places],
-            coefficients=self.coefficients[places],
-            off=self.off.each(lambda part: part[places]),
-            condition=self.condition[places],
-            contraction=self.contraction[places],
-        )
-
-    @classmethod
-    def joined(cls, parts: Sequence[Patches]) -> Patches:
-        """Several as one."""
-        return Patches(
-            low=np.concatenate([part.low for part in parts]),
-            high=np.concatenate([part.high for part in parts]),
-            series=np.concatenate([part.series for part in parts]),
-            error=np.concatenate([part.error for part in parts]),
-            unique_within=np.concatenate([part.unique_within for part in parts]),
-            coefficients=np.concatenate([part.coefficients for part in parts]),
-            off=Jet(*(np.concatenate(each) for each in zip(*(p.off.parts for p in parts), strict=True))),
-            condition=np.concatenate([part.condition for part in parts]),
-            contraction=np.concatenate([part.contraction for part in parts]),
-        )
-
-
-@dataclass(frozen=True)
 class Cover:
     """What was covered, and what not: boxes by their corners, with the reason.
 
@@ -169,9 +118,14 @@ class Cover:
         work: what it took.
     """
 
-    patches: Patches | None
+    patches: ProvenPatches
     given_up: tuple[tuple[Key, str], ...]
     work: Work
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why something is not covered, each once."""
+        return tuple(dict.fromkeys(reason for _, reason in self.given_up))
 
 
 @dataclasses.dataclass
@@ -193,7 +147,7 @@ class _Flood:
     waiting: dict[Key, None] = field(default_factory=dict)
     entered: dict[Key, Entry] = field(default_factory=dict)
     given_up: dict[Key, str] = field(default_factory=dict)
-    kept: list[Patches] = field(default_factory=list)
+    kept: list[ProvenPatches] = field(default_factory=list)
 
     @property
     def count(self) -> int:
@@ -265,7 +219,9 @@ class _Flood:
         if near.any():
             good = proven[near]
             self.kept.append(
-                Patches(
+                ProvenPatches(
+                    domain=self.domain,
+                    order=self.order,
                     low=np.array([boxes[place][0][0] for place in good], dtype=np.int64),
                     high=np.array([boxes[place][0][1] for place in good], dtype=np.int64),
                     series=series[good, :, : system.unknowns],
@@ -321,7 +277,7 @@ class _Flood:
                     if part in self.waiting:
                         self._enter_neighbours(kept, [part])
 
-    def _enter_neighbours(self, patches: Patches, keys: list[Key]) -> None:
+    def _enter_neighbours(self, patches: ProvenPatches, keys: list[Key]) -> None:
         """Enter boxes where they touch patches."""
         if not keys:
             return
@@ -333,7 +289,7 @@ class _Flood:
             return
         twice = shared_place(patches.low[which], patches.high[which], low[box], high[box])
         values = self.domain.inputs_at(twice)
-        unknown = unknowns_at(self.domain, self.order, patches, which, values)
+        unknown = patches.unknowns_at(which, values)
         y = np.concatenate([unknown, self.domain.known_at(values)], axis=-1)
         for place, number in enumerate(box):
             del self.waiting[keys[number]]
@@ -370,14 +326,41 @@ def flood(
         state.given_up[key] = TOO_MANY
     for key in state.waiting:
         state.given_up[key] = TOO_MANY if state.entered else UNREACHED
-    if not state.kept:
-        return Cover(None, tuple(state.given_up.items()), state.work)
-    patches = Patches.joined(state.kept)
-    dropped = _seams(domain, order, patches)
+    patches = ProvenPatches.none(domain, order).joined(state.kept)
+    dropped = _seams(patches)
     for place in np.flatnonzero(dropped):
         key = (tuple(patches.low[place].tolist()), tuple(patches.high[place].tolist()))
         state.given_up[key] = SEAM
     return Cover(patches.taken(np.flatnonzero(~dropped)), tuple(state.given_up.items()), state.work)
+
+
+def flood_from_drawing(
+    domain: Domain,
+    order: int,
+    limits: Limits,
+    closed: Path,
+    most: int,
+    wanted: Marked | None = None,
+    factorisations: int | None = None,
+) -> Cover:
+    """Cover a domain from its place that is nearest to the closed drawing.
+
+    Raises:
+        InputOutOfRange: an end of a range at which an input has no meaning.
+        AssemblyError: that place cannot be reached from the drawing.
+    """
+    domain.known_at(np.stack(domain.ends))
+    twice = place_of_drawing(domain, closed)
+    held = {name: np.array(low) for name, (low, high) in domain.ranges.items() if low == high}
+    inputs = held | dict(zip(domain.free, domain.inputs_at(twice), strict=True))
+    start = assemble(domain.mechanism, inputs, None, closed)
+    return flood(domain, order, limits, (twice, start.y), most, wanted, factorisations)
+
+
+def place_of_drawing(domain: Domain, closed: Path) -> Whole:
+    """The place that is nearest to the closed drawing, in halves of the smallest box, (p,)."""
+    drawn = domain.mechanism.input_values(closed.y[domain.mechanism.map.unknowns :])
+    return domain.nearest_place(np.array([float(drawn[name]) for name in domain.free]))
 
 
 def last_terms(series: Array, inputs: int, order: int) -> tuple[Array, Array]:
@@ -400,24 +383,13 @@ def shared_place(low: Whole, high: Whole, other_low: Whole, other_high: Whole) -
     return np.asarray(np.maximum(low, other_low) + np.minimum(high, other_high))
 
 
-def unknowns_at(
-    domain: Domain, order: int, patches: Patches, which: NDArray[np.intp], values: Array
-) -> Array:
-    """Unknown coordinates of some patches at one place each, shapes (N,) and (N, p) to (N, unknowns)."""
-    middle, half = domain.middle_and_half(patches.low[which], patches.high[which])
-    (powers,) = monomials([((values - middle) / half).T], order)
-    return np.asarray(np.einsum("kn,nku->nu", powers, patches.series[which]))
-
-
-def _seams(domain: Domain, order: int, patches: Patches) -> NDArray[np.bool_]:
+def _seams(patches: ProvenPatches) -> NDArray[np.bool_]:
     """Patches that are another assembly than a neighbour that was reached before them, shape (P,)."""
     dropped = np.zeros(len(patches.low), dtype=bool)
     one, other = np.nonzero(np.triu(touching(patches.low, patches.high, patches.low, patches.high)))
     twice = shared_place(patches.low[one], patches.high[one], patches.low[other], patches.high[other])
-    values = domain.inputs_at(twice)
-    apart = np.abs(
-        unknowns_at(domain, order, patches, one, values) - unknowns_at(domain, order, patches, other, values)
-    )
+    values = patches.domain.inputs_at(twice)
+    apart = np.abs(patches.unknowns_at(one, values) - patches.unknowns_at(other, values))
     # The one's assembly is in the ball of the other's within which there is only one.
     alike = (apart + patches.error[one] < patches.unique_within[other]).all(axis=-1)
     alike |= (apart + patches.error[other] < patches.unique_within[one]).all(axis=-1)

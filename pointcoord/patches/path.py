@@ -61,6 +61,10 @@ class Spans:
         """Some of them."""
         return Spans(self.first[places], self.last[places], self.low[places], self.high[places])
 
+    def along(self, columns: list[int]) -> Spans:
+        """The same with some of the inputs."""
+        return Spans(self.first, self.last, self.low[:, columns], self.high[:, columns])
+
     def cut(self, laws: Sequence[TimeFunction], parts: int) -> Spans:
         """Each cut into parts of one length."""
         shares = np.arange(parts + 1) / parts

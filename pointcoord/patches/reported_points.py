@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.bounds.enclosed_points import exact_weights
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.kantorovich import INFLATION
@@ -73,7 +74,9 @@ def _carried(
     """Series of a carried point, in units, and its error."""
     (base, base_error), (first, first_error), (second, second_error) = carriers
     inputs = base_error.first.shape[1]
-    a, b, c = (float(weight) for weight in mechanism.carrier_weights[name])
+    weights, exact = mechanism.carrier_weights[name], exact_weights(mechanism, name)
+    doubts = np.abs((exact.high - weights) + exact.low) + exact.radius[0]
+    a, b, c = (float(weight) for weight in weights)
     e1, e2 = first - base, second - base
     off1, off2 = first_error + base_error, second_error + base_error
     normal = cross_series(e1, e2, inputs, doubled=True)
@@ -84,7 +87,6 @@ def _carried(
     crossed = _cross_sizes(size1, size2)
     off3 = _cross_sizes(size1, off2) + _cross_sizes(off1, size2) + _cross_sizes(off1, off2)
     off3 = off3 + beyond + crossed.scaled((own.count + 6) * UNIT_ROUNDOFF)
-    doubts = _doubts_of_weights(mechanism, name)
     sizes = (size1, size2, crossed)
     error = base_error + off1.scaled(abs(a)) + off2.scaled(abs(b)) + off3.scaled(abs(c))
     for size, weight, doubt in zip(sizes, (a, b, c), doubts, strict=True):
@@ -96,25 +98,3 @@ def _carried(
 def _cross_sizes(a: Jet, b: Jet) -> Jet:
     """Bounds of a x b from those of the components."""
     return a.taken(CYCLE) * b.taken(BACK) + a.taken(BACK) * b.taken(CYCLE)
-
-
-def _doubts_of_weights(mechanism: Mechanism, name: str) -> Array:
-    """How far a, b and c may be off of the drawn point, (3,).
-
-    They are |W| of what they leave of it, W the inverse of the frame, up to a factor of 2 for a defect of W
-    below one half; infinite where it is not.
-    """
-    vectors = mechanism.drawing.vectors
-    base, first, second = (vectors[point] for point in mechanism.topology.carried[name])
-    e1, e2 = first - base, second - base
-    frame = np.stack([e1, e2, np.cross(e1, e2)], axis=-1)
-    weights = mechanism.carrier_weights[name]
-    rest = np.abs(vectors[name] - base - frame @ weights)
-    crossed = np.abs(e1)[CYCLE] * np.abs(e2)[BACK] + np.abs(e1)[BACK] * np.abs(e2)[CYCLE]
-    parts = np.stack([np.abs(e1), np.abs(e2), crossed], axis=-1)
-    rest += 10.0 * UNIT_ROUNDOFF * (np.abs(vectors[name]) + np.abs(base) + parts @ np.abs(weights))
-    lengths = np.linalg.norm(frame, axis=0)
-    inverse = np.linalg.inv(frame / lengths)
-    if not np.abs(np.eye(3) - inverse @ (frame / lengths)).sum(axis=-1).max() < 0.5:
-        return np.full(3, np.inf)
-    return np.asarray(2.0 * (np.abs(inverse) @ rest).max() / lengths)

@@ -14,9 +14,8 @@ from pointcoord.bounds.enclosed_rates import Summed
 from pointcoord.errors import OutsideMotion
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers
-from pointcoord.patches.evaluation import sum_rows, sum_series
-from pointcoord.patches.flood import Patches
-from pointcoord.patches.lookup import Lookup
+from pointcoord.patches.evaluation import sum_series
+from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import WayMap
 from pointcoord.results.readout import Readout
@@ -25,7 +24,6 @@ from pointcoord.solve.status import Status
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
-Whole = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -51,7 +49,12 @@ class StatesOfMap:
     @property
     def orders(self) -> tuple[int, ...]:
         """Of each patch."""
-        return () if self.way.patches is None else (self.way.order,) * len(self.way.patches.low)
+        return (self.patches.order,) * len(self.patches.low)
+
+    @property
+    def patches(self) -> ProvenPatches:
+        """Those along the way."""
+        return self.way.patches
 
     @property
     def stop(self) -> float:
@@ -75,10 +78,9 @@ class StatesOfMap:
         topology, drawn = readout.mechanism.topology, readout.mechanism.drawing.vectors
         if rows is None:
             rows = np.empty((table.height, len(instants)))
-        middle, half = self._boxes
-        inputs, patch = self._inputs(instants)
+        inputs = self._inputs(instants)
         wanted, tables = self._tables
-        sums = sum_rows(tables, middle, half, self.way.order, patch, inputs)
+        sums = self.patches.sums(tables, inputs)
         states: list[dict[str, Array]] = [{} for _ in inputs]
         for order, names in enumerate(wanted):
             for i, name in enumerate(names):
@@ -100,38 +102,38 @@ class StatesOfMap:
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
         mechanism = self.readout.mechanism
-        states, patch = self._inputs(instants)
-        unknown = self._sums(self._patches.series, (states[: derivatives + 1], patch))
+        inputs = self._inputs(instants)[: derivatives + 1]
+        unknown = self.patches.sums([self.patches.series] * len(inputs), inputs)
         laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
         known = mechanism.known_series(laws)
         return [
-            np.concatenate([state, factorial(d) * known[:, d]], axis=-1) for d, state in enumerate(unknown)
+            np.concatenate([state.T, factorial(d) * known[:, d]], axis=-1) for d, state in enumerate(unknown)
         ]
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
-        states, patch = self._inputs(instants)
-        middle, half = self._boxes
-        local = [(state - (middle[patch] if d == 0 else 0.0)) / half[patch] for d, state in enumerate(states)]
-        sizes = [np.abs(state) for state in local]
-        degree = powers(len(self.way.domain.free), self.way.order).exponents.sum(axis=-1)
-        zero, one = np.zeros_like(middle), np.ones_like(half)
-        terms = np.abs(self._patches.series)
+        inputs, patch = self._inputs(instants), self.pieces(instants)
+        middle, half = self.patches.boxes
+        sizes = [
+            np.abs(state - (middle[patch] if d == 0 else 0.0)) / half[patch] for d, state in enumerate(inputs)
+        ]
+        order, free = self.patches.order, len(self.patches.domain.free)
+        degree = powers(free, order).exponents.sum(axis=-1)
+        terms, unit_boxes = np.abs(self.patches.series), (np.zeros_like(middle), np.ones_like(half))
         known = len(self.readout.mechanism.drawn) - terms.shape[-1]
 
-        def sums(least: int, most: int) -> Array:
+        def sums(least: int, most: int) -> list[Array]:
             """Of the terms of some degrees."""
             kept = terms * ((degree >= least) & (degree <= most))[:, None]
-            found = sum_series(kept, zero, one, self.way.order, patch, sizes)
-            return np.concatenate([found, np.zeros((*found.shape[:-1], known))], axis=-1)
+            found = sum_series([kept] * len(sizes), unit_boxes, order, patch, sizes)
+            return [np.pad(state.T, ((0, 0), (0, known))) for state in found]
 
-        last = self.way.order
-        parts = (sums(last - 1, last), sums(last - 3, last - 2), sums(0, last))
+        parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
     def pieces(self, instants: Array) -> NDArray[np.intp]:
         """Number of the patch of each instant."""
-        return self._inputs(instants)[1]
+        return self.patches.lookup.at(self._inputs(instants)[0])
 
     def unsolved(self, instants: Array) -> Array:
         """Nothing: middles of patches are solved for as finely as rounding allows."""
@@ -148,24 +150,11 @@ class StatesOfMap:
             coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
         )
 
-    def _inputs(self, instants: Array) -> tuple[list[Array], Whole]:
-        """The free inputs and as many derivatives as are wanted, each (N, p), and which patch each is on."""
+    def _inputs(self, instants: Array) -> list[Array]:
+        """The free inputs and as many derivatives as are wanted, each (N, p)."""
         highest = self.readout.plan.derivative
-        laws = [self.functions[name].series(instants, highest) for name in self.way.domain.free]
-        series = np.stack(laws, axis=-1)
-        states = [factorial(d) * series[:, d] for d in range(highest + 1)]
-        return states, self._lookup.at(states[0])
-
-    def _sums(self, coefficients: Array, inputs: tuple[list[Array], Whole]) -> Array:
-        """Sums of the patches' series and their time derivatives, (derivatives + 1, N, m)."""
-        middle, half = self._boxes
-        states, patch = inputs
-        return sum_series(coefficients, middle, half, self.way.order, patch, states)
-
-    @property
-    def _patches(self) -> Patches:
-        assert self.way.patches is not None  # nothing is read where nothing is covered
-        return self.way.patches
+        laws = [self.functions[name].series(instants, highest) for name in self.patches.domain.free]
+        return [factorial(d) * np.stack([law[:, d] for law in laws], axis=-1) for d in range(highest + 1)]
 
     @cached_property
     def _tables(self) -> tuple[list[list[str]], list[Array]]:
@@ -176,12 +165,4 @@ class StatesOfMap:
             for order in range(self.readout.plan.derivative + 1)
         ]
         columns = [[3 * place.index(name) + axis for name in names for axis in range(3)] for names in wanted]
-        return wanted, [np.ascontiguousarray(self._patches.coefficients[..., c]) for c in columns]
-
-    @cached_property
-    def _boxes(self) -> tuple[Array, Array]:
-        return self.way.domain.middle_and_half(self._patches.low, self._patches.high)
-
-    @cached_property
-    def _lookup(self) -> Lookup:
-        return self.way.lookup
+        return wanted, [np.ascontiguousarray(self.patches.coefficients[..., c]) for c in columns]

@@ -5,8 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, InputOutOfRange, Scene, UnknownName, simulate, solve_poses
-from pointcoord.patches import unrelated_poses
+from pointcoord import AssemblyError, InputOutOfRange, Scene, UnknownName, poses, simulate, solve_poses
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import assemble
 
@@ -37,16 +36,16 @@ def test_poses_on_patches_are_those_from_paths_of_their_own(
     scene, rng = Scene.load(name), np.random.default_rng(12)
     inputs = {"arm_angle": CARS[name] + rng.uniform(-0.15, 0.15, 600), "rack": rng.uniform(-25.0, 25.0, 600)}
     left: list[int] = []
-    by_paths = unrelated_poses._by_paths
+    by_paths = poses._by_paths
 
-    def counted(mechanism: Any, closed: Any, inputs: Any, some: np.ndarray, poses: Any) -> Any:
+    def counted(mechanism: Any, closed: Any, inputs: Any, some: np.ndarray, *rest: Any) -> Any:
         left.append(len(some))
-        return by_paths(mechanism, closed, inputs, some, poses)
+        return by_paths(mechanism, closed, inputs, some, *rest)
 
-    monkeypatch.setattr(unrelated_poses, "_by_paths", counted)
+    monkeypatch.setattr(poses, "_by_paths", counted)
     on_patches = solve_poses(scene, inputs, tolerance=1e-9)
     assert not left
-    monkeypatch.setattr(unrelated_poses, "FEW", 601)
+    monkeypatch.setattr(poses, "FEW", 601)
     from_paths = solve_poses(scene, inputs, tolerance=1e-9)
     assert sum(left) == 600
     topology = scene_mechanism(scene).topology
@@ -67,7 +66,7 @@ def test_poses_beside_a_lock_are_on_patches_or_on_paths_and_the_rest_say_why(
     scene, rng = Scene.load("bounce"), np.random.default_rng(16)
     inputs = {"arm_angle": rng.uniform(0.4, 2.8, 400), "rack": rng.uniform(-5.0, 5.0, 400)}
     found = solve_poses(scene, inputs, tolerance=1e-9)
-    monkeypatch.setattr(unrelated_poses, "FEW", 401)
+    monkeypatch.setattr(poses, "FEW", 401)
     wanted = solve_poses(scene, inputs, tolerance=1e-9)
     assert 0 < len(found.failures) < 200
     assert found.failures.keys() == wanted.failures.keys()

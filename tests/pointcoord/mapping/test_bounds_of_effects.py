@@ -106,8 +106,8 @@ def test_bounds_are_not_far_from_what_a_coarse_map_is_off(name: str) -> None:
 def test_a_map_that_is_off_by_more_than_it_says_is_found_out(name: str, derivative: int) -> None:
     """Errors of its sums, of their first or of their second derivatives are told a millionth as large."""
     map, scene = coarse(name), with_all_effects(name)
-    parts = [part * (1e-6 if d == derivative else 1.0) for d, part in enumerate(map.stored.off.parts)]
-    wrong = KinematicMap(scene, map.tolerance, replace(map.stored, off=Jet(*parts)))
+    parts = [part * (1e-6 if d == derivative else 1.0) for d, part in enumerate(map.series.off.parts)]
+    wrong = KinematicMap(scene, map.tolerance, replace(map.series, off=Jet(*parts)), map.gaps)
     states = states_of(scene, name, 23)
     truth = exact(scene, states)
     told, honest = (shares(m(*states, bounds=True), truth) for m in (wrong, map))

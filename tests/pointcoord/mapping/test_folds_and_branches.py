@@ -116,14 +116,14 @@ def test_a_patch_of_another_assembly_is_given_up_at_its_seam(monkeypatch: pytest
     start = assemble(mechanism, {"arm_angle": np.array(1.0), "rack": np.array(0.0)})
     entry = (np.array([64, 64]), start.y)
     sound = flood(domain, 8, Limits(1e-9), entry, 4096)
-    assert sound.patches is not None
     assert sound.given_up == ()
     kept = sound.patches
     series = kept.series.copy()
     series[-1, 0] += 2.0 * kept.unique_within[-1]  # an assembly that is proven to be another one
-    monkeypatch.setattr(flooding.Patches, "joined", lambda parts: replace(kept, series=series))
+    monkeypatch.setattr(
+        flooding.ProvenPatches, "joined", lambda none, kept: replace(sound.patches, series=series)
+    )
     seamed = flood(domain, 8, Limits(1e-9), entry, 4096)
-    assert seamed.patches is not None
     assert len(seamed.patches.low) == len(kept.low) - 1
     assert [reason for _, reason in seamed.given_up] == [SEAM]
 
@@ -139,7 +139,6 @@ def test_where_no_path_leads_far_boxes_are_entered_from_their_neighbours(
     monkeypatch.setattr(flooding, "STEPS", 1)
     found = flood(domain, 8, Limits(1e-6), (np.array(corner), start.y), 4096)
     assert found.given_up == ()
-    assert found.patches is not None
     assert np.prod(found.patches.high - found.patches.low, axis=-1).sum() == 64**2
 
 

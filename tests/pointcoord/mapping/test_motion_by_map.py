@@ -77,11 +77,11 @@ def test_positions_and_rates_are_held_to_the_tolerance_of_the_scene(name: str, t
     assert proof.carried_bound.max() <= tolerance
     part = tolerance / motion.unit
     laws = [f.series(motion.times, 2) for f in scene.functions.values()]
-    domain, way = motion.solved.states.way.domain, motion.solved.states.way
-    _, half = domain.middle_and_half(way.patches.low, way.patches.high)
+    patches = motion.solved.states.patches
+    domain, (_, half) = patches.domain, patches.boxes
     names = list(scene.functions)
     # S_i of the patches, per unit of each input; the largest of any patch.
-    sizes = (np.abs(way.patches.coefficients[:, 1 : 1 + len(domain.free)]).max(axis=-1) / half).max(axis=0)
+    sizes = (np.abs(patches.coefficients[:, 1 : 1 + len(domain.free)]).max(axis=-1) / half).max(axis=0)
     speed = sum(
         size * np.abs(laws[names.index(input)][:, 1]) for size, input in zip(sizes, domain.free, strict=True)
     )

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sample_cars import GENERAL_STRUT, PAPER_STRUT
 
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.multi_index import powers
-from pointcoord.patches.domain import Domain
-from pointcoord.patches.flood import Limits, Patches, _seams, flood
+from pointcoord.patches.domain import Domain, widened
+from pointcoord.patches.flood import Limits, _seams, flood
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.lookup import Lookup
-from pointcoord.patches.way_map import HALVINGS, order_for, starts_on, widened
+from pointcoord.patches.patches import ProvenPatches
+from pointcoord.patches.way_map import HALVINGS
 from pointcoord.solve.assembly import assemble
 
 Array = NDArray[np.float64]
@@ -40,7 +43,10 @@ START = {"arm_angle": np.array(1.0), "rack": np.array(0.0)}
 def test_series_have_an_order_for_each_digit_and_two_for_each_derivative(
     tolerance: float, derivative: int, inputs: int, order: int
 ) -> None:
-    assert order_for(tolerance, 1e3, derivative, inputs) == order
+    names = ["arm_angle", "rack", "wheel"][:inputs]
+    mechanism = SimpleNamespace(unit=1e3, topology=SimpleNamespace(required_inputs=names))
+    domain = Domain(cast(Mechanism, mechanism), dict.fromkeys(names, (0.0, 1.0)), 0)
+    assert domain.order_for(tolerance, derivative) == order
 
 
 def test_the_smallest_boxes_of_a_way_are_some_hundred_thousand() -> None:
@@ -135,38 +141,35 @@ def test_a_driven_coordinate_and_its_two_derivatives_are_as_near_as_a_box_says(w
     assert not doubt.second.any()
 
 
-def paper_patches() -> tuple[Domain, Patches, Array]:
+def paper_patches() -> tuple[ProvenPatches, Array]:
     mechanism = PAPER_STRUT.mechanism()
     domain = Domain(mechanism, RANGES, 6)
     start = assemble(mechanism, START)
     cover = flood(domain, 8, Limits(1e-9), (np.array([64, 64]), start.y), 4096)
-    assert cover.patches is not None
-    return domain, cover.patches, start.y
+    return cover.patches, start.y
 
 
 def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other() -> None:
-    domain, patches, _ = paper_patches()
-    assert not _seams(domain, 8, patches).any()
-    touching = _seams(domain, 8, replace(patches, unique_within=0.0 * patches.unique_within))
+    patches, _ = paper_patches()
+    assert not _seams(patches).any()
+    touching = _seams(replace(patches, unique_within=0.0 * patches.unique_within))
     assert touching.any()
     for place in (0, -1):
         alone = patches.unique_within.copy()
         alone[place] = 0.0
-        assert not _seams(domain, 8, replace(patches, unique_within=alone)).any()
+        assert not _seams(replace(patches, unique_within=alone)).any()
 
 
 @pytest.mark.parametrize("coordinate", [0, 7])
 def test_neighbours_that_differ_in_one_coordinate_are_another_assembly(coordinate: int) -> None:
-    domain, patches, _ = paper_patches()
+    patches, _ = paper_patches()
     series = patches.series.copy()
     series[-1, 0, coordinate] += 2.0 * patches.unique_within.max()
-    dropped = _seams(domain, 8, replace(patches, series=series))
+    dropped = _seams(replace(patches, series=series))
     assert np.flatnonzero(dropped).tolist() == [len(dropped) - 1]
 
 
 def test_a_start_where_no_patch_is_is_nowhere() -> None:
-    domain, patches, y = paper_patches()
-    lookup = Lookup.of(domain, patches.low, patches.high)
-    values = np.array([1.0, 0.0])
-    assert starts_on(domain, 8, patches, lookup, values, y)
-    assert not starts_on(domain, 8, patches, Lookup(domain, np.full_like(lookup.table, -1)), values, y)
+    patches, y = paper_patches()
+    assert patches.holds(np.array([1.0, 0.0]), y)
+    assert not ProvenPatches.none(patches.domain, 8).holds(np.array([1.0, 0.0]), y)

@@ -13,11 +13,9 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.patches.domain import Domain
-from pointcoord.patches.evaluation import sum_series
 from pointcoord.patches.flood import Limits, flood
-from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.reported_points import moving_points
-from pointcoord.patches.unrelated_poses import solve_unrelated
+from pointcoord.poses import solve_unrelated
 from pointcoord.solve.assembly import close_drawing
 
 Array = NDArray[np.float64]
@@ -80,14 +78,12 @@ def test_three_inputs_are_covered_and_every_place_is_within_its_bound(reach: flo
     cover = flood(domain, 8, Limits(tolerance), (middle, start.y), 512)
     assert cover.given_up == ()
     patches = cover.patches
-    assert patches is not None
     pushes = np.random.default_rng(5).uniform(-reach, reach, (200, 3))
-    which = Lookup.of(domain, patches.low, patches.high).at(pushes)
+    which = patches.lookup.at(pushes)
     assert (which >= 0).all()
-    centre, half = domain.middle_and_half(patches.low, patches.high)
-    summed = sum_series(patches.coefficients, centre, half, 8, which, [pushes])
+    (summed,) = patches.sums([patches.coefficients], [pushes])
     place = 3 * list(moving_points(TRIPOD)).index("tip")
-    off = np.abs(summed[0][:, place : place + 3] + mechanism.origin - tip_at(pushes)).max(axis=-1)
+    off = np.abs(summed[place : place + 3].T + mechanism.origin - tip_at(pushes)).max(axis=-1)
     bound = patches.off.value[which].max(axis=-1)
     assert bound.max() <= tolerance
     # The closed form itself is rounded, in squares of some 300 mm over a height of some 260 mm.
@@ -99,9 +95,9 @@ def test_unrelated_poses_of_three_inputs_are_the_closed_form_within_their_bounds
     mechanism = tripod()
     pushes = np.random.default_rng(3).uniform(-15.0, 15.0, (2000, 3))
     inputs = {name: pushes[:, i] for i, name in enumerate(mechanism.topology.required_inputs)}
-    found = solve_unrelated(mechanism, inputs, 1e-9)
-    assert not found.failures
-    tip = mechanism.origin + found.places["tip"]
+    places, bound, _, failures = solve_unrelated(mechanism, inputs, 1e-9)
+    assert not failures
+    tip = mechanism.origin + places[:, moving_points(TRIPOD).index("tip")]
     # The closed form rounds some 50 times in sizes of 300 mm.
-    assert (np.abs(tip - tip_at(pushes)).max(axis=-1) <= found.bound + 50 * 2.0**-53 * 300.0).all()
-    assert found.bound.max() <= 1e-9
+    assert (np.abs(tip - tip_at(pushes)).max(axis=-1) <= bound + 50 * 2.0**-53 * 300.0).all()
+    assert bound.max() <= 1e-9

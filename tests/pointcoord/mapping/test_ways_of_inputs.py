@@ -15,7 +15,7 @@ from pointcoord.method import MAP
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.lookup import Lookup, Marked, touched
 from pointcoord.patches.path import Spans, covered_until, way_of
-from pointcoord.patches.way_map import map_way, starts_on
+from pointcoord.patches.way_map import map_way
 from pointcoord.simulation import map_limits, prepare_task
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
@@ -30,8 +30,7 @@ def test_a_pose_of_another_assembly_is_not_the_patch_s(make_scene: Make) -> None
     way = map_way(mechanism, task.functions, task.start, 0.0, 2.0, map_limits(scene, mechanism, 0))
     values = np.array([1.6, 0.0])
     y = task.start.y
-    assert way.patches is not None
-    assert starts_on(way.domain, way.order, way.patches, way.lookup, values, y)
+    assert way.patches.holds(values, y)
     # The tie rod on the other side of the plane through its other end and the points that hold its outer one.
     layout = mechanism.layout
     a, b, c, outer = (
@@ -42,7 +41,7 @@ def test_a_pose_of_another_assembly_is_not_the_patch_s(make_scene: Make) -> None
     other = y.copy()
     other[list(layout.vector("tie_rod_outer"))] -= 2.0 * (outer - a) @ normal / (normal @ normal) * normal
     assert np.abs(mechanism.map.residual(other)).max() < 1e-14
-    assert not starts_on(way.domain, way.order, way.patches, way.lookup, values, other)
+    assert not way.patches.holds(values, other)
 
 
 LAWS: list[TimeFunction] = [

@@ -11,8 +11,8 @@ from built_in_cars import STEERED_CARS
 import absolute
 import pointcoord.effects.rigid
 import pointcoord.patches.evaluation
+import pointcoord.patches.patches
 import pointcoord.results.readout
-import pointcoord.results.states_of_map
 import pointcoord.solve.dense_output
 import pointcoord.solve.taylor
 import validate.formulations.absolute_coordinates
@@ -98,12 +98,12 @@ def _in_powers_of_inputs(change: Callable[[list[np.ndarray], list[np.ndarray]], 
 
 def _beside_the_middle(patch: pytest.MonkeyPatch) -> None:
     """The series of a patch summed 1e-10 beside its middle."""
-    right = pointcoord.results.states_of_map.sum_rows
+    right = pointcoord.patches.patches.sum_series
 
-    def wrong(tables: object, middle: np.ndarray, *rest: object) -> list[np.ndarray]:
-        return right(tables, middle + 1e-10, *rest)
+    def wrong(tables: object, boxes: tuple[np.ndarray, np.ndarray], *rest: object) -> list[np.ndarray]:
+        return right(tables, (boxes[0] + 1e-10, boxes[1]), *rest)
 
-    patch.setattr(pointcoord.results.states_of_map, "sum_rows", wrong)
+    patch.setattr(pointcoord.patches.patches, "sum_series", wrong)
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
