@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import isfinite
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -151,39 +152,6 @@ def _times(rows: Array, matrix: Array) -> Array:
 
 def factorise(matrix: Array) -> Factors:
     """Factorise matrices of shape (..., n, n); singular ones are marked, never raised or passed over."""
-    one = _factorise_one(matrix) if matrix.ndim == 2 and len(matrix) < block_inverse.LARGE else None
-    return factorise_plainly(matrix) if one is None else one
-
-
-def _factorise_one(matrix: Array) -> Factors | None:
-    """The same for one matrix, with half the calls; None where a row or the matrix has no inverse."""
-    # The largest element of each row; what is not finite leaves no number between the bounds.
-    rows = np.maximum.reduce(np.abs(matrix), axis=1)
-    largest = rows.tolist()
-    if not (min(largest) > 0.0 and sum(largest) < np.inf):
-        return None
-    row_scale = np.ldexp(1.0, 1 - np.frexp(rows)[1])
-    scaled = matrix * row_scale[:, None]
-    try:
-        inverse = np.linalg.inv(scaled)
-    except np.linalg.LinAlgError:
-        return None
-    return Factors(scaled, inverse, row_scale, np.asarray(_norm_of_one(scaled) * _norm_of_one(inverse)))
-
-
-def _norm_of_one(matrix: Array) -> float:
-    """The maximum norm of one small matrix: a product takes a fraction of the time of a reduction."""
-    sums = np.abs(matrix).dot(_ones(len(matrix))).tolist()
-    return max(sums) if isfinite(sum(sums)) else np.inf
-
-
-@lru_cache(maxsize=64)
-def _ones(count: int) -> Array:
-    return np.ones(count)
-
-
-def factorise_plainly(matrix: Array) -> Factors:
-    """The same for any batch, element by element."""
     largest = np.abs(matrix).max(axis=-1)
     usable = np.isfinite(largest) & (largest > 0.0)
     row_scale = np.ldexp(1.0, 1 - np.frexp(np.where(usable, largest, 1.0))[1])
@@ -216,7 +184,8 @@ def _condition(matrix: Array, inverse: Array) -> Array:
 def _norm(matrix: Array) -> Array:
     """The largest sum of magnitudes of a row, shape (...,)."""
     if matrix.shape[-2] < block_inverse.LARGE:
-        return np.asarray((np.abs(matrix) @ _ones(matrix.shape[-1])).max(axis=-1))
+        # A product takes a fraction of the time of a reduction.
+        return np.asarray((np.abs(matrix) @ np.ones(matrix.shape[-1])).max(axis=-1))
     parts = (matrix[..., low : low + ROWS, :] for low in range(0, matrix.shape[-2], ROWS))
     return np.asarray(np.max([np.abs(part).sum(axis=-1).max(axis=-1) for part in parts], axis=0))
 

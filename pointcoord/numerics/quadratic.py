@@ -179,19 +179,8 @@ class QuadraticMap:
         return _pattern(self, tuple(range(self.unknowns)))
 
     @cached_property
-    def curvature(self) -> tuple[Array, Indices, Indices]:
-        """2 B restricted to the unknowns: a column per pair (j, k) that occurs, and the pairs."""
-        pairs = self._pairs
-        table = np.zeros((len(self.rows), len(pairs)))
-        for column, entries in enumerate(pairs.values()):
-            for index, value in entries.items():
-                table[index, column] = value
-        ends = np.array(list(pairs), dtype=np.intp).reshape(-1, 2)
-        return table, ends[:, 0], ends[:, 1]
-
-    @cached_property
     def _bends(self) -> _Curvature:
-        """The same, proportional columns as one."""
+        """2 B restricted to the unknowns, proportional columns as one."""
         return _Curvature.of(self._pairs, len(self.rows))
 
     @cached_property
@@ -227,27 +216,6 @@ class QuadraticMap:
         """Which rows determine which unknowns, block after block."""
         return structure_of(self)
 
-    @cached_property
-    def dense(self) -> tuple[Array, Array] | None:
-        """Two full matrices that make a few products of many small ones; None for a map too large for that.
-
-        The first gives the left factors of all terms and then the right ones, (2 terms, size), with two
-        entries +-1 a row: a difference of coordinates comes out of it rounded once, as by itself. The second
-        sums products of factors into rows, (rows, terms).
-        """
-        coefficients, *ends, _ = self._terms
-        count = len(coefficients)
-        if count * self.size > DENSE:
-            return None
-        differences, sums = np.zeros((2 * count, self.size)), np.zeros((len(self.rows), count))
-        for half, (plus, minus) in enumerate((ends[:2], ends[2:])):
-            numbers = np.arange(half * count, (half + 1) * count)
-            differences[numbers, plus] += 1.0
-            differences[numbers, minus] -= 1.0
-        lengths = [len(row) for row in self.rows]
-        sums[np.repeat(np.arange(len(lengths)), lengths), np.arange(count)] = coefficients
-        return differences, sums
-
     @property
     def terms(self) -> tuple[Array, Indices, tuple[tuple[Indices, Indices], tuple[Indices, Indices]]]:
         """Coefficients of all terms, where each row starts, and the ends of both factors' differences."""
@@ -256,17 +224,11 @@ class QuadraticMap:
 
     def factors(self, y: Array) -> tuple[Array, Array]:
         """Both differences of every term, each of shape (..., terms)."""
-        if y.ndim == 1 and self.dense is not None:
-            differences = self.dense[0]
-            both = differences.dot(y)
-            return both[: len(both) // 2], both[len(both) // 2 :]
         _, a, b, c, d, _ = self._terms
         return y.take(a, axis=-1) - y.take(b, axis=-1), y.take(c, axis=-1) - y.take(d, axis=-1)
 
     def gather(self, products: Array) -> Array:
         """Sum the products of factors, shape (..., terms), into rows, shape (..., rows)."""
-        if products.ndim == 1 and self.dense is not None:
-            return np.asarray(self.dense[1].dot(products))
         coefficients, *_, starts = self._terms
         return np.add.reduceat(products * coefficients, starts, axis=-1)
 
@@ -307,10 +269,7 @@ class QuadraticMap:
 
     def _entries(self, y: Array, pattern: Pattern) -> Array:
         factors, coefficients, first, _ = pattern
-        if y.ndim == 1 and self.dense is not None:
-            both = self.dense[0].dot(y)
-        else:
-            both = np.concatenate(self.factors(y), axis=-1)
+        both = np.concatenate(self.factors(y), axis=-1)
         return np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
 
     def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:

@@ -39,8 +39,6 @@ from pointcoord.solve.assembly import Pose
 from pointcoord.solve.follower import follow
 from pointcoord.solve.standing_still import starting_place
 from pointcoord.solve.taylor import (
-    CARRIED_ON,
-    FEWEST,
     MOST,
     SEGMENT,
     SOLVED,
@@ -61,6 +59,7 @@ INPUTS = 2
 POWERS = 400
 # Spans of time by which the ranges of inputs are found, and how fast they go; their edges are multiples of
 # the golden ratio, which fall in step with no swing.
+FEWEST, CARRIED_ON = 8, 3
 SPANS, GOLDEN = 256, 0.5 * (5.0**0.5 - 1.0)
 # A start is taken for the middle of a range if it is no farther from it, in parts of half of it: a way there
 # costs as much as some 20 powers, and so wide a margin at most one degree more.

@@ -37,14 +37,13 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
-from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.solve.proven_step import LEAST_WEIGHTS, ROOM, StraightWay
+from pointcoord.numerics.quadratic import LARGE, QuadraticMap
+from pointcoord.solve.proven_step import ROOM
 
 Array = NDArray[np.float64]
 
-# Order and pieces of a short path, whose unknowns move by less than SHORT of the mechanism's size, and of
-# others. The proof decides; these decide what it costs.
-SHORT, FEW, MANY = 0.03, (4, 1), (14, 2)
+# Order of a series and pieces in which it is proven. The proof decides; these decide what it costs.
+ORDER, PIECES = 14, 2
 # Series after which a path is left to smaller steps.
 STRETCHES = 3
 # What a series may leave out at its end, in parts of 1 / omega, where its length is chosen.
@@ -79,14 +78,12 @@ def proven_end(
         factors: of C_u at the start.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
     """
-    if factors.singular or system.dense is None or bool(hidden(system, y, factors)):
+    if factors.singular or len(system.rows) >= LARGE or bool(hidden(system, y, factors)):
         return None
     n, side = system.unknowns, orientation(system, factors)
     here, local, work = y, factors, Work(residuals=1)
     for _ in range(STRETCHES):
         begun = _begun(system, here, local, target - here[n:])
-        if float(np.abs(begun[1, :n]).max()) < SHORT and _proven_straight(system, begun, local):
-            return _end(system, here + begun[1], target, side, tolerance, work)
         series, share, spent = _proven_series(system, begun, local)
         work += spent
         if not share > 0.0:
@@ -134,39 +131,24 @@ def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array) -> A
     return begun
 
 
-def _proven_straight(system: QuadraticMap, begun: Array, factors: Factors) -> bool:
-    """Whether the assemblies go on all along a tangent, as of `straight_way`.
-
-    The start is taken for exact, what it is off being counted in the tangent.
-    """
-    inverse, tangent = factors.preconditioner, begun[1]
-    with np.errstate(all="ignore"):
-        bend = np.abs(inverse.dot(system.residual(tangent)))
-        way = StraightWay(tangent, bend, bend, np.abs(inverse @ system.jacobian(tangent)))
-        weights = bend + LEAST_WEIGHTS[0] * max(float(bend.max()), SMALLEST)
-        return bool(way.proof(system.lipschitz(inverse, weights), weights).holds)
-
-
 def _proven_series(system: QuadraticMap, begun: Array, factors: Factors) -> tuple[Array, float, Work]:
     """The series of a path about its start, the share that it is proven on, and what that takes.
 
     Args:
         begun: its first two terms.
     """
-    n, y, change = system.unknowns, begun[0], begun[1, system.unknowns :]
+    known = np.zeros((ORDER + 1, system.size - system.unknowns))
+    known[:2] = begun[:, system.unknowns :]
     with np.errstate(all="ignore"):
-        order, pieces = FEW if float(np.abs(begun[1, :n]).max()) < SHORT else MANY
-        known = np.zeros((order + 1, len(change)))
-        known[0], known[1] = y[n:], change
-        series = expand(system, factors, y, known, begun)
-        share = _proven_share(system, series, factors, pieces)
+        series = expand(system, factors, begun[0], known, begun)
+        share = _proven_share(system, series, factors)
     # Its orders are no rates of a motion, as the tangents of a path are none.
-    return series, share, Work(factorisations=pieces)
+    return series, share, Work(factorisations=PIECES)
 
 
-def _proven_share(system: QuadraticMap, series: Array, factors: Factors, pieces: int) -> float:
+def _proven_share(system: QuadraticMap, series: Array, factors: Factors) -> float:
     """Up to where, from 0 to 1, the assemblies go on along a series; see the formulas above."""
-    order, n = len(series) - 1, system.unknowns
+    order, pieces, n = len(series) - 1, PIECES, system.unknowns
     left, right = (np.ascontiguousarray(each) for each in system.factors(series))
     first, second, starts = _beyond(order)
     rest = system.gather(np.add.reduceat(left[first] * right[second], starts, axis=0)) * factors.row_scale

@@ -6,17 +6,14 @@ terms that were left out are smaller still. The end is then solved by Newton, wh
 segment without inherited error and shows what the error was; a segment that missed, or that ended on
 another branch (see `branch`), is halved.
 
-The order is the one that costs least. A segment of order p costs as much as SEGMENT + p orders do, and its
-length follows the law of a series with a radius of convergence rho,
+All series are of one order p, the one that costs least for the tolerance e. A series of terms that fall as
+rho^-k, cut where its last one is e, has the length h(p) = rho exp(-B / p), B = -ln e (Jorba and Zou, Exp.
+Math. 14 (2005) 99). A segment of order p costs as much as SEGMENT + p orders do, which is least per second at
 
-    h(p) = rho exp(-B / p),        rho from how the terms fall, B from the length that was found,
+    p = (B + sqrt(B^2 + 4 B SEGMENT)) / 2.
 
-so that a long motion costs least per second at p = (B + sqrt(B^2 + 4 B SEGMENT)) / 2, and one of a few
-segments with the order that just brings it to its end. Jorba and Zou's order, p = -ln(tolerance)/2 + 1, is
-the best where the cost of an order grows with it and a segment costs nothing beside them. Here a segment of
-any order costs as much as some 25 orders: measured on two scenes at tolerances from 1e-2 to 1e-12 mm, a chain
-of their order, its segments cut as above, takes 2 to 9 times as long, and one of order 20 for all tolerances
-1.1 to 2 times.
+Jorba and Zou's own order, B / 2 + 1, is the best where the cost of an order grows with it and a segment costs
+nothing beside them; here a chain of it takes 2 to 9 times as long.
 
 What stands still while the inputs do as their laws say is solved once, to rounding, and is a constant of
 every series (see `partial_map`).
@@ -27,6 +24,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, lru_cache, partial
+from dataclasses import replace
+from functools import cached_property, lru_cache, partial
 from math import perm
 from typing import Self
 
@@ -65,28 +64,20 @@ MOST_SEGMENTS = 2000
 TELLING = 64
 # A pose with a smaller condition number is far from any lock.
 REGULAR = 1e3
-# Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
-# and so far above the smallest number, 2^-1022, that no coefficient is lost in a motion however short.
-SHORTEST_UNIT, SMALLEST = 2.0**-50, 1000
-# Coefficients up to this size leave room for a length in mm and for its derivatives.
-LARGEST = 2.0**900
-# Orders. Fewer than FEWEST show no radius of convergence; beyond MOST little is gained at any tolerance; up
-# to SAFE the rates of an input stay numbers however fast it is, 1e12 per second and more.
-FEWEST, MOST, SAFE = 8, 40, 20
-# Orders to spare where a segment is meant to reach a place, and how often one is carried on that does not.
-SPARE, CARRIED_ON = 1, 3
+# Orders, at most: beyond 40 little is gained at any tolerance. Up to SAFE the rates of an input stay numbers
+# however fast it is, 1e12 per second and more.
+MOST, SAFE = 40, 20
 # What a segment costs beside its orders, in orders: fitted to the times of thirty chains of 3 to 100 segments
 # and of orders from 8 to 40.
 SEGMENT = 25.0
-# Where an input begins as t^n only every n-th term of the motion exists, or others hardly: a polynomial of
-# more than the third degree is followed to its own third power at least.
-POWERS, CUBIC = 3, 3
-# Last terms that are looked at for what follows, at least.
-WINDOW = 5
-# A series of fewer terms, of a single instant or of a car at rest, has too few for that.
+# Unit of time of a series, s, at least, and how small at most: raised to its order it stays above 2^-SMALLEST
+# and so far above the smallest number, 2^-1022, that no coefficient is lost in a motion however short.
+SHORTEST_UNIT, SMALLEST = 2.0**-50, 1000
+# Coefficients up to this size leave room for a length in mm and for its derivatives. Where a unit of time is
+# so long that those of a whole series are larger, a shorter one is found from its first few.
+LARGEST, FEW = 2.0**900, 8
+# A series of fewer terms, of a single instant or of a car at rest, does not show how terms fall.
 SHORT = 6
-# Segments up to which a motion is divided evenly; of more the last one hardly counts.
-FEW = 8
 # A member of many whose terms allow less than this share of what the middle one's do goes on without them: it
 # would take twice as long to follow all of them by its segments as to follow it once more.
 STANDS_OUT = 0.5
@@ -237,45 +228,10 @@ def build_chains(
     return found
 
 
-@dataclass(frozen=True)
-class Decay:
-    """How the length of a segment goes with its order, h(p) = rho exp(-spread / p).
-
-    Attributes:
-        radius: rho, s. spread: B.
-    """
-
-    radius: float
-    spread: float
-
-    def order(self, time: float) -> tuple[int, float]:
-        """The order that costs least over a time, s, and how far it should reach, s."""
-        b = self.spread
-        best = 0.5 * (b + np.sqrt(b * b + 4.0 * b * SEGMENT))
-        order = int(min(max(np.ceil(best), FEWEST), MOST))
-        reach = self.radius * np.exp(-b / order)
-        if not time <= FEW * reach:
-            return order, 0.9 * reach
-        # Divided into n segments of one length.
-        options = [
-            (n * (SEGMENT + p), p, time / n)
-            for n in range(1, FEW + 2)
-            if (p := self.needed(time / n)) <= MOST
-        ]
-        return min(options)[1:] if options else (order, 0.9 * reach)
-
-    def needed(self, length: float) -> int:
-        """The order of a segment of a length, s, with two to spare because the law is not exact."""
-        room = np.log(self.radius / length)
-        return (
-            max(int(np.ceil(self.spread / room)) + SPARE, FEWEST) if room > self.spread / MOST else MOST + 1
-        )
-
-
-def least_order(functions: Mapping[str, TimeFunction]) -> int:
-    """The order that shows more than the first term of what a law of high degree does."""
-    degree = max((function.degree for function in functions.values()), default=0)
-    return POWERS * degree if degree > CUBIC else FEWEST
+def order_for(tolerance: float) -> int:
+    """The order of the series that cost least per second for a tolerance; see the formula above."""
+    b = -np.log(tolerance)
+    return int(min(np.ceil(0.5 * (b + np.sqrt(b * (b + 4.0 * SEGMENT)))), MOST))
 
 
 @dataclass(frozen=True)
@@ -286,7 +242,6 @@ class _Joint:
         y: coordinates, shape (..., size). factors: of C_u there.
         left: proven distance of y to the exact assembly, rounding apart, shape (...,).
         scale: a unit of time for the segment, s, as long as the one before it.
-        decay: of the series before it; None at the start.
     """
 
     instant: float
@@ -294,7 +249,6 @@ class _Joint:
     factors: Factors
     left: Array
     scale: float
-    decay: Decay | None = None
 
     @property
     def members(self) -> int:
@@ -307,21 +261,11 @@ class _Joint:
 
 
 @dataclass(frozen=True)
-class _Step:
-    """How a segment was cut: its end, or which members of the batch have none, and what that cost."""
-
-    end: _Joint | None
-    good: NDArray[np.bool_]
-    work: Work
-
-
-@dataclass(frozen=True)
 class _Course:
     """What a chain follows, a mechanism and its inputs over a time, and how finely.
 
     Attributes:
         part: what of the mechanism moves; the coordinates of joints and of segments are in its order.
-        measured: the segment that was last measured, the lengths that its members allow, and how it decays.
     """
 
     mechanism: Mechanism
@@ -330,7 +274,6 @@ class _Course:
     stop: float
     settings: Settings
     part: PartialMap
-    measured: list[tuple[Segment, Array, Decay | None]] = field(default_factory=list)
 
     @classmethod
     def of(
@@ -350,7 +293,7 @@ class _Course:
         Args:
             leaving: whether members may leave; then there is one batch dimension.
         """
-        course, start, stop, settings = self, self.start, self.stop, self.settings
+        course, start, stop, tolerance = self, self.start, self.stop, self.settings.tolerance
         here = starting_place(self.part, pose)
         joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
         segments: list[Segment] = []
@@ -366,12 +309,12 @@ class _Course:
         while joint.instant < stop or not segments:
             if len(segments) == MOST_SEGMENTS:
                 return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
-            if len(segments) == TELLING and not settings.hopeful:
+            if len(segments) == TELLING and not self.settings.hopeful:
                 # Later ones would have to be four times as long on average to be enough.
                 likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
                 if stop - start > 4.0 * (likely - start):
                     return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
-            segment = course.segment_from(joint)
+            segment, lengths = course.segment_from(joint)
             solves = segment.order * joint.members
             work += Work(
                 segments=1,
@@ -380,35 +323,26 @@ class _Course:
                 unknowns_solved=solves * self.part.system.unknowns,
             )
             staying = np.asarray(np.isfinite(segment.coefficients).all(axis=(-2, -1)))
-            step = None
-            if not leaving and not staying.all():
-                return chain(course.stops_at(joint, ~staying, coarsest=False))
             if leaving:
-                staying &= course.keeps_up(segment)
-            if start == stop and staying.all():
+                staying = staying & ~(lengths < STANDS_OUT * np.median(lengths))
+            coarsest = tolerance >= COARSEST and bool(staying.all())
+            if staying.all() and start == stop:
                 segments.append(course.whole(segment))
                 break
             if staying.all():
-                step = course.step_along(segment, joint, leaving)
-                work += step.work
-                staying = step.good
-            if step is not None and step.end is not None:
-                segments.append(course.whole(replace(segment, stop=step.end.instant)))
-                joint = step.end
-            elif leaving and staying.any():
-                numbers = np.flatnonzero(staying)
-                kept, joint = kept[numbers], joint.taken(numbers)
-                segments = [each.taken(numbers) for each in segments]
-                course = replace(course, mechanism=course.mechanism.taken(numbers), measured=[])
-            else:
-                return chain(course.stops_at(joint, ~staying, coarsest=settings.tolerance >= COARSEST))
+                end, staying, spent = course.step_along(segment, float(lengths.min()), joint, leaving)
+                work += spent
+                if end is not None:
+                    segments.append(course.whole(replace(segment, stop=end.instant)))
+                    joint = end
+                    continue
+            if not (leaving and staying.any()):
+                return chain(course.stops_at(joint, ~staying, coarsest))
+            numbers = np.flatnonzero(staying)
+            kept, joint = kept[numbers], joint.taken(numbers)
+            segments = [each.taken(numbers) for each in segments]
+            course = replace(course, mechanism=course.mechanism.taken(numbers))
         return chain(COMPLETE)
-
-    def keeps_up(self, segment: Segment) -> NDArray[np.bool_]:
-        """Members whose terms allow no less than a share of the middle one's length, shape (members,)."""
-        with np.errstate(all="ignore"):
-            lengths, _ = self.measure(segment)
-            return np.asarray(~(lengths < STANDS_OUT * np.median(lengths)))
 
     def whole(self, segment: Segment) -> Segment:
         """A segment with its coordinates in the mechanism's order."""
@@ -439,48 +373,32 @@ class _Course:
         """Up to where the inputs are analytic: the next instant at which a derivative of one jumps."""
         return min((b for b in self.breaks if instant < b < self.stop), default=self.stop)
 
-    def segment_from(self, joint: _Joint) -> Segment:
-        """The series about a joint, not yet cut, of the order that the series before it advises.
-
-        The first one is begun with a few orders. One that turns out too short for what it was meant to reach
-        is carried on.
-        """
-        if self.start == self.stop:
-            return self.series_about(joint, max(self.settings.derivative, 1))
-        time = self.next_break(joint.instant) - joint.instant
-        # The rates of very slow or fast inputs, per second to a power, are numbers up to some order only.
-        most = max(SAFE, min(MOST, int(SMALLEST / max(abs(np.log2(joint.scale)), 1.0))))
-        order, goal = (FEWEST, 0.0) if joint.decay is None else joint.decay.order(time)
-        order = min(max(order, least_order(self.functions)), most)
+    def segment_from(self, joint: _Joint) -> tuple[Segment, Array]:
+        """The series about a joint, not yet cut, and the lengths that its members allow, s, (members,)."""
+        derivative = self.settings.derivative
+        order = max(derivative, 1) if self.start == self.stop else order_for(self.settings.tolerance)
         segment = self.series_about(joint, order)
-        for _ in range(CARRIED_ON):
-            if not np.isfinite(segment.coefficients).all():
-                break
-            length, decay = self.length_of(segment)
-            if decay is None or length >= (goal or time):
-                break
-            further, aim = decay.order(time)
-            # As far as it was meant to reach, if that is cheaper than another segment; begun orders were not.
-            needed = decay.needed(goal) if goal else min(further, most)
-            if not order < needed <= most or (goal and needed > order + SEGMENT):
-                break
-            goal = goal or aim
-            order = needed
-            # In a unit of about the radius of convergence: in a longer one the terms of many orders grow too
-            # large, in a shorter one those of slow inputs are lost, and what is lost seems to have converged.
-            shorter = replace(joint, scale=min(joint.scale, power_of_two(max(length, decay.radius))))
-            segment = self.series_about(shorter, order, segment)
-        if order > SAFE and not (np.abs(segment.coefficients) < LARGEST).all():
-            return self.series_about(joint, SAFE)
-        return segment
+        if not (np.abs(segment.coefficients) < LARGEST).all():
+            shortest = float(self.lengths(self.series_about(joint, min(order, FEW))).min())
+            shorter = replace(joint, scale=power_of_two(min(shortest, joint.scale)))
+            segment = self.series_about(shorter, order)
+        return segment, self.lengths(segment)
 
-    def series_about(self, joint: _Joint, order: int, begun: Segment | None = None) -> Segment:
-        """The series of an order about a joint.
+    def lengths(self, segment: Segment) -> Array:
+        """How long each member's terms allow a segment to be, s, (members,); infinite where they end."""
+        logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
+        return lengths_by_sizes(logs, self.settings) * segment.scale
+
+    def series_about(self, joint: _Joint, order: int) -> Segment:
+        """The series of an order about a joint, or of SAFE where a law has no rates of so many orders.
 
         Its unit of time is at most the joint's, or SHORTEST_UNIT, and small enough for no known coefficient
         to exceed the mechanism's size, so that no product of two series overflows however fast the inputs
         are.
         """
+        scale = max(joint.scale, SHORTEST_UNIT)
+        # The rates of very slow or fast inputs, per second to a power, are numbers up to some order only.
+        order = min(order, max(SAFE, int(SMALLEST / max(abs(np.log2(scale)), 1.0))))
         try:
             known = self.known(joint.instant, order)
         except InputOutOfRange:
@@ -488,79 +406,52 @@ class _Course:
                 raise
             order = SAFE
             known = self.known(joint.instant, order)
-            begun = begun if begun is not None and begun.order < order else None
-        scale = max(joint.scale, SHORTEST_UNIT if order <= SAFE else 2.0 ** -(SMALLEST // order))
         size = np.abs(known[..., 1:, self.driven]).max(axis=(*range(known.ndim - 2), -1))
         orders = np.arange(order + 1.0)
         with np.errstate(over="ignore", divide="ignore"):
             fastest = float((size ** (-1.0 / orders[1:])).min())
         if fastest < scale:
             scale = power_of_two(fastest)
-        first = None
-        if begun is not None:
-            count = begun.coefficients.shape[-2]
-            first = begun.coefficients * ((scale / begun.scale) ** orders[:count])[:, None]
         # Within rounding of a singular pose the unknown ones overflow all the same: no step is found then.
         with np.errstate(over="ignore", invalid="ignore"):
             scaled = self.part.known(joint.y, known * (scale**orders)[:, None])
-            series = expand(self.part.system, joint.factors, joint.y, scaled, first)
+            series = expand(self.part.system, joint.factors, joint.y, scaled)
         return Segment(joint.instant, self.stop, scale, series, joint.left)
 
-    def length_of(self, segment: Segment) -> tuple[float, Decay | None]:
-        """How long a segment may be, s, and what it tells of other orders; infinite and None if it ends."""
-        lengths, decay = self.measure(segment)
-        return float(lengths.min()), decay
-
-    def measure(self, segment: Segment) -> tuple[Array, Decay | None]:
-        """The same for each member, (members,), with what the one of the shortest length tells."""
-        # Asked for twice of most segments: when it is made and when it is cut.
-        if not (self.measured and self.measured[0][0] is segment):
-            logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
-            lengths, decay = lengths_by_sizes(logs, self.settings), None
-            length = float(lengths.min())
-            if np.isfinite(length):
-                found = decay_by_sizes(logs, length)
-                decay = Decay(found.radius * segment.scale, found.spread)
-            self.measured[:] = [(segment, lengths * segment.scale, decay)]
-        return self.measured[0][1:]
-
-    def step_along(self, segment: Segment, joint: _Joint, leaving: bool) -> _Step:
+    def step_along(
+        self, segment: Segment, length: float, joint: _Joint, leaving: bool
+    ) -> tuple[_Joint | None, NDArray[np.bool_], Work]:
         """Cut a segment where its last terms say, or shorter: until it meets no other branch on its way, and
         Newton's method confirms its end.
 
         Args:
+            length: as its terms say, s.
             leaving: whether it is enough that some members are confirmed.
+        Returns:
+            The end, None where not all members have one; which members have; and what that cost.
         """
         system, limit, tolerance = self.part.system, self.next_break(joint.instant), self.settings.tolerance
-        length, decay = self.length_of(segment)
         good, work = np.zeros(joint.y.shape[:-1], dtype=bool), Work()
         while length >= self.shortest or joint.instant + length >= limit:
             end = limit if joint.instant + length >= limit else joint.instant + length
             reached = self.solved_end(segment, end)
             work += reached.work
-            s = (end - segment.start) / segment.scale
-            found = confirmed(
-                system,
-                reached,
-                segment.coefficients,
-                s,
-                tolerance,
-                partial(self.law_noise, reached, end),
-                leaving,
-            )
+            s, series = (end - segment.start) / segment.scale, segment.coefficients
+            noise = partial(self.law_noise, reached, end)
+            found = confirmed(system, reached, series, s, tolerance, noise, leaving)
             good, ahead = found.good, found.factors
             work += found.work
             if good.any():
-                good = good & regular_along(system, segment.coefficients, s)
+                good = good & regular_along(system, series, s)
             if end < self.stop and ahead is not None:
                 good = good & ~hidden(system, reached.y, ahead)
             if good.all() and ahead is not None:
                 scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
-                return _Step(_Joint(end, reached.y, ahead, reached.left, scale, decay), good, work)
+                return _Joint(end, reached.y, ahead, reached.left, scale), good, work
             if leaving and good.any():
                 break
             length = 0.5 * (end - joint.instant)
-        return _Step(None, good, work)
+        return None, good, work
 
     def solved_end(self, segment: Segment, end: float) -> Converged:
         """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs."""
@@ -679,52 +570,29 @@ def _room(count: int, derivative: int, tolerance: float) -> tuple[Array, Array]:
 
 
 def gone_on(logs: Array) -> Array:
-    """Logarithms of the last two coefficients, at least what the ones before them come to, (members, 2).
+    """Logarithms of the last two coefficients, at least what those before them come to, (members, 2).
 
-    Every other term is missing where an input is at rest, two of three where it begins as t^3, and close to
-    such a place they are small: the last two then tell nothing of those that follow. So the largest of the
-    last WINDOW terms, or of more where more were missing at once, goes on as terms fell since the window
-    before. Terms that end for good, of which the last window has none, stay missing.
+    Every other term is missing where an input is at rest, all but each n-th where it begins as t^n, and close
+    to such a place they are small; a pair of singular places beside the axis makes terms swing. The last two
+    then tell nothing of those that follow. So each term of the last half of a series goes on as terms fell
+    from the largest of the half before it to the largest of that one. Terms that end for good, of which the
+    last half has none, stay missing.
     """
     if logs.shape[-1] < SHORT:
         return logs[:, -2:]
-    window, fall = _fall(logs)
-    later, ahead = logs[:, -window:], np.arange(window - 1.0, -1.0, -1.0)
-    last = (later - fall * ahead).max(axis=-1)
-    before = (later[:, :-1] - fall * ahead[1:]).max(axis=-1)
-    return np.array([before, last]).T
+    later, fall = logs[:, logs.shape[-1] // 2 :], _fall(logs)
+    last = later - fall[:, None] * np.arange(later.shape[-1] - 1.0, -1.0, -1.0)
+    return np.stack([last[:, :-1].max(axis=-1) + fall, last.max(axis=-1)], axis=-1)
 
 
-def _fall(logs: Array) -> tuple[int, Array]:
-    """How many terms are looked at, and how much their logarithms fall from one to the next, (members, 1)."""
-    count = logs.shape[-1]
-    window = WINDOW
-    there = np.isfinite(logs[:, 1:])
-    for member in there if not there.all() else ():
-        # A gap that was there once may come again.
-        window = max(window, int(np.diff(np.flatnonzero(member) + 1, prepend=0).max(initial=1)))
-    window = min(window, count - 2)
-    middle, members = count - window, np.arange(len(logs))
-    first = max(1, middle - window)
-    a, b = first + logs[:, first:middle].argmax(axis=-1), middle + logs[:, middle:].argmax(axis=-1)
+def _fall(logs: Array) -> Array:
+    """How much the logarithms of terms fall from one to the next over the last half, (members,)."""
+    middle, members = logs.shape[-1] // 2, np.arange(len(logs))
+    before, after = 1 + logs[:, 1:middle].argmax(axis=-1), middle + logs[:, middle:].argmax(axis=-1)
     with np.errstate(invalid="ignore"):
-        fall = (logs[members, a] - logs[members, b]) / (b - a)
+        fall = (logs[members, before] - logs[members, after]) / (after - before)
     # Of terms that do not fall, or that begin here, the length that they allow says more.
-    return window, np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)[:, None]
-
-
-def _steady(logs: Array, window: int, fall: Array) -> Array:
-    """How much logarithms of terms fall at the end, but no more than since the middle, (members, 1).
-
-    A pair of singular places beside the axis makes terms swing. Where the last window lies in a dip terms
-    fall steeply there, and those after it rise again; the fall over half of the series hardly feels a dip.
-    """
-    middle = max(logs.shape[-1] // 2, window + 1)
-    half, last = logs[:, middle - window : middle], logs[:, -window:]
-    apart = (logs.shape[-1] - window + last.argmax(axis=-1)) - (middle - window + half.argmax(axis=-1))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        since = (half.max(axis=-1) - last.max(axis=-1)) / apart
-    return np.minimum(fall, np.where(np.isfinite(since), np.maximum(since, 0.0), 0.0)[:, None])
+    return np.where(np.isfinite(fall), np.maximum(fall, 0.0), 0.0)
 
 
 def last_magnitudes(series: Array, length: float = 1.0) -> Array:
@@ -740,16 +608,13 @@ def last_magnitudes(series: Array, length: float = 1.0) -> Array:
     sizes = np.abs(series)
     if len(sizes) < SHORT:
         return sizes[-2:]
-    unit = np.log(length)
-    logs = _log_sizes(series) + unit * np.arange(len(sizes))
-    window, fall = _fall(logs)
-    later = sizes[-window:]
-    falling = _steady(logs, window, fall)[0] + unit
-    ahead = np.exp(-falling * np.arange(window - 1.0, -1.0, -1.0))[:, None]
+    later, unit = sizes[len(sizes) // 2 :], np.log(length)
+    fall = float(_fall(_log_sizes(series) + unit * np.arange(len(sizes)))[0]) + unit
+    ahead = np.exp(-fall * np.arange(len(later) - 1.0, -1.0, -1.0))[:, None]
     return np.stack([(later[:-1] * ahead[1:]).max(axis=0), (later * ahead).max(axis=0)])
 
 
-@cache
+@lru_cache(maxsize=256)
 def _falling(count: int, derivative: int) -> Array:
     """log k!/(k-d)! for d up to a derivative and k below a count, minus infinity for k < d, (d, k).
 
@@ -765,27 +630,6 @@ def _log_sizes(series: Array) -> Array:
     size = np.abs(series).max(axis=-1).reshape(-1, series.shape[-2])
     with np.errstate(divide="ignore"):
         return np.asarray(np.log(size))
-
-
-def decay_by_sizes(logs: Array, length: float) -> Decay:
-    """How terms fall, from the logarithms of their sizes, (members, orders), and a length that was found.
-
-    From the larger of two neighbours halfway and at the end, because every other term may be missing; the
-    member with the smallest radius counts.
-
-    Args:
-        logs: of the largest coefficients (see `_log_sizes`).
-    """
-    orders = logs.shape[-1] - 1
-    pairs = np.maximum(logs[:, 1:], logs[:, :-1])
-    middle = orders // 2
-    with np.errstate(invalid="ignore", over="ignore"):
-        slopes = (pairs[:, middle - 1] - pairs[:, -1]) / (orders - middle)
-    sound = slopes[np.isfinite(slopes)]
-    # A radius is longer than the segment; of terms that do not fall as a power the length says more.
-    radius = float(np.min(sound, initial=np.inf))
-    spread = orders * max(radius - np.log(length), 0.25) if np.isfinite(radius) else 0.25 * orders
-    return Decay(length * float(np.exp(spread / orders)), float(spread))
 
 
 def power_of_two(length: float) -> float:

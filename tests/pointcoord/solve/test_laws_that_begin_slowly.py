@@ -106,13 +106,3 @@ def carried_on(logs: Array) -> Array:
     """What the last two terms come to, of a batch in which each member is twice."""
     twice = np.concatenate([logs, logs])
     return np.asarray(gone_on(twice))[: len(logs)]
-
-
-@pytest.mark.parametrize("seed", range(100))
-def test_terms_of_one_member_go_on_as_those_of_a_batch(seed: int) -> None:
-    logs = random_logs(np.random.default_rng(seed), 1)
-    one, batch = np.asarray(gone_on(logs)), carried_on(logs)
-    assert np.array_equal(np.isfinite(one), np.isfinite(batch))
-    known = np.isfinite(one)
-    # A product and a sum of numbers up to 200, in another order.
-    assert np.abs(one[known] - batch[known]).max(initial=0.0) <= 1e-12

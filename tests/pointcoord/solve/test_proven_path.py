@@ -11,7 +11,6 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import orientation
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.solve import proven_path
@@ -90,44 +89,6 @@ def proven_on_the_parabola(w: float) -> float:
     change = np.array([w - 1.0, 0.0, 0.0])
     begun = proven_path._begun(PARABOLA, AT_ONE, factors, change)
     return proven_path._proven_series(PARABOLA, begun, factors)[1]
-
-
-@by_mechanism
-@few
-@given(angle=st.floats(-0.05, 0.05), rack=st.floats(-10.0, 10.0), away=st.floats(0.0, 0.02))
-def test_where_a_tangent_is_proven_every_place_beside_it_is_the_tangents_own(
-    mechanism: Mechanism, angle: float, rack: float, away: float
-) -> None:
-    system, closed = mechanism.map, close_drawing(mechanism)
-    n, y = system.unknowns, close_drawing(mechanism).y.copy()
-    own = mechanism.input_values(closed.y[n:])
-    y[:n] += away * np.random.default_rng(7).uniform(-1.0, 1.0, n)
-    offset, factors = system.residual(y), factorise(system.jacobian(y))
-    change = known_at(mechanism, float(own["arm_angle"]) + angle, float(own["rack"]) + rack) - y[n:]
-    begun = proven_path._begun(system, y, factors, change)
-    if not proven_path._proven_straight(system, begun, factors):
-        return
-    shares = np.linspace(0.0, 1.0, 20)
-    places = y + shares[:, None] * begun[1]
-    signs = np.linalg.slogdet(system.jacobian(places))[0]
-    assert (signs == signs[0]).all()
-    reached = newton_refine(system, places, (1.0 - shares)[:, None] * offset)
-    assert reached.converged.all()
-    # Both end with a Newton step that has shrunk to rounding.
-    path = follow(system, y, y[n:] + change, factors)
-    assert path.done == 1.0
-    assert np.abs(path.y - reached.y[-1]).max() <= 4 * EPS * float(path.factors.condition)
-
-
-@pytest.mark.parametrize("w", [-1.0, 0.0, 1e-9, 0.09])
-def test_no_tangent_is_proven_near_a_fold(w: float) -> None:
-    # The root of w comes as near as 0.3 to its mirror image; the condition (1 - z)^2 >= 2 omega q is
-    # |1 - w| / 2 <= 1 - |1 - w| / 2 there and fails at the fold itself.
-    factors = factorise(PARABOLA.jacobian(AT_ONE))
-    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([w - 1.0, 0.0, 0.0]))
-    assert not proven_path._proven_straight(PARABOLA, begun, factors)
-    begun = proven_path._begun(PARABOLA, AT_ONE, factors, np.array([-0.5, 0.0, 0.0]))
-    assert proven_path._proven_straight(PARABOLA, begun, factors)
 
 
 @pytest.mark.parametrize("w", [-1.0, -1e-3, 0.0, 1e-9])
