@@ -29,8 +29,7 @@ from pointcoord.mechanism.file import (
     whole_tables,
 )
 from pointcoord.mechanism.freedoms import free_directions
-from pointcoord.mechanism.structure import CHASSIS, Structure
-from pointcoord.mechanism.tables import TABLES
+from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.checks import (
     list_of,
