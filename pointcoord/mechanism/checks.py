@@ -40,6 +40,14 @@ def _bodies(structure: Structure) -> None:
     if not structure.bodies.get(CHASSIS):
         problem = f"there is no body {CHASSIS!r}, the ground, with points"
         raise TableFault(("bodies",), problem, f"a body {CHASSIS!r}")
+    for body, points in structure.moving_bodies():
+        if len(points) < 3:
+            hint = "; write it in [rods]" if len(points) == 2 else ""
+            raise TableFault(
+                ("bodies", body),
+                f"has {len(points)} point{'' if len(points) == 1 else 's'}{hint}",
+                "three points that are not in one line, or more",
+            )
     for (one, points), (other, others) in combinations(structure.bodies.items(), 2):
         both = [name for name in points if name in others]
         if len(both) > 2:
@@ -110,6 +118,8 @@ def _slides(structure: Structure) -> None:
 
 
 def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, ...]) -> None:
+    if len(points) < 2:
+        raise TableFault((*place, "turns"), "a single point has no turn to be kept from", "two points")
     bodies = set(structure.bodies_of(points[0])).intersection(structure.bodies_of(points[1]))
     if not bodies:
         raise TableFault(

@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+
+from pydantic import ValidationError
 
 from pointcoord.wording import meant, shown
+
+# What pydantic says in Python's terms, in those of a file.
+WORDS = {
+    "bool_type": "true or false",
+    "dataclass_type": "a table",
+    "dict_type": "a table",
+    "model_type": "a table",
+    "string_too_short": "a name",
+    "string_type": "a name",
+    "too_short": "one name or more",
+    "tuple_type": "a list of names",
+}
 
 
 class TableFault(ValueError):
@@ -24,3 +38,16 @@ def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str |
     there = tuple(known)
     hint = meant(name, there) if isinstance(name, str) else ""
     return TableFault(place, f"no {kind} is called {shown(name)}{hint}", ", ".join(there) or "none")
+
+
+def fault_of(error: ValidationError, place: Sequence[str | int] = ()) -> TableFault:
+    """What pydantic found first, in a table at a place."""
+    first = error.errors(include_url=False)[0]
+    where = (*place, *first["loc"])
+    cause = first.get("ctx", {}).get("error")
+    if isinstance(cause, TableFault):
+        return TableFault((*where, *cause.place), cause.problem, cause.allowed)
+    if first["type"] == "missing":
+        return TableFault(where, "this key is missing")
+    allowed = WORDS.get(first["type"]) or first["msg"].removeprefix("Input should be ")
+    return TableFault(where, f"is {shown(first['input'])}", allowed)

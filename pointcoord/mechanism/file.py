@@ -6,23 +6,24 @@ from collections.abc import Collection, Hashable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool, ValidationError
 
 from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Place, choices_of, compiled, drawing_matters
-from pointcoord.mechanism.faults import TableFault, no_such
+from pointcoord.mechanism.faults import TableFault, fault_of, no_such
 from pointcoord.mechanism.freedoms import freedoms_of, settled
-from pointcoord.mechanism.structure import CHASSIS, Structure
-from pointcoord.mechanism.tables import CLOSING, TABLES, structure_of, table_at
+from pointcoord.mechanism.structure import CHASSIS, CLOSING, TABLES, Name, Structure, known_keys, structure_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
 
 # The shipped ones. (importlib.resources takes as long to import as a fifth of numpy.)
 MECHANISMS = Path(__file__).parents[1] / "mechanisms"
 AS_DRAWN = "drawn"
-PART_KEYS = ("mechanism", "side", "mirrored")
+OTHERS = ("closures", "parts")
 ENDING = ".toml"
 BY_ORDER: Place = (0.0, 0.0, 0.0)
 """Where all points are if only their order counts."""
@@ -32,6 +33,36 @@ BY_ORDER: Place = (0.0, 0.0, 0.0)
 def shipped() -> tuple[str, ...]:
     """Names of the mechanisms that come with the package."""
     return tuple(sorted(path.stem for path in MECHANISMS.glob(f"*{ENDING}")))
+
+
+def _name_or_tables(mechanism: object) -> object:
+    if not isinstance(mechanism, str | Mapping):
+        raise TableFault((), f"is {shown(mechanism)}", "the name of a mechanism, or its tables")
+    return mechanism
+
+
+def _closing(changes: dict[str, Any]) -> dict[str, Any]:
+    for table in changes:
+        if table not in CLOSING:
+            raise no_such("table of a closure", table, CLOSING, (table,))
+    return changes
+
+
+class _Part(BaseModel):
+    """Another mechanism that is part of one."""
+
+    mechanism: Annotated[Any, AfterValidator(_name_or_tables)]
+    side: Literal["left", "right"] = "left"
+    mirrored: StrictBool = False
+
+
+class _Others(BaseModel):
+    """The tables beside those of a structure."""
+
+    closures: dict[Name, Annotated[dict[Name, dict[Name, Any]], AfterValidator(_closing)]] = {}
+    parts: dict[
+        Name, Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields, "a part"))]
+    ] = {}
 
 
 @dataclass(frozen=True)
@@ -178,69 +209,49 @@ class MechanismFile:
         for key in tables:
             if key not in (*TABLES, "title"):
                 raise no_such("table of a mechanism", key, TABLES, (key,))
-        parts, mirrored = _parts(tables)
-        closures = {AS_DRAWN: {}, **table_at(tables, "closures")}
-        for part in parts.values():
-            closures |= {closure: {} for closure in part.closures if closure not in closures}
+        given = {key: value for key, value in tables.items() if value is not None}
+        try:
+            others = _Others.model_validate({key: given[key] for key in OTHERS if key in given})
+        except ValidationError as error:
+            raise fault_of(error) from None
+        title = str(given.get("title") or name)
+        parts = {f"{part}.": _part(part, table) for part, table in others.parts.items()}
+        closures = {AS_DRAWN: {}, **others.closures}
+        for own in parts.values():
+            closures |= {closure: {} for closure in own.closures if closure not in closures}
         structures = {}
         for closure, changes in closures.items():
+            changed = {table: {**given.get(table, {}), **entries} for table, entries in changes.items()}
             try:
-                structures[closure] = _closed(tables, parts, name, closure, changes)
+                structures[closure] = _closed({**given, **changed}, parts, title, closure)
             except TableFault as fault:
-                if closure == AS_DRAWN or not fault.place or fault.place[0] == "closures":
+                if closure == AS_DRAWN or not fault.place:
                     raise
                 place = ("closures", closure, *fault.place)
                 raise TableFault(place, fault.problem, fault.allowed) from None
-        return cls(str(tables.get("title") or name), structures, mirrored)
+        return cls(title, structures, {f"{part}.": table.mirrored for part, table in others.parts.items()})
 
 
-def _parts(tables: Mapping[str, Any]) -> tuple[dict[str, MechanismFile], dict[str, bool]]:
-    """The parts by prefix, and whether each is mirrored."""
-    parts: dict[str, MechanismFile] = {}
-    mirrored: dict[str, bool] = {}
-    for part, table in table_at(tables, "parts").items():
-        place = ("parts", part)
-        if not isinstance(table, Mapping) or "mechanism" not in table:
-            raise TableFault(place, f"is {shown(table)}", "a table with the mechanism, { mechanism = NAME }")
-        for key in table:
-            if key not in PART_KEYS:
-                raise no_such("key of a part", key, PART_KEYS, (*place, key))
-        if table.get("side", "left") not in ("left", "right"):
-            raise TableFault((*place, "side"), f"is {shown(table['side'])}", '"left" or "right"')
-        if not isinstance(table.get("mirrored", False), bool):
-            raise TableFault((*place, "mirrored"), f"is {shown(table['mirrored'])}", "true or false")
-        own = table["mechanism"]
-        try:
-            parts[f"{part}."] = mechanism_file(own) if isinstance(own, str) else MechanismFile.of(own, part)
-        except TableFault as fault:
-            raise TableFault((*place, "mechanism", *fault.place), fault.problem, fault.allowed) from None
-        mirrored[f"{part}."] = table.get("mirrored", False)
-    return parts, mirrored
+def _part(part: str, table: _Part) -> MechanismFile:
+    own = table.mechanism
+    try:
+        return mechanism_file(own) if isinstance(own, str) else MechanismFile.of(own, part)
+    except TableFault as fault:
+        place = ("parts", part, "mechanism", *fault.place)
+        raise TableFault(place, fault.problem, fault.allowed) from None
 
 
 def _closed(
-    tables: Mapping[str, Any],
-    parts: Mapping[str, MechanismFile],
-    name: str,
-    closure: str,
-    changes: object,
+    tables: Mapping[str, Any], parts: Mapping[str, MechanismFile], name: str, closure: str
 ) -> Structure:
-    if not isinstance(changes, Mapping):
-        raise TableFault(
-            ("closures", closure), f"is {shown(changes)}", "tables, such as slides.strut = {...}"
-        )
-    merged = dict(tables)
-    for table, entries in changes.items():
-        if table not in CLOSING or not isinstance(entries, Mapping):
-            raise no_such("table of a closure", table, CLOSING, ("closures", closure, table))
-        merged[table] = {**table_at(tables, table), **entries}
-    whole = structure_of({"bodies": {CHASSIS: []}} if parts else {}, name)
+    """The tables joined with those of the parts, closed alike where they can be, and checked."""
+    if "bodies" not in tables and not parts:
+        raise TableFault(("bodies",), "this table is missing", "bodies with their points")
+    whole = Structure(name, {CHASSIS: ()}) if parts else Structure(name)
     for prefix, part in parts.items():
         own = part.structures[closure if closure in part.structures else AS_DRAWN]
         whole = whole.joined(own.prefixed(prefix))
-    whole = replace(whole.joined(structure_of(merged, name)), name=str(tables.get("title") or name))
-    if "bodies" not in merged and not parts:
-        raise TableFault(("bodies",), "this table is missing", "bodies with their points")
+    whole = whole.joined(structure_of(tables, name))
     check(whole)
     return whole
 

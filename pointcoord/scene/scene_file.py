@@ -30,8 +30,7 @@ from pointcoord.mechanism.file import (
     whole_tables,
 )
 from pointcoord.mechanism.freedoms import free_directions
-from pointcoord.mechanism.structure import CHASSIS, Structure
-from pointcoord.mechanism.tables import TABLES
+from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.scene_part import AS_LIST, Number, Part, PlainTable, Positive, Text, Vector, Whole

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.mechanism.structure import Structure
-from pointcoord.mechanism.tables import TABLES
+from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.scene.scene_file import MechanismPart
 
 Array = NDArray[np.float64]

@@ -9,14 +9,14 @@ import pytest
 
 import pointcoord
 from pointcoord.mechanism import mechanism_file, shipped
-from pointcoord.mechanism.structure import NAMES
+from pointcoord.mechanism.structure import KINDS
 
 PACKAGE = Path(pointcoord.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
 POINTS = {point for name in shipped() for point in mechanism_file(name).points}
 INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
 # A file may call an input as the format calls its kind, such as `turn`: that is the format's word.
-EXACT = {*shipped(), *(INPUTS - NAMES.keys())}
+EXACT = {*shipped(), *(INPUTS - KINDS.keys())}
 
 
 def said(module: ast.Module) -> Iterator[tuple[int, str]]:
