@@ -17,7 +17,7 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import Pair, exact_square, pair_quotient, two_product
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.time_functions import cosine, cosine_of_one, cosine_plainly
+from pointcoord.time_functions import cosine
 
 Array = NDArray[np.float64]
 
@@ -188,9 +188,6 @@ class ArmAngle:
         Raises:
             InputOutOfRange: an angle outside 0 .. pi.
         """
-        if value.ndim == 1 and drawing.unit.ndim == 0 and 0.0 <= float(value[0]) <= np.pi:
-            length = float(drawing.distance(self.pivot, self.point))
-            return np.array([length * term for term in cosine_of_one(value)])
         angle = value[..., 0]
         inside = (angle >= 0.0) & (angle <= np.pi)
         if not inside.all():
@@ -509,7 +506,7 @@ class TurnedBy:
     def series(self, value: Array, drawing: Drawing) -> Array:
         """The cosine or sine of the angle's series, which c' = -s a' and s' = c a' give term by term."""
         with np.errstate(over="ignore", invalid="ignore"):
-            cosine_terms = cosine_plainly(value)
+            cosine_terms = cosine(value)
             if not self.quarter:
                 return cosine_terms
             sine = np.zeros_like(value)
