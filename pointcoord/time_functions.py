@@ -11,14 +11,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import comb, factorial, isfinite, perm
-from operator import mul
+from math import comb, factorial, perm
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.numerics.double_double import SPLITTER, two_product, two_sum
+from pointcoord.numerics.double_double import two_product, two_sum
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
@@ -29,10 +28,6 @@ Array = NDArray[np.float64]
 
 # rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
 SMALL_ANGLE = 2.0**-27
-# Instants up to which a polynomial takes less time one by one, in Python's own numbers.
-FEW = 16
-# Splitting larger coefficients overflows: they are taken together, where no warning comes of it.
-MODERATE = 1e200
 # Two pi and what its double lacks; the rest is below the radius.
 TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
 
@@ -100,13 +95,7 @@ class Polynomial:
 
         Horner's rule in twice the working precision: terms may cancel, as where a motion comes to rest.
         """
-        if isinstance(instants, float):
-            return self._series_of_one(instants, order)
         t = np.asarray(instants, dtype=float)
-        if t.ndim == 0:
-            return self._series_of_one(float(t), order)
-        if t.ndim == 1 and 0 < len(t) <= FEW and self._moderate:
-            return np.array([self._series_of_one(each, order) for each in t.tolist()])
         result = np.zeros((*t.shape, order + 1))
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(min(order + 1, len(self.coefficients))):
@@ -119,18 +108,6 @@ class Polynomial:
                 result[..., k] = doubled
         return result
 
-    def _series_of_one(self, t: float, order: int) -> Array:
-        """The same about one instant, in Python's own numbers."""
-        result = np.zeros(order + 1)
-        for k in range(min(order + 1, len(self.coefficients))):
-            high, low = self._shifted(k)
-            doubled = _horner_of_one(high, low, t)
-            if not isfinite(doubled):
-                with np.errstate(over="ignore", invalid="ignore"):
-                    doubled = float(np.polynomial.polynomial.polyval(t, np.array(high)))
-            result[k] = doubled
-        return result
-
     def _shifted(self, k: int) -> tuple[list[float], list[float]]:
         """binomial(j, k) c_j as high and low, for j from k up."""
         if k not in self._shifts:
@@ -138,11 +115,6 @@ class Polynomial:
             high, low = two_product(np.array(factors), np.array(self.coefficients[k:]))
             self._shifts[k] = high.tolist(), low.tolist()
         return self._shifts[k]
-
-    @cached_property
-    def _moderate(self) -> bool:
-        """Whether no coefficient is so large that splitting it overflows, whatever multiplies it."""
-        return max(map(abs, self.coefficients), default=0.0) < MODERATE
 
     @cached_property
     def _shifts(self) -> dict[int, tuple[list[float], list[float]]]:
@@ -437,26 +409,6 @@ def _about(series: Array, doubts: Array, half: Array, rounded: Array) -> tuple[A
         return np.where(still, value, value - edge), np.where(still, value, value + edge)
 
 
-def _horner_of_one(highs: list[float], lows: list[float], t: float) -> float:
-    """What `_doubled_horner` gives at one instant: the same operations, of Python's own numbers."""
-    if len(highs) == 1 or t == 0.0:
-        return highs[0] + lows[0]
-    scaled = SPLITTER * t
-    t_high = scaled - (scaled - t)
-    t_low = t - t_high
-    high = low = 0.0
-    for c, c_low in zip(reversed(highs), reversed(lows), strict=True):
-        product, scaled = high * t, SPLITTER * high
-        a_high = scaled - (scaled - high)
-        a_low = high - a_high
-        rest = ((a_high * t_high - product) + a_high * t_low + a_low * t_high) + a_low * t_low
-        rest += low * t
-        high = product + c
-        virtual = high - product
-        low = (product - (high - virtual)) + (c - virtual) + (rest + c_low)
-    return high + low
-
-
 def _doubled_horner(highs: list[float], lows: list[float], t: Array) -> Array:
     """sum_j (high_j + low_j) t^j, rounded about once."""
     high, low = np.zeros_like(t), np.zeros_like(t)
@@ -474,38 +426,6 @@ def cosine(angle: Array) -> Array:
     c' = -s a' and s' = c a' give, term by term,
     c_k = -(1/k) sum_{i=1..k} i a_i s_{k-i}  and  s_k = (1/k) sum_{i=1..k} i a_i c_{k-i}.
     """
-    return np.array(cosine_of_one(angle)) if angle.ndim == 1 else cosine_plainly(angle)
-
-
-def cosine_of_one(angle: Array) -> list[float]:
-    """One series, in Python's own numbers; of an angle that is a polynomial only its own terms are summed."""
-    terms = angle.tolist()
-    weighted = [i * a for i, a in enumerate(terms)][1:]
-    while weighted and weighted[-1] == 0.0:
-        weighted.pop()
-    c, s = [float(np.cos(terms[0]))], [float(np.sin(terms[0]))]
-    if not weighted:
-        return c + [0.0] * (len(terms) - 1)
-    if len(weighted) <= 2:
-        slope, bend = (*weighted, 0.0)[:2]
-        before_c = before_s = 0.0
-        for k in range(1, len(terms)):
-            c_k = -(slope * s[-1] + bend * before_s) / k
-            before_s, s_k = s[-1], (slope * c[-1] + bend * before_c) / k
-            before_c = c[-1]
-            c.append(c_k)
-            s.append(s_k)
-        return c
-    for k in range(1, len(terms)):
-        # The series so far, the latest term first, beside the terms 1, 2, ... of the angle's rate.
-        c_k = -sum(map(mul, weighted, reversed(s))) / k
-        s.append(sum(map(mul, weighted, reversed(c))) / k)
-        c.append(c_k)
-    return c
-
-
-def cosine_plainly(angle: Array) -> Array:
-    """The same for any batch."""
     orders = angle.shape[-1]
     c = np.zeros_like(angle)
     s = np.zeros_like(angle)

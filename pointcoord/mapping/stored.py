@@ -11,10 +11,6 @@ import hashlib
 import json
 import zipfile
 import zlib
-from collections.abc import Mapping
-from dataclasses import dataclass
-from os import PathLike, fspath
-from typing import Any, BinaryIO
 from collections.abc import Mapping, Sequence
 from io import BytesIO
 from tokenize import TokenError

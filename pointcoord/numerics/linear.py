@@ -10,8 +10,6 @@ few entries is inverted block after block (see `block_inverse`), and its solutio
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from math import isfinite
 from functools import cached_property
 
 import numpy as np

@@ -14,7 +14,6 @@ of its time goes into calls, and these are a tenth as many.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np

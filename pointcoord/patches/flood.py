@@ -15,9 +15,7 @@ other.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from dataclasses import field
 
 import numpy as np
 from numpy.typing import NDArray

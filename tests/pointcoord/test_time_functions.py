@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.time_functions import FEW, Polynomial, Sine, Table, TimeFunction, cosine, cosine_plainly
+from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction, cosine
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -247,42 +247,14 @@ def test_an_offset_far_above_a_sine_is_rounded_once(offset: float) -> None:
     assert max(sine_error(Sine(1e-3, 2.0, 0.0, offset), instants)) <= 1.0
 
 
-@given(
-    coefficients=st.lists(st.floats(-1e200, 1e200), min_size=1, max_size=8),
-    instant=st.floats(-1e60, 1e60),
-    order=st.integers(0, 10),
-)
-def test_a_polynomial_at_one_instant_is_that_of_many_to_the_last_bit(
-    coefficients: list[float], instant: float, order: int
-) -> None:
-    law = Polynomial(tuple(coefficients))
-    # So many that they are taken together.
-    one, many = law.series(instant, order), law.series(np.array([instant] * (FEW + 1)), order)
-    assert np.array_equal(one, many[0], equal_nan=True)
-    assert np.array_equal(law.series(np.array([1.0, instant]), order)[1], many[0], equal_nan=True)
-
-
-@given(
-    terms=st.lists(st.floats(-3.0, 3.0), min_size=1, max_size=12),
-    zeros=st.integers(0, 12),
-)
-def test_the_cosine_of_one_series_is_that_of_a_batch(terms: list[float], zeros: int) -> None:
-    angle = np.array(terms + [0.0] * zeros)
-    one, batch = cosine(angle), cosine_plainly(angle[None])[0]
-    # Both recurrences sum the same products in another order: of the series of cosh, which has their sizes.
-    size = np.array([1.0])
-    rates = np.abs(angle) * np.arange(len(angle))
-    for k in range(1, len(angle)):
-        size = np.append(size, rates[1 : k + 1] @ size[::-1] / k)
-    assert (np.abs(one - batch) <= 8 * len(angle) * np.finfo(float).eps * size).all()
-
-
 @pytest.mark.parametrize("size", [1e306, 1e308, -1e308])
-def test_few_instants_of_a_huge_law_are_those_of_many_and_warn_of_nothing(size: float) -> None:
+def test_a_huge_law_is_summed_plainly_and_warns_of_nothing(size: float) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        few, many = (Polynomial((1.0, size, size)).series(np.full(count, 0.2), 2) for count in (1, FEW + 1))
-    assert np.array_equal(few[0], many[0], equal_nan=True)
+        value, rate, _ = Polynomial((1.0, size, size)).series(0.2, 2).tolist()
+    # Three roundings of a sum of like signs.
+    assert abs(value / (0.24 * size) - 1.0) <= 4 * EPS
+    assert abs(rate / (1.4 * size) - 1.0) <= 4 * EPS or np.isinf(rate)
 
 
 @pytest.mark.parametrize(
@@ -294,7 +266,6 @@ def test_a_polynomial_at_small_whole_instants_is_what_sums_by_hand_give(
 ) -> None:
     law = Polynomial((3.0, 2.0, 5.0))
     assert tuple(law.series(instant, 2).tolist()) == meant
-    assert law.series(np.full(FEW + 1, instant), 2)[-1].tolist() == list(meant)
 
 
 SPANS: list[tuple[TimeFunction, float]] = [
