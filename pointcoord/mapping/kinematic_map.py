@@ -26,10 +26,19 @@ from numpy.typing import ArrayLike, NDArray
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered, UnknownName
+from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.asked import (
+    STATES,
+    Ranges,
+    checked_ranges,
+    columns_of,
+    common_shape,
+    numbers_of,
+    require_finite_rates,
+)
 from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import ALLOWED, Gaps, packed, unpacked
 from pointcoord.mechanism.freedoms import held_rows
@@ -49,15 +58,12 @@ from pointcoord.solve.assembly import close_drawing
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
-Ranges = Mapping[str, tuple[float, float]]
 
 HALVINGS = 6
 MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
 # Patches of one map: a few hundred MB while it is made.
 MOST = 4096
 VARIABLES = 3
-# Widths and ends between which squares and products of series are numbers; no car has others.
-NARROWEST, FARTHEST = 1e-100, 1e12
 
 
 @dataclass(frozen=True)
@@ -262,8 +268,8 @@ class KinematicMap:
         if rates is None and accelerations is not None:
             raise _needs_rates()
         given = [state for state in (inputs, rates, accelerations) if state is not None]
-        states, laws, shape = self._split(given)
-        self._require_finite_rates(states)
+        states, laws, shape = columns_of(self.domain, given)
+        require_finite_rates(self.domain, states)
         patch = self._patches_of(states[0])
         moving = self._sums(states, patch)
         axes = CarAxes.of(self.mechanism.drawing, self.scene.mechanism.outboard)
@@ -295,22 +301,22 @@ class KinematicMap:
             NotCovered: inputs at which nothing is proven.
             MapError: an array without a column for each input, or not of numbers.
         """
-        states = [_numbers(STATES[0], values)]
+        states = [numbers_of(STATES[0], values)]
         if rates is None and accelerations is None and states[0].shape == self._single_shape:
             return self._one([states[0].tolist()])
         if accelerations is not None and rates is None:
             raise _needs_rates()
         given = zip(STATES[1:], (rates, accelerations), strict=True)
-        states += [_numbers(what, state) for what, state in given if state is not None]
+        states += [numbers_of(what, state) for what, state in given if state is not None]
         inputs = len(self.inputs)
         for d, state in enumerate(states):
             if state.shape[-1:] != (inputs,):
                 allowed = f"(..., {inputs}), a column for each of {', '.join(self.inputs)}"
                 raise MapError(STATES[d], f"have the shape {state.shape}", allowed)
-        self._require_finite_rates(states)
+        require_finite_rates(self.domain, states)
         if all(state.ndim == 1 for state in states):
             return self._one([state.tolist() for state in states])
-        batch = _common_shape([state.shape[:-1] for state in states], "arrays")
+        batch = common_shape([state.shape[:-1] for state in states], "arrays")
         flat = [np.broadcast_to(state, (*batch, inputs)).reshape(-1, inputs) for state in states]
         found = np.stack(self._sums(flat, self._patches_of(flat[0])))
         return np.moveaxis(found.reshape(len(states), len(self.points), 3, *batch), (1, 2), (-2, -1))
@@ -321,7 +327,7 @@ class KinematicMap:
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
         """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
-        (values,), _, shape = self._split([inputs])
+        (values,), _, shape = columns_of(self.domain, [inputs])
         low, high = self.domain.ends
         inside = np.asarray(((values >= low) & (values <= high)).all(axis=-1))
         number = self._lookup.at(np.where(inside[:, None], values, low))
@@ -381,21 +387,12 @@ class KinematicMap:
                 unit = self.mechanism.topology.input_units[name]
                 allowed = f"{low[i]:.10g} to {high[i]:.10g} {unit}, the range of this map"
                 raise InputOutOfRange(name, worst, allowed)
-        if self._lookup.single:
-            return np.zeros(len(values), dtype=np.int64)
         number = self._lookup.at(values)
         if (number < 0).any():
             gaps = np.flatnonzero(number < 0)
             inputs = dict(zip(self.inputs, values[gaps[0]].tolist(), strict=True))
             raise NotCovered(inputs, self.gaps[-1 - number[gaps[0]]][1], len(gaps), len(values))
         return number
-
-    def _require_finite_rates(self, states: Sequence[Array]) -> None:
-        """Refuse rates and accelerations, each (..., p), that are not finite."""
-        for what, state in zip(STATES[1:], states[1:], strict=False):
-            if not np.isfinite(state).all():
-                place = tuple(np.argwhere(~np.isfinite(state))[0])
-                raise InputOutOfRange(self.inputs[place[-1]], float(state[place]), f"{what} that are finite")
 
     @cached_property
     def _single_shape(self) -> tuple[int]:
@@ -426,47 +423,6 @@ class KinematicMap:
     def _ready(self) -> list[tuple[list[list[float]], Array, Array] | None]:
         """Of each patch that one pose has been on, its box and its table."""
         return [None] * len(self.series.low)
-
-    def _split(
-        self, given: Sequence[Mapping[str, ArrayLike]]
-    ) -> tuple[list[Array], dict[str, list[Array]], tuple[int, ...]]:
-        """The map's inputs as columns, (N, p); what moves the chassis by input and derivative, each (N,); and
-        the shape of what is given, of N numbers.
-        """
-        topology = self.mechanism.topology
-        held = {name: low for name, (low, high) in self.domain.ranges.items() if low == high}
-        for d, state in enumerate(given):
-            if not isinstance(state, Mapping):
-                raise MapError(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
-            kind = ("input", "input with a rate", "input with an acceleration")[d]
-            for name in state:
-                if name not in topology.inputs:
-                    raise UnknownName(kind, name, topology.inputs)
-                wanted = held.get(name) if d == 0 else 0.0 if name in held else None
-                value = np.ravel(_numbers(f"values of {kind} {name!r}", state[name]))
-                if wanted is not None and (value != wanted).any():
-                    worst = float(value[np.argmax(value != wanted)])
-                    raise InputOutOfRange(name, worst, f"{wanted:.10g}, as the map holds this input")
-            for name in self.inputs:
-                if name not in state:
-                    raise UnknownName(f"given {kind}", name, state)
-        arrays = [{name: np.asarray(value, dtype=float) for name, value in state.items()} for state in given]
-        shape = _common_shape([value.shape for state in arrays for value in state.values()], "inputs")
-        count = int(np.prod(shape))
-        columns = [
-            np.stack([np.broadcast_to(state[name], shape).reshape(count) for name in self.inputs], axis=-1)
-            for state in arrays
-        ]
-        named = (name for name in self._motion.directions if any(name in state for state in arrays))
-        laws = {
-            name: [np.broadcast_to(state.get(name, np.zeros(())), shape).reshape(count) for state in arrays]
-            for name in named
-        }
-        for name, law in laws.items():
-            for value in law:
-                if not np.isfinite(value).all():
-                    raise InputOutOfRange(name, float(value[~np.isfinite(value)][0]), "finite values")
-        return columns, laws, shape
 
     @cached_property
     def _motion(self) -> ChassisMotion:
@@ -515,7 +471,6 @@ class KinematicMap:
         return numbers
 
 
-STATES = ("values", "rates", "accelerations")
 POINT_STATES = tuple(n for n, e in EFFECTS.items() if all(q.of == "point" for q in e.quantities))
 """Effects that a map gives wherever it is told the rates."""
 
@@ -559,7 +514,7 @@ def kinematic_map(
     whole = isinstance(halvings, int | np.integer) and not isinstance(halvings, bool)
     if not (whole and 0 <= halvings <= MOST_HALVINGS):
         raise MapError("halvings", f"is {halvings!r}", f"a whole number from 0 to {MOST_HALVINGS}")
-    domain = Domain(mechanism, _checked_ranges(mechanism, ranges), int(halvings))
+    domain = Domain(mechanism, checked_ranges(mechanism, ranges), int(halvings))
     if not 1 <= len(domain.free) <= VARIABLES:
         raise MapError("ranges", f"leave {len(domain.free)} inputs free", f"1 to {VARIABLES} of them")
     number = isinstance(tolerance, int | float | np.integer | np.floating) and not isinstance(tolerance, bool)
@@ -616,52 +571,3 @@ def _file(path: object) -> str:
     if not isinstance(path, str | PathLike):
         raise MapError(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
     return f"file {fspath(path)!r}"
-
-
-def _numbers(what: str, value: ArrayLike) -> Array:
-    """Numbers as doubles."""
-    try:
-        return np.asarray(value, dtype=float)
-    except (TypeError, ValueError) as error:
-        raise MapError(what, f"cannot be read as numbers: {error}", "numbers or arrays of them") from error
-
-
-def _common_shape(shapes: Sequence[tuple[int, ...]], what: str) -> tuple[int, ...]:
-    """The shape that some broadcast to."""
-    try:
-        return np.broadcast_shapes(*shapes)
-    except ValueError as error:
-        told = ", ".join(map(str, dict.fromkeys(shapes)))
-        raise MapError(what, f"have the shapes {told}", "shapes that broadcast to one") from error
-
-
-def _checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[float, float]]:
-    """The range of each driving input, in their order."""
-    topology = mechanism.topology
-    if not isinstance(ranges, Mapping):
-        raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
-    for name in ranges:
-        if name in topology.chassis_inputs:
-            allowed = "no range: it moves the whole chassis, whatever it is"
-            raise MapError(f"ranges[{name!r}]", "is given", allowed)
-        if name not in topology.required_inputs:
-            raise UnknownName("driving input", name, topology.required_inputs)
-    found = {}
-    for name in topology.required_inputs:
-        if name not in ranges:
-            raise UnknownName("range of an input", name, ranges)
-        try:
-            low, high = (float(end) for end in ranges[name])
-        except (TypeError, ValueError):
-            low, high = np.nan, np.nan
-        # Comparisons are false of what is not a number.
-        within = max(abs(low), abs(high)) <= FARTHEST
-        if not (within and (low == high or high - low >= NARROWEST)):
-            raise MapError(
-                f"ranges[{name!r}]",
-                f"is {ranges[name]!r}",
-                f"two finite numbers within {FARTHEST:g}, the lower first and {NARROWEST:g} apart at least, "
-                "or the same to hold it",
-            )
-        found[name] = (low + 0.0, high + 0.0)
-    return found

@@ -34,6 +34,7 @@ Content = tuple[Scene, float, Patches, Gaps]
 """A map: its scene, its tolerance, and its patches and gaps."""
 
 FORMAT, VERSION = "pointcoord kinematic map", 1
+PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 ALLOWED = "a map as KinematicMap.save writes it"
 DAMAGED = (
     ValueError,
@@ -42,7 +43,7 @@ DAMAGED = (
     KeyError,
     TypeError,
     MemoryError,  # a size that was never written
-    RuntimeError,  # a way of packing that there is not, or a password
+    RuntimeError,  # a password
     TokenError,  # an array whose header is no Python
     zipfile.BadZipFile,
     zlib.error,
@@ -100,6 +101,8 @@ def unpacked(data: bytes, what: str) -> Content:
     """
     try:
         with zipfile.ZipFile(BytesIO(data)) as archive:
+            if any(part.compress_type not in PACKED for part in archive.infolist()):
+                raise zipfile.BadZipFile("packed in a way that numpy does not use")
             # A part is read to its end, where its checksum stands, before anything is made of it.
             parts = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
         found = {name: np.lib.format.read_array(BytesIO(part)) for name, part in parts.items()}

@@ -47,9 +47,8 @@ def sum_series(
     room = np.empty((len(states) + 1, tables[0].shape[1], min(len(patch), BLOCK)))
     for number, members in _by_patch(patch, len(tables[0])):
         middle, scale = boxes[0][number], 1.0 / boxes[1][number]
-        count = len(patch) if members is None else len(members)
-        for low in range(0, count, BLOCK):
-            here = slice(low, min(low + BLOCK, count)) if members is None else members[low : low + BLOCK]
+        for low in range(0, len(members), BLOCK):
+            here = members[low : low + BLOCK]
             local = [np.array(state[here].T, order="C") for state in states]
             local[0] -= middle[:, None]
             for state in local:
@@ -62,16 +61,9 @@ def sum_series(
     return found
 
 
-def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp] | None]]:
-    """Each patch that poses lie on with the places of these; None for all of them."""
-    if not len(patch):
-        return
-    if (patch == patch[0]).all():
-        yield int(patch[0]), None
-        return
-    # Whole numbers of 16 bits are sorted in one pass over their digits.
-    small = patch.astype(np.int16) if patches < 2**15 else patch
-    by_patch = np.argsort(small, kind="stable")
+def _by_patch(patch: Whole, patches: int) -> Iterator[tuple[int, NDArray[np.intp]]]:
+    """Each patch that poses lie on with the places of these."""
+    by_patch = np.argsort(patch, kind="stable")
     counts = np.bincount(patch, minlength=patches)
     last = np.cumsum(counts)
     for number in np.flatnonzero(counts):

@@ -37,11 +37,6 @@ class Lookup:
             table[part_of(first, last)] = number
         return cls(domain, table)
 
-    @cached_property
-    def single(self) -> bool:
-        """Whether one patch is all."""
-        return bool((self.table == 0).all())
-
     def at(self, values: Array) -> Whole:
         """The number at values inside the domain, shape (..., p) to (...)."""
         ends, parts, _ = self._flat

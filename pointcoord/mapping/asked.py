@@ -1,0 +1,127 @@
+"""What a map is asked for, checked: ranges to be made over, inputs at which it is evaluated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pointcoord.errors import InputOutOfRange, MapError, UnknownName
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.patches.domain import Domain
+
+Array = NDArray[np.float64]
+Ranges = Mapping[str, tuple[float, float]]
+
+# Widths and ends between which squares and products of series are numbers; no car has others.
+NARROWEST, FARTHEST = 1e-100, 1e12
+
+STATES = ("values", "rates", "accelerations")
+
+
+def columns_of(
+    domain: Domain, given: Sequence[Mapping[str, ArrayLike]]
+) -> tuple[list[Array], dict[str, list[Array]], tuple[int, ...]]:
+    """The free inputs of a domain and their rates as columns.
+
+    Args:
+        given: numbers or arrays by input, and their time derivatives.
+    Returns:
+        By derivative, each (N, p); what moves the chassis by input and derivative, each (N,); and the shape
+        of what is given, of N numbers.
+    Raises:
+        UnknownName, InputOutOfRange, MapError: what is none of a map's.
+    """
+    topology = domain.mechanism.topology
+    held = {name: low for name, (low, high) in domain.ranges.items() if low == high}
+    for d, state in enumerate(given):
+        if not isinstance(state, Mapping):
+            raise MapError(STATES[d], f"is a {type(state).__name__}", "numbers or arrays by input")
+        kind = ("input", "input with a rate", "input with an acceleration")[d]
+        for name in state:
+            if name not in topology.inputs:
+                raise UnknownName(kind, name, topology.inputs)
+            wanted = held.get(name) if d == 0 else 0.0 if name in held else None
+            value = np.ravel(numbers_of(f"values of {kind} {name!r}", state[name]))
+            if wanted is not None and (value != wanted).any():
+                worst = float(value[np.argmax(value != wanted)])
+                raise InputOutOfRange(name, worst, f"{wanted:.10g}, as the map holds this input")
+        for name in domain.free:
+            if name not in state:
+                raise UnknownName(f"given {kind}", name, state)
+    arrays = [{name: np.asarray(value, dtype=float) for name, value in state.items()} for state in given]
+    shape = common_shape([value.shape for state in arrays for value in state.values()], "inputs")
+    count = int(np.prod(shape))
+    columns = [
+        np.stack([np.broadcast_to(state[name], shape).reshape(count) for name in domain.free], axis=-1)
+        for state in arrays
+    ]
+    named = (name for name in topology.chassis_inputs if any(name in state for state in arrays))
+    laws = {
+        name: [np.broadcast_to(state.get(name, np.zeros(())), shape).reshape(count) for state in arrays]
+        for name in named
+    }
+    for name, law in laws.items():
+        for value in law:
+            if not np.isfinite(value).all():
+                raise InputOutOfRange(name, float(value[~np.isfinite(value)][0]), "finite values")
+    return columns, laws, shape
+
+
+def require_finite_rates(domain: Domain, states: Sequence[Array]) -> None:
+    """Refuse rates and accelerations, each (..., p), that are not finite."""
+    for what, state in zip(STATES[1:], states[1:], strict=False):
+        if not np.isfinite(state).all():
+            place = tuple(np.argwhere(~np.isfinite(state))[0])
+            name, wrong = domain.free[place[-1]], float(state[place])
+            raise InputOutOfRange(name, wrong, f"{what} that are finite")
+
+
+def numbers_of(what: str, value: ArrayLike) -> Array:
+    """Numbers as doubles."""
+    try:
+        return np.asarray(value, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise MapError(what, f"cannot be read as numbers: {error}", "numbers or arrays of them") from error
+
+
+def common_shape(shapes: Sequence[tuple[int, ...]], what: str) -> tuple[int, ...]:
+    """The shape that some broadcast to."""
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError as error:
+        told = ", ".join(map(str, dict.fromkeys(shapes)))
+        raise MapError(what, f"have the shapes {told}", "shapes that broadcast to one") from error
+
+
+def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[float, float]]:
+    """The range of each driving input, in their order."""
+    topology = mechanism.topology
+    if not isinstance(ranges, Mapping):
+        raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
+    for name in ranges:
+        if name in topology.chassis_inputs:
+            allowed = "no range: it moves the whole chassis, whatever it is"
+            raise MapError(f"ranges[{name!r}]", "is given", allowed)
+        if name not in topology.required_inputs:
+            raise UnknownName("driving input", name, topology.required_inputs)
+    found = {}
+    for name in topology.required_inputs:
+        if name not in ranges:
+            raise UnknownName("range of an input", name, ranges)
+        try:
+            low, high = (float(end) for end in ranges[name])
+        except (TypeError, ValueError):
+            low, high = np.nan, np.nan
+        # Comparisons are false of what is not a number.
+        within = max(abs(low), abs(high)) <= FARTHEST
+        if not (within and (low == high or high - low >= NARROWEST)):
+            raise MapError(
+                f"ranges[{name!r}]",
+                f"is {ranges[name]!r}",
+                f"two finite numbers within {FARTHEST:g}, the lower first and {NARROWEST:g} apart at least, "
+                "or the same to hold it",
+            )
+        found[name] = (low + 0.0, high + 0.0)
+    return found

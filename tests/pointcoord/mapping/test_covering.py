@@ -1,0 +1,296 @@
+"""What a covering is cut into and where it ends: orders, limits, folds, seams, and never another assembly."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar, by_car
+
+from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, simulate, standing
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.multi_index import powers
+from pointcoord.patches import flood as flooding
+from pointcoord.patches.domain import Domain, widened
+from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
+from pointcoord.patches.jet import Jet
+from pointcoord.patches.lookup import Marked
+from pointcoord.patches.patches import ProvenPatches
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.follower import follow
+
+Array = NDArray[np.float64]
+
+# Where two branches of the paper's car nearly meet: arm angle, rad, and rack, mm.
+SADDLE = (float(np.radians(35.118)), -0.0029)
+RANGES = {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}
+
+
+def scene_of(car: SampleCar) -> Scene:
+    return Scene.from_mapping(
+        {
+            "mechanism": {
+                "type": car.type,
+                "closure": car.closure,
+                "side": car.side,
+                "points": {name: list(place) for name, place in car.points.items()},
+            },
+            "inputs": {"arm_angle": {"constant": 1.0}, "rack": {"constant": 0.0}},
+            "time": {"start": 0.0, "stop": 0.0, "samples": 1},
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "derivative", "inputs", "order"),
+    [
+        (1e-6, 0, 1, 9),  # a digit each of 1e-6 mm in a car of 1000 mm
+        (1e-6, 1, 2, 11),
+        (1e-6, 2, 1, 13),
+        (1e-6, 0, 3, 9),
+        (1.0, 0, 2, 6),  # no fewer
+        (1e-20, 0, 1, 16),  # a double has no more digits
+        (1e-20, 1, 1, 18),
+        (1e-20, 2, 2, 20),
+        (1e-12, 2, 1, 19),
+        (1e-20, 0, 3, 12),  # of three inputs 12 are 455 powers
+    ],
+)
+def test_series_have_an_order_for_each_digit_and_two_for_each_derivative(
+    tolerance: float, derivative: int, inputs: int, order: int
+) -> None:
+    names = ["arm_angle", "rack", "wheel"][:inputs]
+    mechanism = SimpleNamespace(unit=1e3, topology=SimpleNamespace(required_inputs=names))
+    domain = Domain(cast(Mechanism, mechanism), dict.fromkeys(names, (0.0, 1.0)), 0)
+    assert domain.order_for(tolerance, derivative) == order
+
+
+@pytest.mark.parametrize("low", [3.0, -4e3, 0.25])
+def test_a_range_too_narrow_is_widened_alike_on_both_sides_and_no_other(low: float) -> None:
+    least = 2.0**-20 * max(abs(low), 1.0)
+    for high in (low, low + 0.25 * least):
+        first, last = widened(low, high)
+        assert last - first == pytest.approx(least, rel=1e-6)
+        assert low - first == pytest.approx(last - high, rel=1e-6)
+    assert widened(low, low + 2.0 * least) == (low, low + 2.0 * least)
+
+
+@pytest.mark.parametrize(("derivative", "used"), [(0, [0.5, 4.0]), (1, [3.0, 4.0]), (2, [3.0, 10.0])])
+def test_a_patch_uses_the_largest_part_of_what_is_allowed_of_any_derivative(
+    derivative: int, used: list[float]
+) -> None:
+    # Two patches of two inputs with one point; L = 100 mm, so that a part of 1e-2 is a tolerance of 1 mm.
+    coefficients = np.zeros((2, 6, 3))
+    coefficients[:, 1, 0], coefficients[:, 2, 1] = -20.0, 40.0  # S_1 = 20 mm, S_2 = 40 mm
+    coefficients[:, 1, 2] = 3.0  # less than that of another coordinate
+    off = Jet(np.zeros((2, 3)), np.zeros((2, 2, 3)), np.zeros((2, 2, 2, 3)))
+    off.value[0, 1], off.value[1, 2] = 0.5, 4.0  # of 1 mm
+    off.first[0, 1, 2] = 3.0 * 1e-2 * 40.0
+    off.first[1, 0, 0] = 2.0 * 1e-2 * 20.0
+    off.second[0, 1, 1, 0] = 2.0 * 1e-2 * 40.0 * 40.0 / 100.0
+    off.second[1, 0, 1, 1] = off.second[1, 1, 0, 1] = 10.0 * 1e-2 * 20.0 * 40.0 / 100.0
+    found = Limits(1.0, derivative).used(coefficients, off, 100.0)
+    np.testing.assert_allclose(found, used, rtol=1e-12)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_driven_coordinate_and_its_two_derivatives_are_as_near_as_a_box_says(which: int) -> None:
+    """Against many more terms; the fifth, which is left out, is by the sine of angles near a right one."""
+    mechanism = GENERAL_STRUT.mechanism()
+    domain = Domain(mechanism, {"arm_angle": (1.1, 2.1), "rack": (-30.0, 40.0)}, 1)
+    low, high = np.array([[which, 0]]), np.array([[which + 1, 2]])
+    middle, half = domain.middle_and_half(low, high)
+    np.testing.assert_allclose(middle, [[1.35 + 0.5 * which, 5.0]], rtol=1e-15)
+    np.testing.assert_allclose(half, [[0.25, 35.0]], rtol=1e-14)
+    short, _, doubt = domain.known_over(middle, half, 4)
+    long, _, _ = domain.known_over(middle, half, 14)
+    s = np.linspace(-1.0, 1.0, 81)
+    first = mechanism.layout.unknowns
+    for variable, name in enumerate(domain.free):
+        drive = next(drive for drive in mechanism.topology.drives if drive.input == name)
+        place = mechanism.layout.scalar(drive.coordinate)
+        rows = [
+            np.array(
+                [known[0, powers(2, order).power_of(variable, k), place - first] for k in range(order + 1)]
+            )
+            for known, order in ((short, 4), (long, 14))
+        ]
+        bounds = [
+            doubt.value[0, place],
+            doubt.first[0, variable, place],
+            doubt.second[0, variable, variable, place],
+        ]
+        for derivative, bound in enumerate(bounds):
+            one, other = (np.polynomial.Polynomial(row).deriv(derivative)(s) for row in rows)
+            off = np.abs(one - other).max()
+            assert off <= bound + 1e-15
+            assert bound <= 2.0 * off + 1e-15
+        # Nothing depends on the other input, and the other coordinates are known as they are.
+        other_input = 1 - variable
+        assert doubt.first[0, other_input, place] == 0.0
+        assert not doubt.second[0, other_input, :, place].any()
+        doubt.first[0, variable, place] = doubt.second[0, variable, variable, place] = 0.0
+    assert not doubt.first.any()
+    assert not doubt.second.any()
+
+
+@by_car
+def test_a_range_beyond_the_reach_is_covered_up_to_the_fold_and_refused_beyond(car: SampleCar) -> None:
+    scene = scene_of(car)
+    stand = standing(scene)
+    drawn = stand.inputs
+    first, last = (end.value for end in stand.reach["rack"])
+    middle, half = 0.5 * (first + last), 0.6 * (last - first)
+    ranges = {"arm_angle": (drawn["arm_angle"],) * 2, "rack": (middle - half, middle + half)}
+    map = kinematic_map(scene, ranges, halvings=9)
+    racks = np.linspace(middle - half, middle + half, 4001)
+    covered = map.covers({"rack": racks})
+    smallest = 2.0 * half / 2**9
+    assert not covered[(racks < first) | (racks > last)].any()
+    # Patches shrink with the distance from a fold, so the smallest lies within a few of its own width.
+    assert covered[(racks > first + 10 * smallest) & (racks < last - 10 * smallest)].all()
+    assert {gap.reason for gap in map.uncovered} == {FOLD, UNREACHED}
+    with pytest.raises(NotCovered, match="the map does not cover rack = ") as caught:
+        map({"rack": [0.5 * (first + last), last + 0.01 * half]})
+    assert caught.value.inputs["rack"] == last + 0.01 * half
+    assert (caught.value.count, caught.value.asked) == (1, 2)
+    with pytest.raises(NotCovered):
+        map.evaluate([last + 0.01 * half])
+
+
+def test_near_a_saddle_where_branches_nearly_meet_the_branch_is_the_drawing_s() -> None:
+    ranges = {
+        "arm_angle": (SADDLE[0] - 0.004, SADDLE[0] + 0.004),
+        "rack": (SADDLE[1] - 0.2, SADDLE[1] + 0.2),
+    }
+    map = kinematic_map(scene_of(PAPER_STRUT), ranges, 1e-6, halvings=5)
+    assert 0.2 < map.share_covered < 1.0
+    mechanism = PAPER_STRUT.mechanism()
+    low, high = np.array([*ranges.values()]).T
+    values = np.random.default_rng(4).uniform(low, high, (400, 2))
+    covered = map.covers({"arm_angle": values[:, 0], "rack": values[:, 1]})
+    inputs = {"arm_angle": values[:, 0], "rack": values[:, 1]}
+    closed = close_drawing(mechanism)
+    known = mechanism.known_series({name: value[:, None] for name, value in inputs.items()})[:, 0]
+    # Straight from the drawing, along paths that are proven to keep to their branch.
+    paths = follow(mechanism.map, np.tile(closed.y, (400, 1)), known)
+    reached = paths.done >= 1.0
+    both = covered & reached
+    assert both.sum() > 60
+    places = mechanism.places(paths.y[both])
+    found = map.evaluate(values[both])[0]
+    for i, name in enumerate(map.points):
+        # Paths end where Newton's method does, with condition numbers near the folds of 1e5 or so.
+        assert np.abs(found[:, i] - places[name] * mechanism.unit).max() <= map.bound.position + 1e-8
+    # Inputs that no straight way leads to may be reached around a fold, but not where there is no assembly.
+    for value in values[covered & ~reached][:5]:
+        assert np.isfinite(map.evaluate(value)).all()
+
+
+@by_car
+def test_neighbouring_patches_are_one_function_where_they_touch(car: SampleCar) -> None:
+    drawn = car.drawn_inputs
+    middle = 1.0 if car is PAPER_STRUT else drawn["arm_angle"]
+    ranges = {"arm_angle": (middle - 0.2, middle + 0.2), "rack": (drawn["rack"] - 25.0, drawn["rack"] + 25.0)}
+    map = kinematic_map(scene_of(car), ranges)
+    assert len(map.patches) > 2
+    nothing = 1e-13
+    for patch in map.patches:
+        (low, high), (left, right) = patch.ranges["arm_angle"], patch.ranges["rack"]
+        racks = np.linspace(left, right, 5)[1:-1]
+        for end in (low, high):
+            sides = [end - nothing, end + nothing]
+            if not ranges["arm_angle"][0] < sides[0] < sides[1] < ranges["arm_angle"][1]:
+                continue
+            here, there = (map.evaluate(np.stack([np.full(3, side), racks], axis=-1)) for side in sides)
+            # Twice 1e-13 rad at rates below 2000 mm a rad.
+            assert np.abs(here - there).max() <= 2.0 * map.bound.position + 4e-10
+
+
+def paper_domain() -> Domain:
+    return Domain(PAPER_STRUT.mechanism(), RANGES, 6)
+
+
+def entry(domain: Domain, twice: tuple[int, int] = (64, 64)) -> tuple[NDArray[np.int64], Array]:
+    """The pose at a place of a domain."""
+    values = dict(zip(domain.free, domain.inputs_at(np.array(twice)), strict=True))
+    return np.array(twice), assemble(domain.mechanism, values).y
+
+
+def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_and_else_one_is_given_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    domain = paper_domain()
+    begun = entry(domain)
+    sound = flood(domain, 8, Limits(1e-9), begun, 4096)
+    kept = sound.patches
+    assert sound.given_up == ()
+    assert kept.holds(np.array([1.0, 0.0]), begun[1])
+    assert not ProvenPatches.none(domain, 8).holds(np.array([1.0, 0.0]), begun[1])
+    assert flooding._seams(replace(kept, unique_within=0.0 * kept.unique_within)).any()
+    for place in (0, -1):
+        alone = kept.unique_within.copy()
+        alone[place] = 0.0
+        assert not flooding._seams(replace(kept, unique_within=alone)).any()
+    for coordinate in (0, 7):
+        series = kept.series.copy()
+        series[-1, 0, coordinate] += 2.0 * kept.unique_within.max()
+        spoilt = replace(kept, series=series)
+        monkeypatch.setattr(flooding.ProvenPatches, "joined", lambda none, others, spoilt=spoilt: spoilt)
+        seamed = flood(domain, 8, Limits(1e-9), begun, 4096)
+        monkeypatch.undo()
+        assert seamed.patches.low.tolist() == kept.low[:-1].tolist()
+        assert [reason for _, reason in seamed.given_up] == [SEAM]
+
+
+@pytest.mark.parametrize("corner", [(0, 0), (0, 128)])
+def test_where_no_path_leads_far_boxes_are_entered_from_their_neighbours(
+    monkeypatch: pytest.MonkeyPatch, corner: tuple[int, int]
+) -> None:
+    domain = paper_domain()
+    monkeypatch.setattr(flooding, "STEPS", 1)
+    found = flood(domain, 8, Limits(1e-6), entry(domain, corner), 4096)
+    assert found.given_up == ()
+    assert np.prod(found.patches.high - found.patches.low, axis=-1).sum() == 64**2
+
+
+def test_only_what_is_wanted_of_a_range_is_covered_and_all_of_that() -> None:
+    domain = paper_domain()
+    marks = np.zeros((64, 64), dtype=bool)
+    marks[30:34, 30:34] = marks[:4, :4] = True
+    wanted = Marked.of(marks)
+    cover = flood(domain, 8, Limits(1e-9), entry(domain), 4096, wanted)
+    assert cover.given_up == ()
+    assert wanted.any_in(cover.patches.low, cover.patches.high).all()
+    assert (cover.patches.lookup.table[marks] >= 0).all()
+    assert (cover.patches.lookup.table < 0).any()
+
+
+def test_a_range_that_the_drawing_cannot_reach_is_refused_with_what_stops_it() -> None:
+    scene = scene_of(PAPER_STRUT)
+    last = standing(scene).reach["rack"][1].value
+    with pytest.raises(AssemblyError, match=r"wanted .*rack"):
+        kinematic_map(scene, {"arm_angle": (1.6, 1.7), "rack": (last + 50.0, last + 60.0)})
+
+
+def test_where_the_map_has_no_answer_simulation_has_none_or_a_fold_is_near() -> None:
+    scene = scene_of(PAPER_STRUT)
+    ranges = {"arm_angle": (0.5, 1.0), "rack": (-80.0, 80.0)}
+    map = kinematic_map(scene, ranges, 1e-6)
+    low, high = np.array([*ranges.values()]).T
+    values = np.random.default_rng(6).uniform(low, high, (300, 2))
+    covered = map.covers({"arm_angle": values[:, 0], "rack": values[:, 1]})
+    assert 0 < covered.sum() < 300
+    content = scene.model_dump(exclude_none=True)
+    for value in values[~covered][:12]:
+        names = ("arm_angle", "rack")
+        content["inputs"] = {n: {"constant": float(v)} for n, v in zip(names, value, strict=True)}
+        try:
+            motion = simulate(Scene.from_mapping(content))
+        except AssemblyError:
+            continue
+        assert motion.start.condition > 1e3
