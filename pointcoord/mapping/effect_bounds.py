@@ -85,14 +85,14 @@ class Evaluated:
         vectors = mechanism.drawing.vectors
         found: list[dict[str, Enclosed]] = []
         for d, radius in enumerate(self._radii(here)):
-            state = Enclosed.of(self.moving[d, here], 0.0, radius, radius).scaled(parts)
             still = {
                 name: np.broadcast_to(vectors[name] if d == 0 else np.zeros(3), (count, 3))
                 for name in topology.chassis
             }
             points = {name: Enclosed.of(place) for name, place in still.items()}
             for i, name in enumerate(self.points):
-                points[name] = Enclosed(state.high[:, i], state.low[:, i], state.radius[:, :, i])
+                state, off = self.moving[d, here, i], radius[:, i]
+                points[name] = Enclosed.of(state, 0.0, off, off).scaled(parts)
             found.append(points)
         laws = {name: [Enclosed.of(rate[here]) for rate in law] for name, law in self.laws.items()}
         turned = self.chassis.turned_exactly(laws, found, float(mechanism.unit))
