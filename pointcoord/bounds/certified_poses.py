@@ -1,186 +1,146 @@
-"""Certificates of many poses of a motion: neighbours share the inverse of one, the others have their own."""
+"""What is certified of the poses of a motion, in groups of neighbours that share an inverse.
+
+A group is as large as its poses lie close enough together for: the inverse of the middle one then costs the
+others a few per cent of their bounds (see `kantorovich`). A pose without close neighbours is a group of one.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.kantorovich import Certificate, certify
+from pointcoord.numerics.kantorovich import Certificate, certify, defect_of
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.neighbours import SHARED, Neighbours, Terms
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
-# Poses that share an inverse, by turns: as many as lie near enough for it.
-TOGETHER = (1024, 256, 64, 16, 4)
-# Poses with an inverse of their own at a time: their matrices (four of n x n and two of n x pairs each) stay
-# below 40 MB.
-ALONE = 1024
+# Poses of a group, and what sharing an inverse may cost their bounds: this part of the error.
+SIZES, SHARED = (256, 64, 16, 4, 1), 0.02
+# Groups below which a larger size saves no time: what is done for each array takes longer than its numbers.
+FEWEST = 16
 
 
-@dataclass
-class CertifiedPoses:
-    """What is proven of N poses, in the mechanism's units; a row of instants for each number.
+@dataclass(frozen=True)
+class Groups:
+    """N instants as G groups of m consecutive ones; the last instant is repeated to fill the last group."""
+
+    count: int
+    size: int
+
+    def together(self, array: Array) -> Array:
+        """Numbers of the instants, (N, ...), by group, (G, m, ...)."""
+        number = -(-self.count // self.size)
+        if number * self.size == self.count:
+            return array.reshape(number, self.size, *array.shape[1:])
+        places = np.minimum(np.arange(number * self.size), self.count - 1).reshape(number, self.size)
+        return np.moveaxis(np.moveaxis(array, 0, -1)[..., places], (-2, -1), (0, 1))
+
+    def apart(self, array: Array) -> Array:
+        """Numbers by group, (G, m, ...), as those of the instants, (N, ...)."""
+        return array.reshape(-1, *array.shape[2:])[: self.count]
+
+    def most(self, array: Array) -> Array:
+        """The largest of each group, (G, ...), of numbers (N, ...)."""
+        return np.asarray(self.together(array).max(axis=1))
+
+
+@dataclass(frozen=True)
+class Known:
+    """What a driven coordinate lacks of what the user's numbers mean, and its doubt.
 
     Attributes:
-        step: e, (unknowns, N).
-        spread: uncertainty of each component of e, (unknowns, N).
-        tail: what is left, for every coordinate, (N,); infinite where nothing could be proven.
-        radius: exactly one assembly lies within it, (N,); likewise.
-        residual: largest row of C(y) about what the known coordinates mean, (N,).
-        condition: condition number of the Jacobian, (N,).
+        lacking: (N,).
+        doubt, expected: how uncertain it still is with that added, proven and expected, (N,).
     """
 
-    step: Array
-    spread: Array
-    tail: Array
-    radius: Array
-    residual: Array
-    condition: Array
+    lacking: Array
+    doubt: Array
+    expected: Array
+
+
+@dataclass(frozen=True)
+class CertifiedPoses:
+    """Poses by group, with their certificate; lengths in the mechanism's units.
+
+    Attributes:
+        y: coordinates, (G, m, size).
+        low: what the known ones of these lack, (G, m, size).
+        doubt, expected: how uncertain each coordinate is with that added, proven and expected, (G, size).
+        factors: of the middle pose of each group.
+    """
+
+    groups: Groups
+    y: Array
+    low: Array
+    doubt: Array
+    expected: Array
+    factors: Factors
+    certificate: Certificate
 
     @classmethod
-    def empty(cls, unknowns: int, count: int) -> CertifiedPoses:
-        """Room for those of some poses."""
-        step, spread = np.empty((2, unknowns, count))
-        return cls(step, spread, *np.empty((4, count)))
-
-    def put(self, members: Indices, found: Neighbours, sound: NDArray[np.bool_]) -> None:
-        """Write those of some groups.
+    def of(cls, mechanism: Mechanism, y: Array, driven: Mapping[int, Known]) -> CertifiedPoses:
+        """Certify poses.
 
         Args:
-            members: numbers of their poses, (groups that are sound, m).
+            y: coordinates of consecutive instants, (N, size).
+            driven: what is known of the driven coordinates, by place in y.
         """
-        self.step[:, members] = found.step[:, sound]
-        self.spread[:, members] = found.spread[:, sound]
-        self.tail[members] = found.tail[sound]
-        self.radius[members] = found.radius[sound]
-        self.residual[members] = np.abs(found.residual[:, sound]).max(axis=0)
+        system = mechanism.map
+        low = np.empty((system.size, len(y)))
+        low[:] = mechanism.drawn_lacks[:, None]
+        for place, known in driven.items():
+            low[place] = known.lacking
+        doubt = mechanism.drawn_doubt.copy()
+        for place, known in driven.items():
+            doubt[place] = known.doubt.max(initial=0.0)
+        groups, factors = _grouped(system, y, np.abs(low).max(axis=-1, initial=0.0) + doubt)
+        number = len(factors.condition)
+        proven = np.tile(mechanism.drawn_doubt, (number, 1))
+        expected = np.tile(mechanism.drawn_doubt + np.abs(mechanism.drawn_lacks), (number, 1))
+        for place, known in driven.items():
+            proven[:, place], expected[:, place] = groups.most(known.doubt), groups.most(known.expected)
+        together, missing = groups.together(y), groups.together(low.T)
+        certificate = certify(system, together, factors, proven[:, None], missing)
+        return cls(groups, together, missing, proven, expected, factors, certificate)
 
-    def put_alone(self, members: Indices, found: Certificate, factors: Factors) -> None:
-        """Write those of poses that have their own certificate, members (k,)."""
-        self.step[:, members], self.spread[:, members] = found.step.T, found.spread.T
-        self.tail[members], self.radius[members] = found.tail, found.radius
-        self.residual[members] = np.abs(found.residual).max(axis=-1)
-        self.condition[members] = factors.condition
+    @property
+    def condition(self) -> Array:
+        """Condition number of the Jacobian of each group's middle pose, (G,)."""
+        return self.factors.condition
 
 
-@dataclass
-class Certifier:
-    """Certifies poses of a mechanism, and remembers how far apart neighbours may lie.
+def _grouped(system: QuadraticMap, y: Array, data: Array) -> tuple[Groups, Factors]:
+    """As few groups as can share an inverse, all of one size, with the factors of their middle poses.
 
-    Attributes:
-        stiffness: z of a group over how far its poses lie from its anchor, as far as it is known.
+    Args:
+        data: how far any coordinate may be off, (size,).
     """
-
-    mechanism: Mechanism
-    stiffness: float = 1.0
-
-    @cached_property
-    def terms(self) -> Terms:
-        """What moves: the unknown coordinates and those that are driven."""
-        return Terms.of(self.mechanism.map, np.array([*range(self.mechanism.map.unknowns), *self.driven]))
-
-    @cached_property
-    def driven(self) -> list[int]:
-        """Places of the driven coordinates."""
-        return [self.mechanism.layout.scalar(drive.coordinate) for drive in self.mechanism.topology.drives]
-
-    def certify(self, times: Array, y: Array, laws: Mapping[str, Array]) -> CertifiedPoses:
-        """Prove poses.
-
-        Args:
-            times: (N,), s; they do not decrease.
-            y: coordinates, (size, N).
-            laws: how far the value of each driving input may be off, (N,), rad or mm.
-        """
-        mechanism = self.mechanism
-        data = np.empty((2, len(self.driven), len(times)))
-        for i, drive in enumerate(mechanism.topology.drives):
-            data[:, i] = drive.rounding(y[self.driven[i]], mechanism.drawing, laws[drive.input])
-        found = CertifiedPoses.empty(mechanism.map.unknowns, len(times))
-        left = np.arange(len(times))
-        anchors, conditions = [times[:0]], [times[:0]]
-        for size in TOGETHER:
-            if len(left) < size:
-                continue
-            count = len(left) // size * size
-            groups, rest = left[:count].reshape(-1, size), left[count:]
-            middle = groups[:, size // 2]
-            sound, certified = self._together(y, data, groups)
-            if certified is not None:
-                good = sound.copy()
-                good[sound] = certified.sound
-                found.put(groups[good], certified, certified.sound)
-                anchors.append(times[middle[good]])
-                conditions.append(certified.condition[certified.sound])
-                sound = good
-            left = np.concatenate([groups[~sound].ravel(), rest])
-        at, values = np.concatenate(anchors), np.concatenate(conditions)
-        if at.size:
-            order = np.argsort(at, kind="stable")
-            found.condition[:] = np.interp(times, at[order], values[order])
-        for low in range(0, len(left), ALONE):
-            part = left[low : low + ALONE]
-            found.put_alone(part, *self._alone(y, data, part))
-        return found
-
-    def _together(
-        self, y: Array, data: Array, groups: Indices
-    ) -> tuple[NDArray[np.bool_], Neighbours | None]:
-        """Groups that were tried, (G,), and what was found of them; None if none was worth trying.
-
-        Args:
-            data: what the driven coordinates lack and their uncertainty, (2, driven, N).
-        """
-        terms, middle = self.terms, groups.shape[1] // 2
-        moving = y[terms.moving][:, groups]
-        change = np.zeros((len(moving) + 1, *groups.shape))
+    for size in SIZES:
+        if size > 1 and FEWEST * size > len(y):
+            continue
+        groups = Groups(len(y), size)
+        together = groups.together(y)
+        factors = factorise(system.jacobian(together[:, size // 2]))
         with np.errstate(invalid="ignore", over="ignore"):
-            np.subtract(moving, moving[..., middle, None], out=change[:-1])
-            reach = np.maximum(change.max(axis=-1), -change.min(axis=-1))
-            farthest = reach.max(axis=0)
-            near = self.stiffness * farthest <= 2.0 * SHARED
-        if not near.any():
-            return near, None
-        if not near.all():
-            groups, change, reach, farthest = groups[near], change[:, near], reach[:, near], farthest[near]
-        anchors = np.ascontiguousarray(y[:, groups[:, middle]].T)
-        # A difference of two numbers of which neither is twice the other is exact (Sterbenz).
-        exact = 2.0 * reach[:-1] <= np.abs(anchors[:, terms.moving].T)
-        lost = np.zeros_like(reach)
-        lost[:-1] = np.where(exact, 0.0, UNIT_ROUNDOFF * reach[:-1])
-        lacking, doubt = data[0][:, groups], data[1][:, groups].max(axis=-1)
-        low, uncertainty = self._known(anchors, lacking[..., middle], doubt)
-        more, driven = lacking - lacking[..., middle, None], slice(self.mechanism.map.unknowns, -1)
-        change[driven] += more
-        lost[driven] += UNIT_ROUNDOFF * (reach[driven] + 3.0 * np.abs(more).max(axis=-1))
-        found = terms.certify(anchors, low, uncertainty, change, lost.T)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            stiffness = found.contraction / farthest
-        known = np.isfinite(stiffness)
-        if known.any():
-            self.stiffness = float(stiffness[known].min())
-        return near, found
+            inverse = factors.preconditioner
+            if size == 1 or (defect_of(system, together, inverse, data).sum(axis=-1) <= SHARED).all():
+                break
+    return groups, factors
 
-    def _alone(self, y: Array, data: Array, members: Indices) -> tuple[Certificate, Factors]:
-        """Of each of some poses by its own inverse."""
-        own = np.ascontiguousarray(y[:, members].T)
-        low, uncertainty = self._known(own, *data[:, :, members])
-        factors = factorise(self.mechanism.map.jacobian(own))
-        return certify(self.mechanism.map, own, factors, uncertainty, low), factors
 
-    def _known(self, y: Array, lacking: Array, uncertainty: Array) -> tuple[Array, Array]:
-        """What all coordinates lack and are uncertain by, (k, size), from the driven ones' (driven, k)."""
-        low, data = (
-            np.broadcast_to(drawn, y.shape).copy()
-            for drawn in (self.mechanism.drawn_lacks, self.mechanism.drawn_doubt)
-        )
-        low[:, self.driven], data[:, self.driven] = lacking.T, uncertainty.T
-        return low, data
+def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:
+    """Proven bound on every coordinate of the solved points of poses, shape (...,), mm.
+
+    The shift to the user's origin rounds each coordinate once more.
+    """
+    lacking, uncertainty = mechanism.known_data(y)
+    y, uncertainty, lacking = (part[..., None, :] for part in (y, uncertainty, lacking))
+    certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
+    points = certificate.coordinates[..., 0, : 3 * len(mechanism.topology.moving)].max(axis=-1)
+    return np.asarray(points * mechanism.unit + EPS * np.abs(mechanism.origin).max(axis=-1))

@@ -1,21 +1,49 @@
-r"""Where every point of a pose and its rates exactly are, from where the coordinates and their rates are.
+r"""Where every point of a pose and its rates exactly are: a correction, and two radii about it.
+
+The certificate of a pose gives y* = y - e to within its spread and tail. Its rates solve
+
+    2 B(y*, v*) = 0,        2 B(y*, a*) + 2 B(v*, v*) = 0,
+
+with known rates w', w''. For a computed v with the exact w' in it, r = 2 B(y*, v), and X close to C_u^-1,
+
+    C_u(y*) (v* - v) = -r,        v* - v = -X r + E (v* - v),        E = I - X C_u(y*).
+
+With q >= |X r|, rounding and doubt of r included, and z' = z + omega r_pose >= |E| of the certificate,
+
+    |v* - v| <= max q / (1 - z') = d,    |v* - v| <= q + F d,    |v* - v| <= q + F (q + F d),
+
+element by element, F = |I - X C_u(y)| + |X| |C_u(y*) - C_u(y)| >= |E|; so a coordinate that does not depend
+on another does not share its error. The same for a with r = 2 B(y*, a) + 2 B(v*, v*). r is taken in twice the
+working precision of numbers that are known to twice the working precision, so nothing is left of rounding but
+what the data have; and it sees whatever a series left out.
+
+What looking at an equation rounds, the expected radius, is |X| times what a plain evaluation of r rounds,
+with the pose (and the velocity) off by as much as rounding makes them and as the solver left on purpose; and
+of a series what it leaves out on purpose, of each derivative apart, because the series of a rate is cut where
+the pose's is.
+
+All this is of groups of neighbours that share X, F and their radii; e, r and v are each pose's own.
 
 A carried point is p = p_0 + a e1 + b e2 + c e1 x e2 with weights that are known to twice the working
-precision.
+precision, and its derivatives follow by Leibniz' rule.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.enclosure import Enclosed, cross
+from pointcoord.numerics.double_double import runs, two_sum
+from pointcoord.numerics.enclosure import Enclosed, both, cross
+from pointcoord.numerics.kantorovich import applied
+from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
@@ -26,7 +54,8 @@ Edges = tuple[Enclosed, Enclosed]
 class EnclosedPoses:
     """Where the points of solved poses exactly are: what the error of every reported number is told from.
 
-    Time is in a unit of its own for each pose, so that no rate overflows.
+    Numbers are of N poses, (N, ...), or of G groups of m that share their radii, (G, m, ...). Time is in a
+    unit of its own for each, so that no rate overflows.
 
     Attributes:
         points: by time derivative, every point in the chassis' frame, (N, 3), in the mechanism's units.
@@ -40,16 +69,146 @@ class EnclosedPoses:
     added: Sequence[Enclosed]
     powers: Sequence[Array]
 
-
-class Coordinates(Protocol):
-    """Where the coordinates of poses exactly are, or a derivative of them."""
-
-    def take(self, places: list[int], /) -> Enclosed:
-        """Those at some places, as the last dimension."""
-        ...
+    def reported(self, name: str, derivative: int) -> Enclosed:
+        """What is reported of a point, or of its time derivative, (N, 3), mm per s^d."""
+        unit = float(self.mechanism.unit) / self.powers[derivative]
+        return self.points[derivative][name].scaled(unit[..., None]) + self.added[derivative]
 
 
-def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Coordinates]) -> list[dict[str, Enclosed]]:
+def enclosed_coordinates(
+    mechanism: Mechanism,
+    poses: CertifiedPoses,
+    rates: Sequence[Array],
+    driven: Sequence[Mapping[int, Enclosed]],
+    unsolved: Array,
+    cut: Sequence[Array],
+) -> list[Enclosed]:
+    """The exact coordinates y* and as many of their derivatives as were solved for, each (G, m, size).
+
+    Args:
+        rates: computed time derivatives of y, (G, m, size), units per unit of time^d.
+        driven: by derivative and by place in y, where each driven coordinate's exactly is, (G, m).
+        unsolved: how far from its assembly a pose of each group was left on purpose, (G,).
+        cut: by derivative, what its series leaves out on purpose, (G, size); empty if there is none.
+    """
+    system, n = mechanism.map, mechanism.map.unknowns
+    certificate, magnitude = poses.certificate, np.abs(poses.factors.preconditioner)
+    low = poses.low.copy()
+    low[..., :n] = -certificate.step
+    largest = np.abs(certificate.step).max(axis=1)
+    spread = certificate.spread[:, 0] + 32.0 * UNIT_ROUNDOFF * largest
+    proven = poses.doubt.copy()
+    proven[:, :n] = spread + _tail(system, poses, magnitude, spread + largest)
+    anchor, size = poses.y[:, poses.y.shape[1] // 2], np.abs(poses.y).max(axis=1)
+    looking = UNIT_ROUNDOFF * size + poses.expected
+    looking[:, :n] += _applied(magnitude, system.uncertainty(anchor, poses.expected)) + unsolved[:, None]
+    result = [Enclosed.sharing(*two_sum(poses.y, low), both(proven[:, None], looking[:, None]))]
+    moved = np.abs(low).max(axis=1) + proven
+    spoilt = certificate.defect + magnitude @ system.jacobian_uncertainty(moved)
+    factors = []
+    for derivative, (rate, known) in enumerate(zip(rates, driven, strict=True), 1):
+        factors.append(_factors(system, result[-1]))
+        computed = _with_known(rate, known, n)
+        rest = _twice_polar(system, factors[0], _factors(system, computed))
+        if derivative == 2:
+            rest = rest + _twice_polar(system, factors[1], factors[1])
+        result.append(_corrected(computed, rest, poses, spoilt))
+    for state, left in zip(result, cut, strict=False):
+        state.radius[1, :, 0, :n] += left[:, :n]
+    return result
+
+
+def _tail(system: QuadraticMap, poses: CertifiedPoses, magnitude: Array, known: Array) -> Array:
+    """What is left of the error of each coordinate beside e and its spread, (G, unknowns).
+
+    By the mean value form of `kantorovich`, with r the error of each coordinate instead of the largest:
+    |I - X C_u| r + |X| |C_u(y + r) - C_u(y)| r / 2, first for the largest and then for what that gives.
+
+    Args:
+        known: largest |e| and its spread, (G, unknowns).
+    """
+    certificate = poses.certificate
+    most = certificate.tail.max(axis=1)[:, None]
+    tail = radius = np.broadcast_to(certificate.radius.max(axis=1)[:, None], known.shape)
+    for _ in range(2):
+        moved = np.concatenate([radius, np.zeros((len(radius), system.size - system.unknowns))], axis=-1)
+        bent = 0.5 * magnitude @ system.jacobian_uncertainty(moved)
+        tail = np.minimum(_applied(certificate.defect + bent, radius), most)
+        radius = np.minimum(radius, known + tail)
+    return tail
+
+
+def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt: Array) -> Enclosed:
+    """The rates that leave no rest, from computed ones that leave `rest` = 2 B(y*, .) + ...
+
+    Args:
+        spoilt: F, (G, unknowns, unknowns).
+    """
+    inverse = poses.factors.preconditioner
+    n, magnitude = inverse.shape[-1], np.abs(inverse)
+    gamma = (n + 2) * EPS
+    middle = rest.middle
+    step = -applied(inverse, middle)
+    proven = _applied(magnitude, rest.radius[0, :, 0] + gamma * np.abs(middle).max(axis=1))
+    whole = np.abs(step).max(axis=1) + proven
+    room = 1.0 - poses.certificate.contraction.max(axis=1)
+    largest = np.where(room > 0.0, whole.max(axis=-1) / room, np.inf)[:, None]
+    tail = _applied(spoilt, whole + _applied(spoilt, np.broadcast_to(largest, whole.shape)))
+    rounded = _applied(magnitude, rest.radius[1, :, 0])
+    # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
+    # after one refinement.
+    shared = gamma * poses.condition * rounded.max(axis=-1)
+    low, radius = computed.low.copy(), computed.radius.copy()
+    low[..., :n] = step
+    radius[0, :, 0, :n] = proven + tail
+    radius[1, :, 0, :n] = rounded + shared[:, None]
+    radius[1] += UNIT_ROUNDOFF * np.abs(computed.high).max(axis=1, keepdims=True)
+    return Enclosed.sharing(*two_sum(computed.high, low), radius)
+
+
+def _with_known(rate: Array, known: Mapping[int, Enclosed], unknowns: int) -> Enclosed:
+    """Computed rates of the unknown coordinates, exact as they are, beside those of the known ones.
+
+    These are zero but where an input drives one.
+    """
+    high, low = (np.moveaxis(np.zeros((rate.shape[-1], *rate.shape[:-1])), 0, -1) for _ in range(2))
+    radius = np.zeros((2, len(rate), 1, rate.shape[-1]))
+    high[..., :unknowns] = rate[..., :unknowns]
+    for place, number in known.items():
+        high[..., place], low[..., place] = number.high, number.low
+        radius[..., place] = number.radius.reshape(2, -1, 1)
+    return Enclosed.sharing(high, low, radius)
+
+
+def _factors(system: QuadraticMap, state: Enclosed) -> Edges:
+    """Both differences of every term, (..., terms)."""
+    left, right = (state.take(first) - state.take(second) for first, second in system.terms[2])
+    return left, right
+
+
+def _twice_polar(system: QuadraticMap, a: Edges, b: Edges) -> Enclosed:
+    """2 B(a, b) of two states' differences, (..., rows)."""
+    coefficients, starts, _ = system.terms
+    terms = (a[0] * b[1]).scaled(2.0) if a is b else a[0] * b[1] + b[0] * a[1]
+    simple = (np.frexp(np.abs(coefficients))[0] == 0.5).all()
+    return row_sums(terms.scaled(coefficients) if simple else terms * Enclosed.of(coefficients), starts)
+
+
+def row_sums(terms: Enclosed, starts: NDArray[np.intp]) -> Enclosed:
+    """Sums of runs of terms."""
+    total = terms.take(starts)
+    for rows, places in runs(terms.high.shape[-1], starts):
+        longer = total.take(rows) + terms.take(places)
+        total.high[..., rows], total.low[..., rows] = longer.high, longer.low
+        total.radius[..., rows], total.size[..., rows] = longer.radius, longer.size
+    return total
+
+
+def _applied(matrix: Array, vector: Array) -> Array:
+    return np.asarray((matrix @ vector[..., None])[..., 0])
+
+
+def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Enclosed]) -> list[dict[str, Enclosed]]:
     """Every point and as many of its derivatives as there are, each (N, 3), in units per s^d."""
     topology, layout = mechanism.topology, mechanism.layout
     found: list[dict[str, Enclosed]] = []

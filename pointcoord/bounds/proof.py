@@ -1,39 +1,83 @@
-"""Proven error bounds of the poses of a motion, computed when asked for."""
+"""Proven error bounds of every number that a motion reports, computed when asked for."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.body_fixed import apart, carried_errors
-from pointcoord.bounds.certified_poses import CertifiedPoses, Certifier
-from pointcoord.bounds.proven_groups import GroupProver, Instants
-from pointcoord.bounds.reported_bounds import (
-    POSITION,
-    Numbers,
-    Proven,
-    Reported,
-    driven_coordinates,
-    reported_bounds,
-)
-from pointcoord.linkage.chassis import SPREAD
+from pointcoord.bounds.certified_poses import CertifiedPoses, Groups, Known
+from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates, enclosed_points
+from pointcoord.bounds.solved_coordinates import SolvedCoordinates
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import Pair, two_sum
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.kantorovich import INFLATION, certify
-from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.numerics.kantorovich import INFLATION
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import LAST, NEXT
+from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+Numbers = Mapping[str, Mapping[str, Array]]
+"""Arrays by quantity and by name: of a point or a body (N, 3), of a car (N,)."""
+Laws = Mapping[str, Sequence[Enclosed]]
 
-# Instants at a time: a row of them stays in a first-level cache, and all rows of a block below 20 MB.
-BLOCK = 2048
-# The same with their rates, where what is done for a group takes as long as for some hundred instants.
-WITH_RATES = 16384
+POSITION = "position"
+# Instants at a time: the arrays of a coordinate stay in a cache, and all of them below 50 MB.
+BLOCK = 4096
+# Solving rounds a few times as often as looking at an equation does: a factorisation, its use, a refinement;
+# and a series leaves out less than the last two terms that its expected error counts.
+ROUNDINGS = 3.0
+# Powers of two by which a unit of time is chosen: its square still is a number.
+LONGEST = 400
+
+
+class Bounded(Protocol):
+    """Something that reports numbers and knows how far they are off."""
+
+    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> Numbers:
+        """Proven and expected error of each of its numbers, each with a leading dimension of 2.
+
+        Args:
+            numbers: everything that is reported, its own among it.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Reported:
+    """What a motion reports, and what went into it beside the coordinates.
+
+    Attributes:
+        numbers: what is to be bounded.
+        effects: what gave them.
+        axes: the car's, along which angles are measured.
+        chassis: what it does, which was added to every point.
+        laws: the driving inputs.
+        solved: the coordinates, and how they were found.
+    """
+
+    numbers: Numbers
+    effects: Sequence[Bounded]
+    axes: CarAxes
+    chassis: ChassisMotion
+    laws: Mapping[str, TimeFunction]
+    solved: SolvedCoordinates
+
+    def part(self, here: slice | Indices) -> Reported:
+        """The same at some of the instants."""
+        part = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
+        return replace(self, numbers=part)
+
+    def together(self, groups: Groups) -> Numbers:
+        """The numbers by group."""
+        return {q: {n: groups.together(a) for n, a in arrays.items()} for q, arrays in self.numbers.items()}
 
 
 @dataclass(frozen=True)
@@ -45,9 +89,8 @@ class Proof:
         pose_bound: distance from every coordinate of a solved point, in the chassis' frame and near the
             mechanism, to the exact assembly, at most, (N,), mm; infinite where nothing is proven.
         bound: distance from every reported coordinate of a point to the exact assembly, at most, (N,), mm:
-            what adding the user's origin and the chassis' motion rounds comes to it, and of a car that turns
-            no coordinate is off by more than the length of what the pose may be. See `kantorovich`
-            for what it covers.
+            with what adding the user's origin and the chassis' motion rounds. See `kantorovich` for what it
+            covers.
         carried_bound: the same for carried points, (N,), mm.
         carried_gain: how many times as far as its carriers a carried point moves, at most, (N,).
         condition: condition number of the Jacobian, (N,); between neighbours that share an inverse it is
@@ -87,8 +130,7 @@ def prove(
     """Prove poses, in blocks of instants.
 
     What is reported was summed, and shifted to the user's origin and by the chassis' motion, apart from
-    the coordinates y that are proven. Both are at hand, so what lies between them is measured, without
-    rounding.
+    the coordinates y that are proven. So it is compared with where the points exactly are.
 
     Args:
         times: instants, shape (N,), s.
@@ -98,153 +140,206 @@ def prove(
     """
     order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
     columns = np.empty((6, len(times)))
-    certifier = Certifier(mechanism)
-    prover = GroupProver(mechanism, certifier)
     bounds = _Bounds(len(times))
-    block = WITH_RATES if rates else BLOCK
-    for low in range(0, len(times), block):
-        here = slice(low, low + block) if order is None else order[low : low + block]
+    for low in range(0, len(times), BLOCK):
+        here = slice(low, low + BLOCK) if order is None else order[low : low + BLOCK]
         part = reported.part(here)
-        if rates:
-            asked = Instants.of(times[here], part)
-            certified = _with_rates(asked, prover, certain, bounds, here)
-            y = asked.states[0]
-        else:
-            y = np.ascontiguousarray(part.solved.coordinates(times[here], 0)[0].T)
-            certified = certifier.certify(times[here], y, part.doubts(times[here], certain))
-        columns[:, here] = _positions(mechanism, times[here], part, y, certified)
+        with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
+            if rates:
+                poses, exact = _with_rates(mechanism, times[here], part, certain)
+                bounds.put(
+                    here, poses.groups, *bounds_of_numbers(exact, part.effects, part.together(poses.groups))
+                )
+            else:
+                poses, exact = _positions(mechanism, times[here], part, certain)
+            columns[:, here] = _of_poses(times[here], poses, exact, part)
     own, bound, carried, gain, condition, residual = columns
     return Proof(times, own, bound, carried, gain, condition, residual, bounds.proven, bounds.expected)
 
 
-def _with_rates(
-    asked: Instants,
-    prover: GroupProver,
-    certain: bool,
-    bounds: _Bounds,
-    here: slice | NDArray[np.intp],
-) -> CertifiedPoses:
-    """Bound every number at some instants: of neighbours together, and of each that is left by itself.
-
-    Args:
-        bounds: where they go; here: their places.
-    """
-    mechanism, times = prover.mechanism, asked.times
-    certified = CertifiedPoses.empty(mechanism.map.unknowns, len(times))
-    groups, left = prover.prove(asked, certified)
-    for group in groups:
-        bounds.put_groups(places_of(here, group.members), group.sound, group.proven, group.expected)
-    for low in range(0, len(left), BLOCK):
-        members = left[low : low + BLOCK]
-        some = (
-            asked if len(members) == len(times) else Instants.of(times[members], asked.reported.part(members))
-        )
-        pose = _alone(mechanism, some, certain)
-        certified.put_alone(members, pose.certificate, pose.factors)
-        bounds.put(places_of(here, members), *reported_bounds(mechanism, pose, some.reported))
-    return certified
-
-
-def places_of(here: slice | NDArray[np.intp], members: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Where some of the instants of a block are among all of them."""
-    return here.start + members if isinstance(here, slice) else here[members]
-
-
 def _positions(
-    mechanism: Mechanism, times: Array, reported: Reported, y: Array, certified: CertifiedPoses
-) -> tuple[Array, ...]:
-    """What is proven of the positions at some instants: the arrays of a `Proof`.
-
-    Args:
-        y: coordinates, (size, N).
-    """
-    unit, added = mechanism.unit, reported.added(times, mechanism.origin)
-    doubt = reported.chassis.rounding(times, mechanism.origin).T / unit
-    local = {name: _local(place.T, added, unit) for name, place in reported.numbers[POSITION].items()}
-    spread = 1.0
-    if reported.chassis.turns:
-        # What is reported is turned back, exactly, and compared where it was solved.
-        local, left = _turned_back(reported, times, local, float(unit))
-        doubt, spread = SPREAD * doubt.max(axis=0) + left, SPREAD
-    with np.errstate(invalid="ignore", over="ignore"):
-        errors = INFLATION * (np.abs(certified.step) + certified.spread + certified.tail)
-        own = errors[: 3 * len(mechanism.topology.moving)].max(axis=0)
-        bound = _reported_bound(mechanism, y, local, errors, doubt)
-        carried, gain = carried_errors(mechanism, y, local, certified, doubt)
-    far = spread * unit
-    return unit * own, far * bound, far * carried, gain, certified.condition, certified.residual
+    mechanism: Mechanism, times: Array, reported: Reported, certain: bool
+) -> tuple[CertifiedPoses, EnclosedPoses]:
+    """Poses at some instants that are certified, and where their points exactly are."""
+    (y,) = reported.solved.coordinates(times, 0)
+    driven = {}
+    for drive in mechanism.topology.drives:
+        place, law = mechanism.layout.scalar(drive.coordinate), reported.laws[drive.input]
+        doubt = np.zeros_like(times) if certain else law.rounding(times)
+        lacking, uncertainty = drive.rounding(y[:, place], mechanism.drawing, doubt)
+        driven[place] = Known(*np.broadcast_arrays(lacking, uncertainty, uncertainty))
+    poses = CertifiedPoses.of(mechanism, y, driven)
+    laws = {name: law.enclosed(times)[:1] for name, law in reported.chassis.functions.items()}
+    number = len(poses.condition)
+    coordinates = enclosed_coordinates(mechanism, poses, (), (), np.zeros(number), ())
+    return poses, _enclosed(mechanism, poses, reported, coordinates, laws, [np.ones((number, 1))])
 
 
-def _turned_back(
-    reported: Reported, times: Array, local: Mapping[str, Pair], unit: float
-) -> tuple[dict[str, Pair], Array]:
-    """Reported coordinates in the chassis' frame, and how far they may be off there, (N,), in units."""
-    chassis = reported.chassis
-    with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
-        laws = {name: law.enclosed(times) for name, law in chassis.functions.items()}
-        turned = {name: Enclosed.of(high.T, low.T) for name, (high, low) in local.items()}
-        (found,) = chassis.turned_exactly({n: law[:1] for n, law in laws.items()}, [turned], unit, back=True)
-    left = np.max([place.radius[0].max(axis=-1) for place in found.values()], axis=0, initial=0.0)
-    return {name: (place.high.T, place.low.T) for name, place in found.items()}, left
-
-
-def _alone(mechanism: Mechanism, some: Instants, certain: bool) -> Proven:
-    """Poses that are proven each by its own inverse, with all that their rates depend on."""
-    times, laws = some.times, some.laws
-    y, *rates = (np.ascontiguousarray(state.T) for state in some.states)
-    factors = factorise(mechanism.map.jacobian(y))
-    lacking, uncertainty = mechanism.known_data(y, some.reported.doubts(times, certain))
-    expected = uncertainty + np.abs(lacking)
+def _with_rates(
+    mechanism: Mechanism, times: Array, reported: Reported, certain: bool
+) -> tuple[CertifiedPoses, EnclosedPoses]:
+    """The same with the rates of the points, as many as were solved for."""
+    y, *rates = reported.solved.coordinates(times, 2)
+    functions = {**reported.laws, **reported.chassis.functions}
+    laws = {name: law.enclosed(times) for name, law in functions.items()}
     driven = driven_coordinates(mechanism, laws)
-    lacking, uncertainty = _sharpened(y, driven, lacking, uncertainty)
-    for place, (value, _, _) in driven.items():
-        expected[:, place] = value.radius[1]
-    certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
-    data = (lacking, uncertainty, expected)
-    return Proven(factors, certificate, times, (y, *rates), data, driven, laws)
+    poses = CertifiedPoses.of(
+        mechanism, y, {place: _lacking(y[:, place], value) for place, (value, *_) in driven.items()}
+    )
+    together = poses.groups.together
+    states = [poses.y, *(together(rate) for rate in rates)]
+    time = unit_of_time(states)
+    powers = [time**d for d in range(len(states))]
+    computed = [state * p[:, None, None] for state, p in zip(states[1:], powers[1:], strict=True)]
+    known = [
+        {place: parts[d].together(together).scaled(powers[d][:, None]) for place, parts in driven.items()}
+        for d in range(1, len(states))
+    ]
+    cut = _left_out(poses, times, reported.solved, [poses.y, *computed], powers)
+    unsolved = poses.groups.most(reported.solved.unsolved(times))
+    coordinates = enclosed_coordinates(mechanism, poses, computed, known, unsolved, cut)
+    return poses, _enclosed(mechanism, poses, reported, coordinates, laws, [p[:, None] for p in powers])
 
 
-def _sharpened(
-    y: Array, driven: Mapping[int, Sequence[Enclosed]], lacking: Array, uncertainty: Array
-) -> tuple[Array, Array]:
-    """What the known coordinates lack, and their uncertainty, with the driven ones in twice the precision."""
-    lacking, uncertainty = lacking.copy(), uncertainty.copy()
-    for place, (value, _, _) in driven.items():
-        lacking[:, place] = (value.high - y[:, place]) + value.low
-        rounded = np.abs(lacking[:, place]) + np.abs(value.low)
-        uncertainty[:, place] = value.radius[0] + 2.0 * UNIT_ROUNDOFF * rounded
-    return lacking, uncertainty
+def _lacking(computed: Array, exact: Enclosed) -> Known:
+    """What a computed coordinate lacks of where it exactly is."""
+    lacking = (exact.high - computed) + exact.low
+    rounded = np.abs(lacking) + np.abs(exact.low)
+    proven, expected = exact.radius
+    return Known(*np.broadcast_arrays(lacking, proven + 2.0 * UNIT_ROUNDOFF * rounded, expected))
 
 
-def _local(reported: Array, added: Array | None, unit: Array) -> Pair:
-    """Reported coordinates (3, N) without what was added to report them, in units."""
-    if added is None:
-        return reported / unit, np.zeros(1)
-    high, low = two_sum(reported, -added)
-    return high / unit, low / unit
+def _left_out(
+    poses: CertifiedPoses,
+    times: Array,
+    solved: SolvedCoordinates,
+    states: Sequence[Array],
+    powers: Sequence[Array],
+) -> list[Array]:
+    """By derivative, what summing a series leaves out and rounds, at most in each group, (G, size)."""
+    groups, found = poses.groups, []
+    size = groups.size
+    for state, summed, power in zip(states, solved.summed(times), powers, strict=False):
+        value = groups.apart(state)
+        condition, time = (np.repeat(each, size)[: groups.count] for each in (poses.condition, power))
+        found.append(groups.most(summed.expected(value, condition, time)))
+    return found
 
 
-def _reported_bound(
-    mechanism: Mechanism, y: Array, local: Mapping[str, Pair], errors: Array, doubt: Array
-) -> Array:
-    """Bound on the reported coordinates of solved points and of the chassis, shape (N,), in units.
+def _enclosed(
+    mechanism: Mechanism,
+    poses: CertifiedPoses,
+    reported: Reported,
+    coordinates: Sequence[Enclosed],
+    laws: Laws,
+    powers: Sequence[Array],
+) -> EnclosedPoses:
+    """Where the points of poses are, from where their coordinates are.
 
     Args:
-        errors: of the unknown coordinates, (unknowns, N).
+        powers: of the unit of time of each group, s^d, (G, 1).
     """
-    topology, layout = mechanism.topology, mechanism.layout
+    chassis, together = reported.chassis, poses.groups.together
+    laws = {
+        name: [part.together(together) for part in parts]
+        for name, parts in laws.items()
+        if name in chassis.functions
+    }
+    added = chassis.enclosed(laws, mechanism.origin)
+    points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
+    if chassis.turns:
+        scaled = {
+            name: [part.scaled(power) for part, power in zip(parts, powers, strict=False)]
+            for name, parts in laws.items()
+        }
+        points = chassis.turned_exactly(scaled, points, float(mechanism.unit))
+    return EnclosedPoses(mechanism, reported.axes, points, added, powers)
+
+
+def _of_poses(
+    times: Array, poses: CertifiedPoses, exact: EnclosedPoses, reported: Reported
+) -> tuple[Array, ...]:
+    """The arrays of a `Proof` at some instants."""
+    mechanism, groups, certificate = exact.mechanism, poses.groups, poses.certificate
+    topology, positions = mechanism.topology, reported.numbers[POSITION]
+    own = certificate.coordinates[..., : 3 * len(topology.moving)].max(axis=-1)
     # Of carried points alone there is nothing here; a pose that is not proven is not proven for them either.
-    found = np.where(np.isfinite(errors).all(axis=0), 0.0, np.inf)
-    for name in (*topology.moving, *topology.chassis):
-        if name not in local:
-            continue
-        place = list(layout.vector(name))
-        each = apart(local[name], y[place]) + doubt
-        # In its own frame the chassis is where it was drawn, exactly.
-        if name in topology.moving:
-            each += errors[place]
-        found = np.maximum(found, each.max(axis=0))
-    return np.asarray(INFLATION * found)
+    bound, carried = np.where(np.isfinite(own), 0.0, np.inf), np.zeros_like(own)
+    gain = np.ones_like(own)
+    for name, place in positions.items():
+        error = INFLATION * exact.reported(name, 0).apart(groups.together(place)).max(axis=-1)
+        error = np.where(np.isnan(error), np.inf, error)
+        if name in topology.carried:
+            carried = np.maximum(carried, error)
+            gain = np.maximum(gain, _gain(exact, name))
+        else:
+            bound = np.maximum(bound, error)
+    middle = groups.together(times)[:, groups.size // 2]
+    condition = np.interp(times, middle, poses.condition) if groups.size > 1 else poses.condition
+    residual = np.abs(certificate.residual).max(axis=-1)
+    own, bound, carried, gain, residual = (groups.apart(a) for a in (own, bound, carried, gain, residual))
+    return float(mechanism.unit) * own, bound, carried, gain, condition, residual
+
+
+def _gain(exact: EnclosedPoses, name: str) -> Array:
+    """How many times as far as its carriers a carried point moves at most, (G, m).
+
+    By its carriers it has the derivatives K1 = a I - c [e2]x, K2 = b I + c [e1]x and
+    K0 = (1 - a - b) I + c [e2 - e1]x.
+    """
+    mechanism = exact.mechanism
+    a, b, c = mechanism.carrier_weights[name]
+    base, first, second = (exact.points[0][point].high for point in mechanism.topology.carried[name])
+    e1, e2 = first - base, second - base
+    rows = sum(
+        abs(along) + abs(c) * (edge[..., NEXT] + edge[..., LAST])
+        for along, edge in ((1.0 - a - b, np.abs(e2 - e1)), (a, np.abs(e2)), (b, np.abs(e1)))
+    )
+    return np.asarray(INFLATION * np.max(rows, axis=-1))
+
+
+def bounds_of_numbers(
+    poses: EnclosedPoses, effects: Sequence[Bounded], numbers: Numbers
+) -> tuple[Numbers, Numbers]:
+    """Proven error of every number, and the error that the method makes at most where nothing is wrong."""
+    found: dict[str, dict[str, Array]] = {quantity: {} for quantity in numbers}
+    for effect in effects:
+        for quantity, errors in effect.errors(poses, numbers).items():
+            found[quantity] |= errors
+    return _inflated(found, 0, INFLATION), _inflated(found, 1, ROUNDINGS)
+
+
+def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, Array]]:
+    """One of two bounds of each number, times a factor, in place; what cannot be told is not bounded."""
+    inflated = {q: {n: e[which] for n, e in part.items()} for q, part in found.items()}
+    for part in inflated.values():
+        for bound in part.values():
+            bound *= factor
+            np.copyto(bound, np.inf, where=np.isnan(bound))
+    return inflated
+
+
+def driven_coordinates(mechanism: Mechanism, laws: Laws) -> dict[int, tuple[Enclosed, Enclosed, Enclosed]]:
+    """By place in y, where each driven coordinate and its two derivatives are, each (N,)."""
+    return {
+        mechanism.layout.scalar(drive.coordinate): drive.enclosed(laws[drive.input], mechanism.drawing)
+        for drive in mechanism.topology.drives
+    }
+
+
+def unit_of_time(states: Sequence[Array]) -> Array:
+    """Powers of two that make rates and the roots of accelerations about 1 per unit of time, (G,), s.
+
+    Args:
+        states: coordinates and their derivatives, (G, ...), each over all that share the unit.
+    """
+    fastest = np.zeros(len(states[0]))
+    for d, state in enumerate(states[1:], 1):
+        every = tuple(range(1, state.ndim))
+        largest = np.maximum(state.max(axis=every), -state.min(axis=every))
+        fastest = np.maximum(fastest, largest ** (1.0 / d))
+    exponent = np.frexp(np.where(np.isfinite(fastest) & (fastest > 0.0), fastest, 1.0))[1]
+    return np.asarray(np.ldexp(1.0, -np.clip(exponent, -LONGEST, LONGEST)))
 
 
 @dataclasses.dataclass
@@ -259,50 +354,13 @@ class _Bounds:
     proven: dict[str, dict[str, Array]] = field(default_factory=dict)
     expected: dict[str, dict[str, Array]] = field(default_factory=dict)
 
-    def put(self, here: NDArray[np.intp], *parts: Numbers) -> None:
-        """Write proven and expected bounds at some of them."""
+    def put(self, here: slice | Indices, groups: Groups, *parts: Numbers) -> None:
+        """Write proven and expected bounds at some of them, by group."""
         for whole, part in zip((self.proven, self.expected), parts, strict=True):
             for quantity, arrays in part.items():
-                whole.setdefault(quantity, {})  # a quantity that nothing is asked of is one all the same
+                found = whole.setdefault(quantity, {})  # one that nothing is asked of is one all the same
                 for name, array in arrays.items():
-                    self._room(whole, quantity, name, array.shape[1:])[here] = array
-
-    def put_groups(
-        self, members: NDArray[np.intp], sound: NDArray[np.bool_], proven: Numbers, expected: Numbers
-    ) -> None:
-        """Write those of the groups that are sound, members (G, m)."""
-        if not sound.any():
-            return
-        every = sound.all()
-        places = (members if every else members[sound]).ravel()
-        first, last = int(places[0]), int(places[-1])
-        run = every and last - first + 1 == len(places) and bool((np.diff(places) == 1).all())
-        here = slice(first, last + 1) if run else places
-        for whole, part in ((self.proven, proven), (self.expected, expected)):
-            for quantity, arrays in part.items():
-                whole.setdefault(quantity, {})
-                for name, array in arrays.items():
-                    room = self._room(whole, quantity, name, array.shape[2:])
-                    kept = array if every else array[sound]
-                    # By components, so that instants lie side by side where they are read and written.
-                    room.T[..., here] = np.moveaxis(kept, (0, 1), (-2, -1)).reshape(*room.shape[1:], -1)
-
-    def _room(
-        self, whole: dict[str, dict[str, Array]], quantity: str, name: str, shape: tuple[int, ...]
-    ) -> Array:
-        """All bounds of a number, (N, ...)."""
-        found = whole.setdefault(quantity, {})
-        if name not in found:
-            found[name] = np.empty((*shape[::-1], self.count)).T
-        return found[name]
-
-
-def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:
-    """Proven bound on every coordinate of the solved points of poses, shape (...,), mm.
-
-    The shift to the user's origin rounds each coordinate once more.
-    """
-    lacking, uncertainty = mechanism.known_data(y)
-    certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
-    points = certificate.coordinates[..., : 3 * len(mechanism.topology.moving)].max(axis=-1)
-    return np.asarray(points * mechanism.unit + EPS * np.abs(mechanism.origin).max(axis=-1))
+                    if name not in found:
+                        # By components, so that instants lie side by side where they are read and written.
+                        found[name] = np.empty((*array.shape[2:], self.count)).T
+                    found[name][here] = groups.apart(array)

@@ -23,7 +23,7 @@ from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses
-    from pointcoord.bounds.reported_bounds import Numbers
+    from pointcoord.bounds.proof import Numbers
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses
-    from pointcoord.bounds.reported_bounds import Numbers
+    from pointcoord.bounds.proof import Numbers
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]

@@ -27,7 +27,7 @@ from pointcoord.numerics.rounding import EPS
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses, Points
-    from pointcoord.bounds.reported_bounds import Numbers
+    from pointcoord.bounds.proof import Numbers
 
 Array = NDArray[np.float64]
 States = Mapping[str, Array]
@@ -127,12 +127,12 @@ class BodyRates(Effect):
                 off = body_rate_error(poses.points[0], poses.points[d], names, near, spin)
                 error = np.where(np.isfinite(reported), np.abs(off.middle) + off.radius[0], np.inf)
                 found[quantity][body] = both(error, loss * off.radius[1]) / poses.powers[d][..., None]
-                spin = off.corrected(near, off)
+                spin = off.corrected(near)
         return found
 
 
 def _middles(points: Points, names: Sequence[str]) -> Edges:
-    first, second, third = (points[name].typical for name in names[:3])
+    first, second, third = (points[name].middle for name in names[:3])
     return second - first, third - first
 
 

@@ -14,7 +14,7 @@ from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
     from pointcoord.bounds.enclosed_points import EnclosedPoses
-    from pointcoord.bounds.reported_bounds import Numbers
+    from pointcoord.bounds.proof import Numbers
 
 Array = NDArray[np.float64]
 
@@ -40,12 +40,10 @@ class PointStates(Effect):
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Distance of what is reported from where the point is, and what a sum in doubles loses."""
-        d = self.derivative
-        unit = (float(poses.mechanism.unit) / poses.powers[d])[..., None]
-        errors = {}
-        for name, reported in numbers[self._quantity].items():
-            exact = poses.points[d][name].scaled(unit) + poses.added[d]
-            errors[name] = exact.errors(reported)
+        errors = {
+            name: poses.reported(name, self.derivative).errors(reported)
+            for name, reported in numbers[self._quantity].items()
+        }
         return {self._quantity: errors}
 
     @property

@@ -6,7 +6,7 @@ it, the rounding of the sums included. So the states of a point, composed with t
     |e|,    sum_i |e_i| |x_i'|,    sum_i |e_i| |x_i''| + sum_ij |e_ij| |x_i'| |x_j'|,
 
 and with these as the radii of where the points are, each effect tells how far its own numbers may be off, as
-it does for a motion (see `bounds.reported_bounds`). The inputs and what moves the chassis count as they are
+it does for a motion (see `bounds.proof`). The inputs and what moves the chassis count as they are
 given.
 """
 
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.reported_bounds import Numbers, bounds_of_numbers
+from pointcoord.bounds.proof import Numbers, bounds_of_numbers
 from pointcoord.effects.effect import Effect
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion

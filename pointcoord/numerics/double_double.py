@@ -11,6 +11,8 @@ errors, so the proof of a pose sees what is left of C(y), not the rounding of lo
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,6 +43,12 @@ def two_sum(a: Array, b: Array) -> tuple[Array, Array]:
     high = a + b
     virtual = high - a
     return high, (a - (high - virtual)) + (b - virtual)
+
+
+def quick_two_sum(a: Array, b: Array) -> tuple[Array, Array]:
+    """The same where b is the smaller, in half the operations; else the low part is rounded by 2 u of b."""
+    high = a + b
+    return high, b - (high - a)
 
 
 def two_product(a: Array, b: Array) -> tuple[Array, Array]:
@@ -115,7 +123,7 @@ def pair_cross(a: Pair, b: Pair) -> Pair:
 
 
 def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) -> tuple[Array, Array]:
-    r"""C(y + low), and how far it may be from C of the coordinates that are meant, both (..., rows).
+    r"""C(y + low), and how far it may be from C of the coordinates that are meant.
 
     Each term c (y_a - y_b)(y_c - y_d) is a pair, and a row is summed as pairs. With D the uncertainties of
     the two coordinates in a factor F,  |F G - F' G'| <= |F| D_G + D_F (|G| + D_G).
@@ -123,41 +131,70 @@ def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) ->
     Args:
         y: coordinates, shape (..., size).
         low: what is known to be missing in y, |low| <= 5 u |y|, shape (..., size).
-        data: uncertainty of each coordinate of y + low, shape (..., size).
+        data: uncertainty of each coordinate of y + low, shape (..., size), with 1 for a dimension of poses
+            that share it.
+    Returns:
+        The value, (..., rows), and the doubt, (..., rows) with the dimensions of `data`.
     """
     coefficients, starts, factors = system.terms
-    (f, f_low, f_doubt), (g, g_low, g_doubt) = (
-        _difference(y, low, data, first, second) for first, second in factors
-    )
+    # Coordinate by coordinate, so that the poses lie side by side in memory.
+    y, low, data = (np.moveaxis(part, -1, 0) for part in (y, low, data))
+    scale = coefficients.reshape(-1, *(1,) * (y.ndim - 1))
+    (f, f_low), (g, g_low) = (_difference(y, low, first, second) for first, second in factors)
     high, rest = two_product(f, g)
-    scaled, scaled_rest = two_product(high, np.broadcast_to(coefficients, high.shape))
-    rest = (rest + f * g_low + f_low * g) * coefficients + scaled_rest
+    scaled, scaled_rest = two_product(high, scale)
+    rest = (rest + f * g_low + f_low * g) * scale + scaled_rest
     total, carry = _row_sums(scaled, starts)
-    value = total + (carry + np.add.reduceat(rest, starts, axis=-1))
-    size = np.abs(coefficients * f * g)
-    doubt = np.abs(coefficients) * (np.abs(f) * g_doubt + f_doubt * (np.abs(g) + g_doubt))
-    spread = np.add.reduceat(
-        doubt * (1.0 + 16 * UNIT_ROUNDOFF) + LEFT_OUT * UNIT_ROUNDOFF**2 * size, starts, -1
-    )
-    return value, spread + 2.0 * UNIT_ROUNDOFF * np.abs(value)
+    value = total + (carry + _summed(rest, starts))
+    f_size, g_size = (largest(np.abs(part), data.shape[1:]) for part in (f, g))
+    f_doubt, g_doubt = (data[first] + data[second] for first, second in factors)
+    doubt = f_size * g_doubt + f_doubt * (g_size + g_doubt)
+    each = doubt * (1.0 + 16 * UNIT_ROUNDOFF) + LEFT_OUT * UNIT_ROUNDOFF**2 * f_size * g_size
+    spread = _summed(np.abs(scale) * each, starts)
+    spread = spread + 2.0 * UNIT_ROUNDOFF * largest(np.abs(value), data.shape[1:])
+    return np.moveaxis(value, 0, -1), np.moveaxis(spread, 0, -1)
+
+
+def largest(size: Array, shape: tuple[int, ...]) -> Array:
+    """Magnitudes, each the largest of those that share a number of a shape with 1 for some dimensions.
+
+    >>> largest(np.array([[1.0, 3.0], [2.0, 0.0]]), (2, 1))
+    array([[3.],
+           [2.]])
+    """
+    dimensions = zip(range(-1, -1 - min(size.ndim, len(shape)), -1), reversed(shape), strict=False)
+    shared = tuple(axis for axis, length in dimensions if length == 1 and size.shape[axis] > 1)
+    return np.asarray(size.max(axis=shared, keepdims=True)) if shared else size
 
 
 def _difference(
-    y: Array, low: Array, data: Array, first: NDArray[np.intp], second: NDArray[np.intp]
-) -> tuple[Array, Array, Array]:
-    """y_first - y_second as high and low, and its uncertainty."""
-    high, rest = two_sum(y.take(first, axis=-1), -y.take(second, axis=-1))
-    rest = rest + (low.take(first, axis=-1) - low.take(second, axis=-1))
-    return high, rest, data.take(first, axis=-1) + data.take(second, axis=-1)
+    y: Array, low: Array, first: NDArray[np.intp], second: NDArray[np.intp]
+) -> tuple[Array, Array]:
+    """y_first - y_second as high and low."""
+    high, rest = two_sum(y[first], -y[second])
+    return high, rest + (low[first] - low[second])
 
 
 def _row_sums(terms: Array, starts: NDArray[np.intp]) -> tuple[Array, Array]:
-    """Sums of runs of terms as high and low."""
-    lengths = np.diff(starts, append=terms.shape[-1])
-    total = terms.take(starts, axis=-1)
-    carry = np.zeros_like(total)
+    """Sums of runs of terms, along the first dimension, as high and low."""
+    total, carry = terms[starts], np.zeros((len(starts), *terms.shape[1:]))
+    for rows, places in runs(len(terms), starts):
+        total[rows], rest = two_sum(total[rows], terms[places])
+        carry[rows] += rest
+    return total, carry
+
+
+def _summed(terms: Array, starts: NDArray[np.intp]) -> Array:
+    """The same, rounded."""
+    total = terms[starts]
+    for rows, places in runs(len(terms), starts):
+        total[rows] += terms[places]
+    return total
+
+
+def runs(count: int, starts: NDArray[np.intp]) -> Iterator[tuple[NDArray[np.intp], NDArray[np.intp]]]:
+    """Of runs of terms, those that have a second one, a third and so on, and its place."""
+    lengths = np.diff(starts, append=count)
     for place in range(1, int(lengths.max())):
         rows = np.flatnonzero(lengths > place)
-        total[..., rows], rest = two_sum(total[..., rows], terms.take(starts[rows] + place, axis=-1))
-        carry[..., rows] += rest
-    return total, carry
+        yield rows, starts[rows] + place

@@ -6,26 +6,30 @@ An `Enclosed` is high + low with two radii:
 - *expected*: what an evaluation of the same formula in plain doubles loses at most where nothing is wrong, by
   running error analysis (Higham, Accuracy and Stability, section 3.3): each operation adds u of its result.
 
-Both follow the same rules, |x| s + r |y| + r s for a product, so they are carried as one array with a leading
-dimension of 2. Operations keep |low| <= u |high| (an exact sum at their end); with that a sum is rounded by
-3 u^2 of its operands and a product by 8 u^2 of itself, and underflow by less than TINY.
+Both follow the same rules, |x| s + r |y| + r s for a product, so they are carried as one array with a
+leading dimension of 2. Numbers that lie close together, such as a point's at neighbouring instants, share
+their radii: where an array of radii has 1 for a dimension, each holds for all numbers along it.
+
+Operations keep |low| <= u |high|, up to u^2 of their operands; with that a sum is rounded by 5 u^2 of its
+operands and a product by 8 u^2 of itself, and underflow by less than TINY.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.numerics.double_double import two_product, two_sum
+from pointcoord.numerics.double_double import largest, quick_two_sum, two_product, two_sum
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
-OF_A_SUM = 4.0 * UNIT_ROUNDOFF**2
+OF_A_SUM = 8.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
 TINY = 1e-307  # a product loses less to underflow, by some 16 orders
 NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
@@ -36,11 +40,23 @@ CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 @dataclass(frozen=True)
 class Enclosed:
-    """high + low, with the proven and the expected radius; any shape, `radius` with 2 before it."""
+    """high + low and their radii.
+
+    Attributes:
+        high, low: of any shape.
+        radius: the proven and the expected one, of that shape with 2 before it and 1 for what shares them.
+        size: at least |high| of all that share a radius, of the shape of one.
+    """
 
     high: Array
     low: Array
     radius: Array
+    size: Array
+
+    @classmethod
+    def sharing(cls, high: Array, low: Array, radius: Array) -> Enclosed:
+        """From numbers and radii, |low| <= u |high|."""
+        return cls(high, low, radius, largest(np.abs(high), radius.shape[1:]))
 
     @classmethod
     def of(
@@ -53,55 +69,63 @@ class Enclosed:
         total, rest = two_sum(number, others[0])
         radius = np.empty((2, *number.shape))
         radius[0], radius[1] = others[1:]
-        return cls(total, rest, radius)
+        return cls(total, rest, radius, np.abs(total))
 
     def __add__(self, other: Enclosed) -> Enclosed:
         total, carry = two_sum(self.high, other.high)
-        rest = carry + (self.low + other.low)
-        rounding = both(OF_A_SUM * (np.abs(self.high) + np.abs(other.high)), UNIT_ROUNDOFF * np.abs(total))
-        high, low = two_sum(total, rest)
+        high, low = quick_two_sum(total, carry + (self.low + other.low))
         mine, its = aligned(self.radius, other.radius)
-        return Enclosed(high, low, mine + its + rounding)
+        radius = mine + its
+        size = largest(np.abs(high), radius.shape[1:])
+        radius += both(OF_A_SUM * (self.size + other.size), UNIT_ROUNDOFF * size)
+        return Enclosed(high, low, radius, size)
 
     def __neg__(self) -> Enclosed:
-        return Enclosed(-self.high, -self.low, self.radius)
+        return Enclosed(-self.high, -self.low, self.radius, self.size)
 
     def __sub__(self, other: Enclosed) -> Enclosed:
         return self + -other
 
     def __mul__(self, other: Enclosed) -> Enclosed:
         product, carry = two_product(self.high, other.high)
-        rest = carry + (self.high * other.low + self.low * other.high)
-        size = np.abs(product)
+        high, low = quick_two_sum(product, carry + (self.high * other.low + self.low * other.high))
         mine, its = aligned(self.radius, other.radius)
-        spread = np.abs(self.high) * its + mine * (np.abs(other.high) + its)
-        high, low = two_sum(product, rest)
-        return Enclosed(high, low, spread + both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY))
+        radius = self.size * its + mine * (other.size + its)
+        size = largest(np.abs(high), radius.shape[1:])
+        radius += both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY)
+        return Enclosed(high, low, radius, size)
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
         """Times powers of two, which rounds nothing but what falls below the normal numbers."""
         factor = np.asarray(powers_of_two, dtype=float)
         high, low = self.high * factor, self.low * factor
-        lost = (self.high != 0.0) & (np.abs(high) < NORMAL) | (self.low != 0.0) & (np.abs(low) < NORMAL)
-        return Enclosed(high, low, self.radius * factor + np.where(lost, TINY, 0.0))
+        radius = self.radius * np.abs(factor)
+        if not (np.abs(factor) >= 1.0).all():
+            lost = (self.high != 0.0) & (np.abs(high) < NORMAL) | (self.low != 0.0) & (np.abs(low) < NORMAL)
+            radius = radius + largest(np.where(lost, TINY, 0.0), radius.shape[1:])
+        return Enclosed(high, low, radius, self.size * np.abs(factor))
 
     def _expecting(self, angle: Enclosed, outside: Array) -> Enclosed:
         """Of a function of an angle; infinite beyond the table."""
-        expected = 2.0 * UNIT_ROUNDOFF * np.abs(self.high) + angle.radius[1]
-        return Enclosed(self.high, self.low, both(self.radius[0] + outside, expected))
+        expected = 2.0 * UNIT_ROUNDOFF * self.size + angle.radius[1]
+        return Enclosed(self.high, self.low, both(self.radius[0] + outside, expected), self.size)
 
     def take(self, places: Indices | list[int]) -> Enclosed:
         """Elements of the last dimension."""
-        return Enclosed(*(part.take(places, axis=-1) for part in (self.high, self.low, self.radius)))
+        # The numbers of a place lie side by side in memory, as those of a component do everywhere.
+        parts = (self.high, self.low, self.radius, self.size)
+        return Enclosed(*(np.moveaxis(np.moveaxis(part, -1, 0)[places], 0, -1) for part in parts))
 
     def component(self, place: int) -> Enclosed:
         """One element of the last dimension."""
-        return Enclosed(self.high[..., place], self.low[..., place], self.radius[..., place])
+        parts = (self.high, self.low, self.radius, self.size)
+        return Enclosed(*(part[..., place] for part in parts))
 
     @property
     def spread_out(self) -> Enclosed:
         """With a last dimension of 1, to multiply vectors."""
-        return Enclosed(self.high[..., None], self.low[..., None], self.radius[..., None])
+        parts = (self.high, self.low, self.radius, self.size)
+        return Enclosed(*(part[..., None] for part in parts))
 
     def cosine_sine(self) -> tuple[Enclosed, Enclosed]:
         """Cosine and sine of an angle between -pi and pi, about the nearest of a table of angles a.
@@ -113,17 +137,17 @@ class Enclosed:
         Of s / d and 2 l / d^2 what goes with d^4 is below 1e-12, so that plain doubles do. The expected
         radius is that of functions right to a unit in the last place.
         """
-        plain = Enclosed(self.high, self.low, self.radius)
         known = np.nan_to_num(self.high, posinf=0.0, neginf=0.0)
         place = np.clip(np.rint(known * STEPS), -FARTHEST, FARTHEST)
-        cosine, sine = (whole.take((place + FARTHEST).astype(np.intp)) for whole in _table())
-        part = plain - Enclosed.of(place / STEPS)
+        places = (place + FARTHEST).astype(np.intp)
+        cosine, sine = (self._looked_up(whole, places) for whole in _table())
+        part = self - self.like(place / STEPS)
         square = part * part
         sines, versines = (
             _less(square, *factors) for factors in ((6.0, 20.0, 42.0, 72.0), (12.0, 30.0, 56.0, 90.0))
         )
         turned, back = part * sines, (square * versines).scaled(0.5)
-        outside = np.where(np.abs(part.high) < 1.01 / STEPS, 0.0, np.inf)
+        outside = np.where(part.size < 1.01 / STEPS, 0.0, np.inf)
         values = (
             cosine - (back * cosine + turned * sine),
             sine - (back * sine - turned * cosine),
@@ -136,11 +160,6 @@ class Enclosed:
         """high + low, rounded once."""
         return np.asarray(self.high + self.low)
 
-    @property
-    def typical(self) -> Array:
-        """The same, or that of one of some neighbours: see `enclosed_groups`."""
-        return self.middle
-
     def apart(self, reported: Array) -> Array:
         """Largest distance of the exact number from a reported one that is close, same shape."""
         distance = np.abs((reported - self.high) - self.low)
@@ -151,16 +170,28 @@ class Enclosed:
         return both(self.apart(reported), self.radius[1])
 
     def like(self, values: Array, proven: float = 0.0, expected: float = 0.0) -> Enclosed:
-        """Other numbers of the same instants with radii."""
-        return Enclosed.of(values, 0.0, proven, expected)
+        """Other numbers that share radii as these do."""
+        shape = self.radius.shape[1:]
+        radius = both(np.full(shape, proven), np.full(shape, expected))
+        return Enclosed.sharing(values, np.zeros_like(values), radius)
 
-    def corrected(self, values: Array, off: Enclosed) -> Enclosed:
-        """Values of the same instants with what they are off added; radii are those of that."""
-        return Enclosed.of(values, off.middle, *off.radius)
+    def corrected(self, values: Array) -> Enclosed:
+        """Values that are off by these numbers, which are far smaller, with what they are off added."""
+        return Enclosed.sharing(*two_sum(values, self.middle), self.radius)
 
-    def found(self, values: Array, radius: Array) -> Enclosed:
-        """Plain numbers of the same instants."""
-        return Enclosed(values, np.zeros_like(values), radius)
+    def together(self, group: Callable[[Array], Array]) -> Enclosed:
+        """Numbers of instants, (N, ...), in groups of m that share their radii, (G, m, ...).
+
+        Args:
+            group: puts an array into groups.
+        """
+        proven, expected = (group(part).max(axis=1, keepdims=True) for part in self.radius)
+        return Enclosed.sharing(group(self.high), group(self.low), both(proven, expected))
+
+    def _looked_up(self, table: Enclosed, places: Indices) -> Enclosed:
+        """Numbers of a table that share radii as these do."""
+        proven, expected = (largest(part[places], self.radius.shape[1:]) for part in table.radius)
+        return Enclosed.sharing(table.high[places], table.low[places], both(proven, expected))
 
 
 def aligned(a: Array, b: Array) -> tuple[Array, Array]:
@@ -206,11 +237,14 @@ def _less(square: Enclosed, *divisors: float) -> Enclosed:
     These are rounded by some 8 u of themselves, and of q below 4e-6 what is left out is less.
     """
     first, second, third, fourth = divisors
-    q = square.high
+    q, most = square.high, square.size
     rest = (q / first) * (q / second) * (1.0 - q / third * (1.0 - q / fourth))
-    left = 8.0 * UNIT_ROUNDOFF * rest + q**5 / (first * second * third * fourth)
-    moved = 2.0 * (q / first) / second * square.radius
-    tail = Enclosed(rest, np.zeros_like(rest), moved + both(left + UNIT_ROUNDOFF * q * q / first, left))
+    size = largest(np.abs(rest), square.radius.shape[1:])
+    left = 8.0 * UNIT_ROUNDOFF * size + most**5 / (first * second * third * fourth)
+    moved = 2.0 * (most / first) / second * square.radius
+    tail = Enclosed.sharing(
+        rest, np.zeros_like(rest), moved + both(left + UNIT_ROUNDOFF * most**2 / first, left)
+    )
     return Enclosed.of(1.0) - square * _inverse(int(first)) + tail
 
 
@@ -249,9 +283,11 @@ def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
     most (r + |n/d| s) / (d - s); the two middles and the division are rounded by 4 u of it together.
     """
     n, d = numerator.middle, divisor.middle
+    shape = np.broadcast_shapes(numerator.radius.shape, divisor.radius.shape)[1:]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         value = n / d
-        left = d - divisor.radius
-        spread = (numerator.radius + np.abs(value) * divisor.radius) / left
-        radius = np.where(left > 0.0, spread, np.inf) + 4.0 * UNIT_ROUNDOFF * np.abs(value)
-    return numerator.found(np.where(d > 0.0, value, 0.0), radius)
+        least, size = -largest(-d, shape), largest(np.abs(value), shape)
+        left = least - divisor.radius
+        radius = np.where(left > 0.0, (numerator.radius + size * divisor.radius) / left, np.inf)
+    value = np.where(d > 0.0, value, 0.0)
+    return Enclosed.sharing(value, np.zeros_like(value), radius + 4.0 * UNIT_ROUNDOFF * size)

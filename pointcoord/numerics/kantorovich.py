@@ -21,6 +21,14 @@ Every coordinate has its own bound. With e = X C(y) and the mean value form of C
 and a combination J u of coordinates, such as a point that rides on others, is off by at most
 |J e| + |J| tail: its errors cancel as e's do.
 
+One inverse may serve many poses that lie close together: C_u is linear in y, so with D at least what
+each coordinate differs by among them,
+
+    |I - X C_u| <= |I - X C_u(a)| + |X| |C_u|(D)
+
+holds at each of them, a the one whose inverse X is. What is left of C(y) is seen at each by itself, so their
+bounds lose no more than z of their steps.
+
 Floating point: C(y) is taken in twice the working precision (see `double_double`), about the known
 coordinates that the user's numbers mean (`Mechanism.known_data`). What is left of uncertainty in C(y), d,
 adds |X| d to e; products with X add gamma_n of Higham's book, in z as well. Not covered: the rounding of the
@@ -39,7 +47,7 @@ from numpy.typing import NDArray
 from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 
@@ -88,19 +96,19 @@ def ball(eta: Array, z: Array, omega: Array) -> Ball:
 
 @dataclass(frozen=True)
 class Certificate:
-    """Error bound of each pose of a batch; lengths in the units of y.
+    """Error bound of each pose of groups of m that share an inverse; lengths in the units of y.
 
     Attributes:
-        radius: exactly one assembly lies within it; infinite where nothing could be proven.
-        unique_within: no other assembly lies within this distance.
-        newton_constant: h = 2 omega eta / (1 - z)^2, proven where it is at most 1.
-        contraction: z + omega radius >= |I - X C_u| everywhere within the radius, shape (...,); infinite
+        radius: exactly one assembly lies within it, (..., m); infinite where nothing could be proven.
+        unique_within: no other assembly lies within this distance, (..., m).
+        newton_constant: h = 2 omega eta / (1 - z)^2, proven where it is at most 1, (..., m).
+        contraction: z + omega radius >= |I - X C_u| everywhere within the radius, (..., m); infinite
             where nothing could be proven.
-        defect: |I - X C_u(y)| element by element, shape (..., unknowns, unknowns).
-        residual: C(y) about what the known coordinates mean, shape (..., rows).
-        step: e, shape (..., unknowns).
-        spread: uncertainty of each component of e, |X| d, shape (..., unknowns).
-        tail: what is left, for every coordinate, shape (...,); infinite where nothing could be proven.
+        defect: |I - X C_u(y)| element by element at any pose of the group, (..., unknowns, unknowns).
+        residual: C(y) about what the known coordinates mean, (..., m, rows).
+        step: e, (..., m, unknowns).
+        spread: uncertainty of each component of e, |X| d, (..., 1, unknowns).
+        tail: what is left, for every coordinate, (..., m); infinite where nothing could be proven.
     """
 
     radius: Array
@@ -115,37 +123,34 @@ class Certificate:
 
     @property
     def coordinates(self) -> Array:
-        """Error bound of each unknown coordinate, shape (..., unknowns)."""
+        """Error bound of each unknown coordinate, (..., m, unknowns)."""
         return np.asarray(INFLATION * (np.abs(self.step) + self.spread + self.tail[..., None]))
 
 
 def certify(
     system: QuadraticMap, y: Array, factors: Factors, data: Array, low: Array | None = None
 ) -> Certificate:
-    """Bound the distance from y to the assembly near it.
+    """Bound the distance from poses to the assemblies near them.
 
     Args:
-        y: computed coordinates, shape (..., size).
-        factors: factorisation of C_u at or very near y.
-        data: uncertainty of each known coordinate, shape (..., size).
-        low: what the known coordinates lack, shape (..., size); nothing unless given.
+        y: computed coordinates, shape (..., m, size): groups of m poses that lie close together.
+        factors: factorisation of C_u at or very near the middle pose of each group.
+        data: uncertainty of each known coordinate, shape (..., m, size).
+        low: what the known coordinates lack, shape (..., m, size); nothing unless given.
     """
-    n = system.unknowns
-    inverse = factors.preconditioner
+    n, inverse = system.unknowns, factors.preconditioner
     magnitude = np.abs(inverse)
-    matrix = system.jacobian(y)
-    gamma = (n + 2) * EPS
+    data = data.max(axis=-2, keepdims=True)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         low = np.zeros_like(y) if low is None else low
         residual, doubt = doubled_residual(system, y, low, data)
-        step = (inverse @ residual[..., None])[..., 0]
-        spread = (magnitude @ (doubt + gamma * np.abs(residual))[..., None])[..., 0]
+        doubt = doubt + (n + 2) * EPS * np.abs(residual).max(axis=-2, keepdims=True)
+        step, spread = applied(inverse, residual), applied(magnitude, doubt)
         eta = (np.abs(step) + spread).max(axis=-1)
-        doubted = gamma * np.abs(matrix) + system.jacobian_uncertainty(data + np.abs(low))
-        defect = np.abs(np.eye(n) - inverse @ matrix) + magnitude @ doubted
+        missing = data + np.abs(low).max(axis=-2, keepdims=True)
+        defect = defect_of(system, y, inverse, missing[..., 0, :])
         z = defect.sum(axis=-1).max(axis=-1)
-        omega = system.lipschitz(inverse)
-        found = ball(eta, z, omega)
+        found = ball(eta, z[..., None], system.lipschitz(inverse)[..., None])
     return Certificate(
         radius=found.radius,
         unique_within=found.outer,
@@ -157,3 +162,26 @@ def certify(
         spread=spread,
         tail=found.tail,
     )
+
+
+def defect_of(system: QuadraticMap, y: Array, inverse: Array, data: Array) -> Array:
+    """At least |I - X C_u| at every pose of a group, element by element, (..., unknowns, unknowns).
+
+    Args:
+        y: (..., m, size).
+        inverse: X of the middle pose.
+        data: how far any coordinate may be off, (..., size).
+    """
+    n, anchor = system.unknowns, y[..., y.shape[-2] // 2, :]
+    reach = (1.0 + 4.0 * UNIT_ROUNDOFF) * np.abs(y - anchor[..., None, :]).max(axis=-2)
+    matrix = system.jacobian(anchor)
+    doubted = (n + 2) * EPS * np.abs(matrix) + system.jacobian_uncertainty(data + reach)
+    return np.asarray(np.abs(np.eye(n) - inverse @ matrix) + np.abs(inverse) @ doubted)
+
+
+def applied(matrix: Array, vectors: Array) -> Array:
+    """The product of each matrix, (..., n, n), with m vectors, (..., m, n)."""
+    # As in `doubled_residual`, coordinate by coordinate.
+    product = np.empty((matrix.shape[-2], *vectors.shape[:-1]))
+    np.matmul(matrix, vectors.swapaxes(-1, -2), out=np.moveaxis(product, 0, -2))
+    return np.moveaxis(product, 0, -1)

@@ -18,8 +18,7 @@ from pointcoord.results.states import SolvedStates, StatesOfChain
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.proof import Proof
-    from pointcoord.bounds.reported_bounds import Reported
+    from pointcoord.bounds.proof import Proof, Reported
 
 Array = NDArray[np.float64]
 
@@ -116,7 +115,7 @@ class SolvedScene:
 
     def _reported(self, samples: Samples) -> Reported:
         """All numbers of samples, and what went into them beside the coordinates."""
-        from pointcoord.bounds.reported_bounds import Reported
+        from pointcoord.bounds.proof import Reported
 
         readout = self.readout
         return Reported(

@@ -26,7 +26,7 @@ from pointcoord.solve.taylor import Chain, last_magnitudes
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.enclosed_rates import Summed
+    from pointcoord.bounds.solved_coordinates import Summed
     from pointcoord.solve.pointwise import Solved
 
 Array = NDArray[np.float64]
@@ -254,7 +254,7 @@ class StatesOfChain:
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
-        from pointcoord.bounds.enclosed_rates import Summed
+        from pointcoord.bounds.solved_coordinates import Summed
 
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
         # Terms that are missing by chance tell nothing of what is left out.

@@ -10,7 +10,7 @@ from math import factorial
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_rates import Summed
+from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.errors import OutsideMotion
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers

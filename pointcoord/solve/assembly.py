@@ -76,7 +76,7 @@ class Pose:
         Infinite where nothing is proven. See `kantorovich` for what it covers; computed when it is read.
         """
         # Imported here, like all that proves: most poses are never asked for it.
-        from pointcoord.bounds.proof import pose_bound
+        from pointcoord.bounds.certified_poses import pose_bound
 
         return pose_bound(self.mechanism, self.y, self.factors)
 

@@ -6,6 +6,7 @@ from math import isqrt
 
 import numpy as np
 import pytest
+from certified import certify_alone
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from sample_cars import SampleCar, by_car
 
 from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.kantorovich import certify
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.simulation import scene_mechanism
@@ -225,7 +225,7 @@ def test_distance_of_a_displaced_pose_is_at_most_the_radius_and_the_radius_is_no
     exact = refine(strut, pose.y, [Fraction(v) for v in pose.y[N:]])
     y = pose.y.copy()
     y[:N] += 10.0**power * np.random.default_rng(seed).uniform(-1.0, 1.0, size=N)
-    certificate = certify(strut.map, y, factorise(strut.map.jacobian(y)), np.zeros_like(y))
+    certificate = certify_alone(strut.map, y)
     distance = float(max(abs(Fraction(a) - b) for a, b in zip(y[:N], exact, strict=True)))
     # distance is a rounded number: one part in 2^53, below the certificate's own inflation.
     assert distance <= certificate.radius
@@ -244,7 +244,7 @@ def test_nothing_is_proven_where_there_is_nothing_to_prove(strut: Mechanism) -> 
     cases[1, :N] = np.nan
     cases[2, :N] += 0.5  # nowhere near an assembly
     cases[3, : N - 2] = np.tile(pose.y[:3], 5)  # all moving points at one place: C_u has zero rows
-    certificate = certify(strut.map, cases, factorise(strut.map.jacobian(cases)), np.zeros_like(cases))
+    certificate = certify_alone(strut.map, cases)
     assert np.isfinite(certificate.radius).tolist() == [True, False, False, False]
     assert (certificate.unique_within[1:] == 0.0).all()
     assert certificate.unique_within[0] > 1e-3
@@ -258,7 +258,7 @@ def test_a_bound_never_holds_where_no_assembly_exists(strut: Mechanism) -> None:
     y = np.repeat(pose.y[None], 300, axis=0)
     y[:, :N] += rng.normal(size=(300, N)) * np.geomspace(1e-3, 1.0, 300)[:, None]
     y[:, strut.layout.scalar("rack travel")] = 2000.0 / float(strut.unit)
-    certificate = certify(strut.map, y, factorise(strut.map.jacobian(y)), np.zeros_like(y))
+    certificate = certify_alone(strut.map, y)
     assert not np.isfinite(certificate.radius).any()
 
 
@@ -269,7 +269,7 @@ def test_two_assemblies_never_lie_in_one_ball_of_uniqueness(strut: Mechanism) ->
     starts[:, :N] += rng.normal(size=(400, N))
     reached = newton_refine(strut.map, starts)
     found = reached.y[reached.converged]
-    certificate = certify(strut.map, found, factorise(strut.map.jacobian(found)), np.zeros_like(found))
+    certificate = certify_alone(strut.map, found)
     found, radius, within = (
         item[np.isfinite(certificate.radius)]
         for item in (found, certificate.radius, certificate.unique_within)

@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord.bounds.enclosed_rates import enclosed_coordinates
+from pointcoord.bounds.certified_poses import CertifiedPoses, Known
+from pointcoord.bounds.enclosed_points import enclosed_coordinates
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.kantorovich import certify
-from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF as U
 
@@ -65,21 +64,18 @@ def enclosed(
         state[:, P], state[:, Q] = p, q
         states.append(state)
     states[0][:, ONE] = 1.0
-    nothing = np.zeros((COUNT, 5))
-    factors = factorise(system.jacobian(states[0]))
-    certificate = certify(system, states[0], factors, nothing, nothing)
-    driven = {place: [Enclosed.of(pair[which]) for pair in numbers] for which, place in enumerate((P, Q))}
-    return enclosed_coordinates(
-        cast(Mechanism, SimpleNamespace(map=system)),
-        factors,
-        certificate,
-        states,
-        (nothing, nothing, nothing),
-        driven,
-        (),
-        np.full(COUNT, unsolved),
-        [np.ones(COUNT)] * 3,
+    nothing = Known(*np.zeros((3, COUNT)))
+    mechanism = SimpleNamespace(map=system, drawn_lacks=np.zeros(5), drawn_doubt=np.zeros(5))
+    poses = CertifiedPoses.of(cast(Mechanism, mechanism), states[0], {P: nothing, Q: nothing})
+    assert poses.groups.size == 1
+    driven = [{P: Enclosed.of(p[:, None]), Q: Enclosed.of(q[:, None])} for p, q in numbers[1:]]
+    rates = [state[:, None] for state in states[1:]]
+    exact_states = enclosed_coordinates(
+        cast(Mechanism, mechanism), poses, rates, driven, np.full(COUNT, unsolved), ()
     )
+    return [
+        Enclosed.sharing(state.high[:, 0], state.low[:, 0], state.radius[:, :, 0]) for state in exact_states
+    ]
 
 
 @pytest.mark.parametrize("off", [U, 1e-9, 1e-5, 1e-3])

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.bounds.reported_bounds import Numbers, unit_of_time
+from pointcoord.bounds.proof import Numbers, unit_of_time
 from pointcoord.results.motion import Motion
 
 Array = NDArray[np.float64]

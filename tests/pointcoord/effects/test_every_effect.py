@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.reported_bounds import ROUNDINGS
+from pointcoord.bounds.proof import ROUNDINGS
 from pointcoord.effects.angle import WHEEL, WheelAngles
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import perm
 from types import ModuleType
@@ -19,7 +19,6 @@ import pytest
 from numpy.typing import NDArray
 from sample_cars import PAPER_STRUT, SampleCar, by_car
 
-from pointcoord.data_classes import dataclass
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import Factors, factorise

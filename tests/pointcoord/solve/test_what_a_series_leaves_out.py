@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.bounds.enclosed_rates import Summed
+from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.solve.taylor import last_magnitudes
 
 MANY = 200

@@ -21,7 +21,7 @@ from absolute.effects.effect import Lines
 from absolute.effects.projected_angle import projected_angle
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
-from pointcoord.bounds.reported_bounds import Numbers
+from pointcoord.bounds.proof import Numbers
 from pointcoord.effects import registry
 from pointcoord.effects.angle import Angle, WheelAngles
 from pointcoord.effects.effect import Effect, Poses, Quantity

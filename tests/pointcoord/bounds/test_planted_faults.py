@@ -1,0 +1,221 @@
+"""A proof is tested by making it lie: without one of its terms some number is outside its bound."""
+
+from __future__ import annotations
+import __future__
+
+import inspect
+import textwrap
+from collections.abc import Callable
+from fractions import Fraction
+from types import FunctionType, SimpleNamespace
+from typing import Any, cast
+
+import mpmath
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate
+from pointcoord.bounds import certified_poses, enclosed_points
+from pointcoord.bounds.certified_poses import CertifiedPoses, Known
+from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
+from pointcoord.effects import angle, knuckle_rates
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics import double_double, kantorovich
+from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.quadratic import Product, quadratic_map
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+
+Array = NDArray[np.float64]
+
+# u u + 2 u p = q: one unknown, whose error counts by its square, and two known numbers.
+UNKNOWN, ZERO, ONE, P, Q = range(5)
+SYSTEM = quadratic_map(
+    [
+        (
+            Product(1.0, (UNKNOWN, ZERO), (UNKNOWN, ZERO)),
+            Product(2.0, (UNKNOWN, ZERO), (P, ZERO)),
+            Product(-1.0, (Q, ZERO), (ONE, ZERO)),
+        )
+    ],
+    1,
+    5,
+)
+TOY = cast(Mechanism, SimpleNamespace(map=SYSTEM, drawn_lacks=np.zeros(5), drawn_doubt=np.zeros(5)))
+COUNT = 256
+# By how much of itself a number is computed wrongly, what is known of p and q, their doubt; poses lie apart.
+CASES = [
+    (off, lacking, doubt, apart)
+    for off in (0.0, 2.0**-30, 2.0**-6)
+    for lacking in (0.0, 2.0**-20)
+    for doubt in (0.0, 2.0**-24, 2.0**-5)
+    for apart in (0.0, 2.0**-8)
+]
+
+
+def toy_holds(off: float, lacking: float, doubt: float, apart: float) -> bool:
+    """Whether u, u' and u'' lie within their radii where p and q are what they are at their doubt's ends.
+
+    All numbers have so few bits that their products are exact.
+    """
+    rng = np.random.default_rng(5)
+
+    def numbers(low: int, high: int) -> Array:
+        same = (
+            np.full(COUNT, rng.integers(low, high) / 2.0**8)
+            if apart
+            else rng.integers(low, high, COUNT) / 2.0**8
+        )
+        return np.asarray(same + apart * np.linspace(0.0, 1.0, COUNT, endpoint=False))
+
+    (u, u1, u2), (p, p1, p2) = ([numbers(256, 1024) for _ in range(3)] for _ in range(2))
+    q = (
+        u * u + 2.0 * u * p,
+        2.0 * (u * u1 + u1 * p + u * p1),
+        2.0 * (u1 * u1 + u * u2 + u2 * p + 2.0 * u1 * p1 + u * p2),
+    )
+
+    def signs() -> Array:
+        return rng.choice([-1.0, 1.0], COUNT)
+
+    states, driven, doubts = [], [], doubt * rng.choice([0.25, 1.0], COUNT)
+    for d, (unknown, *known) in enumerate(zip((u, u1, u2), (p, p1, p2), q, strict=True)):
+        state = np.zeros((COUNT, 5))
+        state[:, UNKNOWN] = unknown * (1.0 + off * signs())
+        enclosed = {}
+        for place, exact in zip((P, Q), known, strict=True):
+            # Rates are known less well, so that their own doubt is what counts.
+            given = exact + 16.0**d * doubts * signs()
+            enclosed[place] = Enclosed.of(given, 0.0, 16.0**d * doubts, 0.0)
+            state[:, place] = given - lacking if d == 0 else given
+        states.append(state)
+        driven.append(enclosed)
+    states[0][:, ONE] = 1.0
+    missing = Known(np.full(COUNT, lacking), doubts, np.zeros(COUNT))
+    with np.errstate(all="ignore"):
+        poses = CertifiedPoses.of(TOY, states[0], {P: missing, Q: missing})
+        together = poses.groups.together
+        rates = [together(state) for state in states[1:]]
+        known_rates = [
+            {place: number.together(together) for place, number in part.items()} for part in driven[1:]
+        ]
+        found = enclosed_coordinates(TOY, poses, rates, known_rates, np.zeros(len(poses.condition)), ())
+    within = [_within(state, exact, poses) for state, exact in zip(found, (u, u1, u2), strict=True)]
+    return all(within)
+
+
+def _within(state: Enclosed, exact: Array, poses: CertifiedPoses) -> bool:
+    radius = np.broadcast_to(state.radius[0], state.high.shape)
+    high, low, most = (
+        poses.groups.apart(part)[:, UNKNOWN].tolist() for part in (state.high, state.low, radius)
+    )
+    return all(
+        np.isinf(r) or abs(Fraction(x) - Fraction(h) - Fraction(lo)) <= Fraction(r)
+        for x, h, lo, r in zip(exact.tolist(), high, low, most, strict=True)
+    )
+
+
+def scene_holds(name: str) -> bool:
+    """Whether every number of a scene is off by its bound at most, and that by what is expected at most."""
+    motion, references = solved(name)
+    samples = motion.at(np.array([instant for instant, _ in references]))
+    proof = motion.proof_of(samples, rates=True)
+    for k, (_, exact) in enumerate(references):
+        angles = {key: [value] for key, value in exact.effects.items()}
+        for quantity, channel in samples.numbers.items():
+            own = angles if quantity == "wheel" else getattr(exact, quantity)
+            for part, values in channel.items():
+                kept = values, proof.proven[quantity][part], proof.expected[quantity][part]
+                reported, bounds, expected = (np.atleast_1d(array[k]).tolist() for array in kept)
+                with mpmath.workdps(60):
+                    for value, bound, most, x in zip(reported, bounds, expected, own[part], strict=True):
+                        # The reference has some 60 digits, and a proof rounds by some u^2.
+                        if not abs(value - x) - 1e-50 * (1.0 + abs(x)) <= bound <= most + 1e-24:
+                            return False
+    return True
+
+
+SOLVED: dict[str, Any] = {}
+
+
+def solved(name: str) -> Any:
+    """A motion with all effects, and the reference at a few of its instants."""
+    if name not in SOLVED:
+        scene = Scene.load(name).model_copy(update={"effects": tuple(EFFECTS)})
+        motion = simulate(scene)
+        instants = motion.times[[3, 40, -9]].tolist()
+        SOLVED[name] = motion, [(t, reference_instant(scene, inputs_at(scene, t))) for t in instants]
+    return SOLVED[name]
+
+
+FAULTS: list[tuple[Callable[..., Any], str, str]] = [
+    (kantorovich.ball, "2.0 * eta", "1.0 * eta"),
+    (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(z * radius)"),
+    (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(0.5 * omega * radius**2)"),
+    (kantorovich.certify, "doubt = doubt +", "doubt = 0.5 * doubt +"),
+    (kantorovich.certify, "np.abs(step) + spread", "np.abs(step)"),
+    (kantorovich.defect_of, "data + reach", "data"),
+    (kantorovich.defect_of, "data + reach", "reach"),
+    (double_double.doubled_residual, "rest + f * g_low", "rest"),
+    (double_double.doubled_residual, "f_low * g)", "0.0 * g)"),
+    (double_double.doubled_residual, "f_size * g_doubt", "0.5 * f_size * g_doubt"),
+    (double_double.doubled_residual, "f_doubt * (g_size + g_doubt)", "0.5 * f_doubt * g_size"),
+    (enclosed_points._tail, "0.5 * magnitude", "0.25 * magnitude"),
+    (enclosed_points._tail, "certificate.defect + bent", "bent"),
+    (enclosed_points._tail, "known + tail", "tail"),
+    (enclosed_coordinates, "spread + _tail", "_tail"),
+    (enclosed_coordinates, "= -certificate.step", "= 0.0 * certificate.step"),
+    (enclosed_coordinates, "derivative == 2", "derivative == 3"),
+    (enclosed_coordinates, "np.abs(low).max(axis=1) + proven", "proven"),
+    (enclosed_coordinates, "certificate.defect + magnitude", "magnitude"),
+    (enclosed_points._twice_polar, ".scaled(2.0)", ""),
+    (enclosed_points._twice_polar, " + b[0] * a[1]", ""),
+    (enclosed_points._corrected, "rest.radius[0, :, 0] +", "0.5 * rest.radius[0, :, 0] +"),
+    (enclosed_points._corrected, "proven + tail", "proven"),
+    (Enclosed.__add__, "mine + its", "0.5 * (mine + its)"),
+    (Enclosed.__mul__, "self.size * its", "0.5 * self.size * its"),
+    (Enclosed.__mul__, "mine * (other.size + its)", "0.5 * mine * other.size"),
+    (Enclosed.together, ".max(axis=1", ".min(axis=1"),
+    (certified_poses.Groups.most, ".max(axis=1)", ".min(axis=1)"),
+    (enclosed_points._normals, ".scaled(2.0)", ""),
+    (enclosed_points._normals, "cross(v1, e2) + cross(e1, v2)", "cross(v1, e2)"),
+    (enclosed_points._carried, " + c * crossed", ""),
+    (EnclosedPoses.reported, " + self.added[derivative]", ""),
+    (knuckle_rates.body_rate_error, "s - cross(pull, cross(pull, edge))", "s"),
+    (knuckle_rates.body_rate_error, "along + across", "along"),
+    (angle.angle_error, "sine * c - cosine * s", "sine * c"),
+]
+
+
+def lies(function: Callable[..., Any], old: str, new: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Plant a fault in the source of a function, wherever it is used."""
+    source = textwrap.dedent(inspect.getsource(function))
+    assert old in source, old
+    made: dict[str, Any] = {}
+    flags = __future__.annotations.compiler_flag
+    assert isinstance(function, FunctionType)
+    exec(
+        compile(source.replace(old, new), function.__code__.co_filename, "exec", flags),
+        function.__globals__,
+        made,
+    )
+    monkeypatch.setattr(function, "__code__", made[function.__name__].__code__)
+
+
+def all_holds() -> bool:
+    return all(toy_holds(*case) for case in CASES) and all(
+        scene_holds(name) for name in ("bounce-on-a-heaving-chassis", "off-axis-strut")
+    )
+
+
+def test_every_number_lies_within_its_bound() -> None:
+    assert all_holds()
+
+
+@pytest.mark.parametrize(("function", "old", "new"), FAULTS)
+def test_a_proof_without_one_of_its_terms_is_found_out(
+    function: Callable[..., Any], old: str, new: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lies(function, old, new, monkeypatch)
+    assert not all_holds()
