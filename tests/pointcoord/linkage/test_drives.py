@@ -105,29 +105,31 @@ def test_the_series_of_a_coordinate_are_its_equations_derivatives(kind: str) -> 
 
 
 @by_kind
-@pytest.mark.parametrize("order", [4, 7, 12])
+# Of 4 terms most of the doubt is what they leave out; of 20 it is what they are rounded by.
+@pytest.mark.parametrize("order", [4, 7, 20])
 def test_a_series_over_a_range_is_as_near_as_it_says_with_its_derivatives(kind: str, order: int) -> None:
     drive, equation, (least, most, half) = CASES[kind]
-    middle = 0.3 * least + 0.7 * most
-    series, doubts = drive.series_over(np.array([middle]), np.array([half]), order, DRAWING)
-    assert series.shape == (1, order + 1)
-    lacks = float(drive.rounding(series[:, 0], DRAWING, 0.0)[0][0])
-    with mpmath.workdps(50):
-        terms = [mpf(float(term)) for term in series[0]]
-        terms[0] += lacks
-        for derivative, doubt in enumerate(doubts):
-            worst = max(
-                abs(
-                    mpmath.diff(lambda s: equation(mpf(middle) + half * s), s, derivative)
-                    - polynomial(terms, s)
+    shares: list[Any] = []
+    for middle in np.linspace(least, most, 5).tolist():
+        series, doubts = drive.series_over(np.array([middle]), np.array([half]), order, DRAWING)
+        assert series.shape == (1, order + 1)
+        lacks = float(drive.rounding(series[:, 0], DRAWING, 0.0)[0][0])
+        with mpmath.workdps(50):
+            terms = [mpf(float(term)) for term in series[0]]
+            terms[0] += lacks
+            for derivative, doubt in enumerate(doubts):
+                worst = max(
+                    abs(
+                        mpmath.diff(lambda s, at=middle: equation(mpf(at) + half * s), s, derivative)
+                        - polynomial(terms, s)
+                    )
+                    for s in map(mpf, np.linspace(-1.0, 1.0, 7).tolist())
                 )
-                for s in map(mpf, np.linspace(-1.0, 1.0, 21).tolist())
-            )
-            terms = [k * term for k, term in enumerate(terms)][1:]
-            assert worst <= float(doubt[0]) + 1e-30
-            # Four terms of a circle leave something out, and the doubt says how much.
-            if order == 4 and "turn" in kind:
-                assert float(doubt[0]) <= 5.0 * worst + 20.0 * U
+                terms = [k * term for k, term in enumerate(terms)][1:]
+                assert worst <= float(doubt[0]) + 1e-30
+                shares.append(worst / float(doubt[0]) if doubt[0] else 0.0)
+    # What is left out depends on the middle: at some it is near the doubt.
+    assert order > 4 or "turn" not in kind or max(shares) > 0.5
 
 
 @by_kind
