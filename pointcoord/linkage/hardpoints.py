@@ -14,8 +14,7 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.double_double import PAIRS
-from pointcoord.numerics.linear import factorise, null_directions
-from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.linear import null_directions
 
 Array = NDArray[np.float64]
 AXES = ("up", "right")
@@ -90,9 +89,6 @@ def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
 
 
 def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) -> dict[str, Array]:
-    one = _of_one_car(given, names)
-    if one is not None:
-        return one
     result: dict[str, Array] = {}
     for name in names:
         if name not in given:
@@ -104,20 +100,6 @@ def _checked(given: Mapping[str, ArrayLike], names: Sequence[str], kind: str) ->
             )
         result[name] = array
     return result
-
-
-def _of_one_car(given: Mapping[str, ArrayLike], names: Sequence[str]) -> dict[str, Array] | None:
-    """The vectors of one car; None where that is not what is given, or something is wrong."""
-    places = [given.get(name) for name in names]
-    if not all(isinstance(place, tuple) for place in places):
-        return None
-    try:
-        stack = np.array(places, dtype=float)
-    except (TypeError, ValueError):
-        return None
-    if stack.shape != (len(names), 3) or not np.isfinite(stack).all():
-        return None
-    return dict(zip(names, stack, strict=True))
 
 
 def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
@@ -147,18 +129,14 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
 def _check_determined(mechanism: Mechanism) -> None:
     topology, layout, system = mechanism.topology, mechanism.layout, mechanism.map
     equations, unknowns = len(system.rows), system.unknowns
-    if equations == unknowns and mechanism.drawn.ndim == 1 and not mechanism.drawn_factors.singular:
-        return
-    jacobian = system.jacobian(mechanism.drawn)
+    jacobian = system.jacobian(mechanism.drawn).reshape(-1, equations, unknowns)
+    worst = 0
     if equations == unknowns:
-        if _regular_like_the_first(jacobian.reshape(-1, unknowns, unknowns)):
-            return
-        singular = factorise(jacobian).singular
+        singular = np.ravel(mechanism.drawn_factors.singular)
         if not singular.any():
             return
-        jacobian = jacobian[tuple(np.argwhere(singular)[0])]
-    else:
-        jacobian = jacobian.reshape(-1, equations, unknowns)[0]
+        worst = int(np.argmax(singular))
+    jacobian = jacobian[worst]
     free, redundant = null_directions(jacobian)
     problems = []
     names: list[str] = []
@@ -184,28 +162,6 @@ def _check_determined(mechanism: Mechanism) -> None:
         f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}{advice}",
         names,
     )
-
-
-def _regular_like_the_first(matrices: Array) -> bool:
-    """Whether matrices are far from singular because they are near the first, shape (members, n, n).
-
-    With X the first one's inverse and |I - X A| <= 1/2, |A^-1| <= 2 |X|: one product for all, where each
-    would take a factorisation. False says nothing.
-    """
-    if len(matrices) < 2:
-        return False
-    first, n = factorise(matrices[0]), matrices.shape[-1]
-    if first.singular:
-        return False
-    inverse = first.preconditioner
-    products = inverse @ matrices.transpose(1, 0, 2).reshape(n, -1)
-    away = np.abs(products.reshape(n, -1, n) - np.eye(n)[:, None]).sum(axis=-1).max()
-    rows = np.abs(matrices).sum(axis=-1)
-    # The condition with rows scaled by powers of two to a largest entry between 1 and 2, of matrices whose
-    # inverses are up to twice as large: 4 times what stands here, and twice that, as X itself is rounded.
-    spread = (rows / np.abs(matrices).max(axis=-1)).max()
-    scaled = (np.abs(inverse) * (rows.max(axis=0))).sum(axis=-1).max()
-    return bool(away <= 0.5 and n * EPS * 8.0 * spread * scaled < 1.0)
 
 
 def dominant(directions: Array) -> list[int]:

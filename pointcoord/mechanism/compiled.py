@@ -79,13 +79,6 @@ def choices_of(
     )
 
 
-def drawing_matters(structure: Structure, driven: Collection[str]) -> bool:
-    """Whether what stands for a body depends on how it is drawn."""
-    needed = needed_points(structure, driven)
-    still = any(not slide.turns for slide in structure.slides.values())
-    return still or any(sum(n in needed for n in names) != 3 for _, names in structure.moving_bodies())
-
-
 def _edges(
     structure: Structure, slide: Slide, triangles: Mapping[str, Triangle], vectors: Mapping[str, Array]
 ) -> tuple[Ends, Ends]:

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, StrictBool, Val
 from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
-from pointcoord.mechanism.compiled import Place, choices_of, compiled, drawing_matters
+from pointcoord.mechanism.compiled import Place, choices_of, compiled
 from pointcoord.mechanism.faults import TableFault, fault_of, no_such
 from pointcoord.mechanism.freedoms import freedoms_of, settled
 from pointcoord.mechanism.structure import CHASSIS, CLOSING, TABLES, Name, Structure, known_keys, structure_of
@@ -112,9 +112,6 @@ class MechanismFile:
             wheel_radius: mm.
         """
         whole = self.structures[closure]
-        known = closure, None if driven is None else tuple(driven), None if points is None else tuple(points)
-        if (*known, wheel_radius) in self._alike:
-            return self._alike[*known, wheel_radius]
         structure = whole if points is None else whole.drawn_with(points)
         there = dict.fromkeys(structure.points, BY_ORDER) if points is None else points
         along = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
@@ -131,13 +128,10 @@ class MechanismFile:
             self._compiled[key] = replace(topology, name=named, stand_ins=whole.stand_ins)
         topology = self._compiled[key]
         if points is None or len(topology.labels) <= topology.layout.unknowns:
-            if points is None or not drawing_matters(structure, own):
-                self._alike[*known, wheel_radius] = topology
             return topology
         holding = sum(not structure.inputs[name].moves_the_chassis for name in own)
-        return (
-            settled(topology, points, along) if holding <= self.freedoms(closure, points, along) else topology
-        )
+        too_many = holding > self.freedoms(closure, points, along)
+        return topology if too_many else settled(topology, points, along)
 
     def _first_driven(
         self,
@@ -189,11 +183,6 @@ class MechanismFile:
         if points is None:
             return topology.layout.unknowns - len(topology.labels)
         return freedoms_of(topology, drawn, along)
-
-    @cached_property
-    def _alike(self) -> dict[Hashable, Topology]:
-        """By what was asked for, those that are the same for every drawing."""
-        return {}
 
     @cached_property
     def _compiled(self) -> dict[Hashable, Topology]:

@@ -22,7 +22,6 @@ from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
 Place = tuple[float, float, float]
-Places = tuple[tuple[str, Place], ...]
 
 # Newton's method doubles the digits in a step; a drawing that is not closed after so many does not close.
 STEPS = 12
@@ -158,11 +157,8 @@ def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, 
         MechanismError: something is free, or inputs fight.
     """
     there = topology.with_defaults(points)
-    return _settled(topology, _hashable(there, topology.points), _hashable(axes, ("up", "right")))
-
-
-def _hashable(places: Mapping[str, Place], names: Iterable[str]) -> Places:
-    return tuple((name, places[name]) for name in names)
+    places = tuple((name, there[name]) for name in topology.points)
+    return _settled(_ByIdentity(topology), places, (axes["up"], axes["right"]))
 
 
 class _ByIdentity:
@@ -178,19 +174,15 @@ class _ByIdentity:
         return isinstance(other, _ByIdentity) and other.topology is self.topology
 
 
-def _settled(topology: Topology, points: Places, axes: Places) -> Topology:
-    return _settled_once(_ByIdentity(topology), points, axes)
-
-
 @lru_cache(maxsize=64)
-def _settled_once(key: _ByIdentity, points: Places, axes: Places) -> Topology:
+def _settled(key: _ByIdentity, points: tuple[tuple[str, Place], ...], axes: tuple[Place, Place]) -> Topology:
     topology = key.topology
-    mechanism = drawn_mechanism(topology, dict(points), dict(axes))
-    found, system = freedoms(mechanism), mechanism.map
-    lost = [row for row in range(len(system.rows)) if row not in found.kept]
-    fighting = [row for row in lost if row in _rows_of_inputs(topology)]
+    mechanism = drawn_mechanism(topology, dict(points), dict(zip(("up", "right"), axes, strict=True)))
+    found = freedoms(mechanism)
+    lost = [row for row in range(len(topology.labels)) if row not in found.kept]
+    fighting = not set(lost).isdisjoint(_rows_of_inputs(topology))
     if found.count or fighting:
-        raise MechanismError(_words(topology, found, bool(fighting)), found.free or found.redundant)
+        raise MechanismError(_words(topology, found, fighting), found.free or found.redundant)
     return replace(topology, left_out=tuple(lost))
 
 

@@ -1,22 +1,25 @@
 """How an input becomes a known coordinate: against many digits, with all that is said of what is lost."""
 
-import math
+from collections.abc import Callable
+from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
+from mpmath import mpf
 from numpy.typing import NDArray
 
 from pointcoord import InputOutOfRange
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.linkage.drives import ArmAngle, Travel
+from pointcoord.linkage.drives import ArmAngle, DistanceOf, Drive, Travel, TravelAlong, TurnedBy
 from pointcoord.numerics.enclosure import Enclosed
 
 Array = NDArray[np.float64]
 U = 2.0**-53
+UNIT = 256.0
 ARM = ArmAngle("rise", "arm_angle", "pivot", "ball", "up")
 RACK = Travel("travel", "rack", "centre", "inner", "right")
-UNIT = 256.0
 
 
 def drawn(seed: int) -> Drawing:
@@ -27,92 +30,151 @@ def drawn(seed: int) -> Drawing:
     )
 
 
-def length_of(drawing: Drawing) -> mpmath.mpf:
+DRAWING = drawn(3)
+
+
+def length_of(drawing: Drawing) -> mpf:
     ends = (drawing.vectors["pivot"].tolist(), drawing.vectors["ball"].tolist())
-    return mpmath.sqrt(sum((mpmath.mpf(p) - mpmath.mpf(q)) ** 2 for p, q in zip(*ends, strict=True)))
+    return mpmath.sqrt(sum((mpf(p) - mpf(q)) ** 2 for p, q in zip(*ends, strict=True)))
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_the_rise_of_an_arm_is_right_to_its_stated_doubt(seed: int) -> None:
-    drawing = drawn(seed)
-    for angle in np.random.default_rng(seed).uniform(0.0, np.pi, 20).tolist():
-        (rise,) = ARM.series(np.array([angle]), drawing)
-        lacks, doubt = (float(part) for part in ARM.rounding(np.array(rise), drawing, 0.0))
+# Each kind with its equation, and inputs that it takes: a smallest and a largest value, and half a range.
+Equation = Callable[[Any], Any]
+CASES: dict[str, tuple[Drive, Equation, tuple[float, float, float]]] = {
+    "arm": (ARM, lambda x: length_of(DRAWING) * mpmath.cos(x), (0.6, 2.5, 0.5)),
+    "travel": (RACK, lambda x: x / UNIT, (-90.0, 90.0, 8.0)),
+    "travel along a line": (
+        TravelAlong("place", "strut", "inner", OnLine("inner", "pivot", "ball", "place")),
+        lambda x: x / (UNIT * length_of(DRAWING)),
+        (200.0, 400.0, 8.0),
+    ),
+    "distance": (
+        DistanceOf("square", "apart", "pivot", "ball"),
+        lambda x: (x / UNIT) ** 2,
+        (200.0, 400.0, 8.0),
+    ),
+    "cosine of a turn": (TurnedBy("cosine", "turn", 0), mpmath.cos, (-9.0, 9.0, 0.5)),
+    "sine of a turn": (TurnedBy("sine", "turn", 1), mpmath.sin, (-9.0, 9.0, 0.5)),
+}
+by_kind = pytest.mark.parametrize("kind", CASES)
+
+
+def polynomial(terms: Any, t: Any) -> Any:
+    return sum((term * t**k for k, term in enumerate(terms)), mpf(0))
+
+
+def laws(kind: str, terms: int, count: int = 20) -> list[list[float]]:
+    """Inputs with some derivatives, by instant."""
+    _, _, (least, most, half) = CASES[kind]
+    rng = np.random.default_rng(4)
+    value = rng.uniform(least, most, (count, 1))
+    rows: list[list[float]] = np.hstack([value, half * rng.uniform(-1.0, 1.0, (count, terms))]).tolist()
+    return rows
+
+
+@by_kind
+def test_a_coordinate_is_right_to_its_stated_doubt(kind: str) -> None:
+    drive, equation, (_, _, half) = CASES[kind]
+    for (x,) in laws(kind, 0):
+        (value,) = drive.series(np.array([x]), DRAWING)
+        lacks, doubt = (float(part) for part in drive.rounding(np.array(value), DRAWING, 0.0))
         with mpmath.workdps(50):
-            exact = length_of(drawing) * mpmath.cos(mpmath.mpf(angle))
-            assert abs(mpmath.mpf(float(rise)) + mpmath.mpf(lacks) - exact) <= doubt
-            # A length is the root of a rounded sum: some two roundings; a cosine and a product are three.
-            assert abs(lacks) <= 4.0 * U * abs(rise)
-            assert doubt <= 3.1 * U * abs(rise)
-            law = 1e-3
-            _, wide = ARM.rounding(np.array(rise), drawing, law)
+            assert abs(mpf(float(value)) + mpf(lacks) - equation(mpf(x))) <= doubt
+            # A constant of the drawing is some two roundings off; a function and a product are three.
+            assert abs(lacks) <= 4.0 * U * abs(value)
+            assert doubt <= 3.1 * U * abs(value)
+            law = 1e-3 * half
+            _, wide = drive.rounding(np.array(value), DRAWING, law)
             for off in (-law, law):
-                assert abs(length_of(drawing) * mpmath.cos(mpmath.mpf(angle) + off) - rise) <= float(wide)
-            assert float(wide) <= 1.02 * law * length_of(drawing)
+                assert abs(equation(mpf(x) + off) - mpf(float(value)) - lacks) <= float(wide)
 
 
-@pytest.mark.parametrize("order", [4, 7, 12])
-def test_the_series_of_an_arm_over_a_range_is_as_near_as_it_says_with_its_derivatives(order: int) -> None:
-    drawing, middle, half = drawn(3), 1.2, 0.5
-    series, doubts = ARM.series_over(np.array([middle]), np.array([half]), order, drawing)
-    assert series.shape == (1, order + 1)
-    s = np.linspace(-1.0, 1.0, 41)
-    with mpmath.workdps(50):
-        arm, turned = length_of(drawing), [mpmath.mpf(middle) + half * mpmath.mpf(x) for x in s.tolist()]
-        exact = (
-            [arm * mpmath.cos(a) for a in turned],
-            [-arm * half * mpmath.sin(a) for a in turned],
-            [-arm * half**2 * mpmath.cos(a) for a in turned],
-        )
-        for derivative, (true, doubt) in enumerate(zip(exact, doubts, strict=True)):
-            terms = np.polynomial.polynomial.polyder(series[0], derivative)
-            values = np.polynomial.polynomial.polyval(s, terms).tolist()
-            off = max(float(abs(mpmath.mpf(v) - t)) for v, t in zip(values, true, strict=True))
-            # Evaluating the polynomial here rounds too: each term some 2 k times, 2^-53 of numbers below 2.
-            assert off <= float(doubt[0]) + 4 * order * U
-            if order == 4:
-                assert float(doubt[0]) <= 5.0 * off
-            # What 13 terms leave out of the second derivative is below 2 * 0.5^13 / 11!.
-            elif order == 12:
-                assert float(doubt[0]) <= 2.0 * 0.5**13 / math.factorial(11)
+@by_kind
+def test_the_series_of_a_coordinate_are_its_equations_derivatives(kind: str) -> None:
+    drive, equation, _ = CASES[kind]
+    rows = laws(kind, 4)
+    together = drive.series(np.array(rows), DRAWING)
+    for row, found in zip(rows, together, strict=True):
+        alone = drive.series(np.array(row), DRAWING)
+        with mpmath.workdps(60):
+            exact = mpmath.taylor(lambda t, row=row: equation(polynomial(row, t)), 0, 4)
+        size = float(max(map(abs, exact)))
+        for series in (alone, found):
+            # Sums of some twenty products, of terms that are larger than what is left of them.
+            assert np.abs(series - np.array(exact, dtype=float)).max() <= 1e3 * U * max(size, 1.0)
 
 
-def test_the_exact_rise_of_an_arm_has_the_rates_of_the_chain_rule() -> None:
-    drawing = drawn(4)
-    angles, rates, seconds = np.random.default_rng(4).uniform(0.1, 3.0, (3, 20))
-    found = ARM.enclosed([Enclosed.of(law) for law in (angles, rates, seconds)], drawing)
+@by_kind
+# Of 4 terms most of the doubt is what they leave out; of 20 it is what they are rounded by.
+@pytest.mark.parametrize("order", [4, 7, 20])
+def test_a_series_over_a_range_is_as_near_as_it_says_with_its_derivatives(kind: str, order: int) -> None:
+    drive, equation, (least, most, half) = CASES[kind]
+    shares: list[Any] = []
+    for middle in np.linspace(least, most, 5).tolist():
+        series, doubts = drive.series_over(np.array([middle]), np.array([half]), order, DRAWING)
+        assert series.shape == (1, order + 1)
+        lacks = float(drive.rounding(series[:, 0], DRAWING, 0.0)[0][0])
+        with mpmath.workdps(50):
+            terms = [mpf(float(term)) for term in series[0]]
+            terms[0] += lacks
+            for derivative, doubt in enumerate(doubts):
+                worst = max(
+                    abs(
+                        mpmath.diff(lambda s, at=middle: equation(mpf(at) + half * s), s, derivative)
+                        - polynomial(terms, s)
+                    )
+                    for s in map(mpf, np.linspace(-1.0, 1.0, 7).tolist())
+                )
+                terms = [k * term for k, term in enumerate(terms)][1:]
+                assert worst <= float(doubt[0]) + 1e-30
+                shares.append(worst / float(doubt[0]) if doubt[0] else 0.0)
+    # What is left out depends on the middle: at some it is near the doubt.
+    assert order > 4 or "turn" not in kind or max(shares) > 0.5
+
+
+@by_kind
+def test_an_exact_coordinate_has_the_rates_of_the_chain_rule(kind: str) -> None:
+    drive, equation, _ = CASES[kind]
+    rows = laws(kind, 2)
+    found = drive.enclosed([Enclosed.of(law) for law in np.array(rows).T], DRAWING)
     with mpmath.workdps(60):
-        arm = length_of(drawing)
-        for i, law in enumerate(zip(angles.tolist(), rates.tolist(), seconds.tolist(), strict=True)):
-            angle, rate, second = (mpmath.mpf(x) for x in law)
-            c, s = mpmath.cos(angle), mpmath.sin(angle)
-            exact = (arm * c, -arm * s * rate, -arm * (s * second + c * rate**2))
-            for true, part in zip(exact, found, strict=True):
-                off = abs(true - mpmath.mpf(float(part.high[i])) - mpmath.mpf(float(part.low[i])))
-                assert off <= float(part.radius[0, i]) <= 1e-27
+        for i, (x, rate, second) in enumerate(rows):
+            exact = mpmath.taylor(lambda t, x=x, v=rate, a=second: equation(x + t * (v + t * a / 2)), 0, 2)
+            for true, part in zip((exact[0], exact[1], 2 * exact[2]), found, strict=True):
+                off = abs(true - mpf(float(part.high[i])) - mpf(float(part.low[i])))
+                assert off <= float(part.radius[0, i]) + 1e-40
+                assert float(part.radius[0, i]) <= 1e-27
 
 
-def test_an_arm_turns_from_straight_up_to_straight_down_and_its_rise_tells_the_angle() -> None:
-    drawing = drawn(5)
-    arm = float(length_of(drawing))
+@by_kind
+def test_a_coordinate_tells_its_input(kind: str) -> None:
+    drive, equation, _ = CASES[kind]
+    for (x,) in laws(kind, 0):
+        coordinate = drive.series(np.array([x]), DRAWING)
+        told = drive.input_value(coordinate, DRAWING)
+        # A turn is told up to its rounds and its sign, which another coordinate tells.
+        assert float(equation(mpf(float(told[0])))) == pytest.approx(float(coordinate[0]), abs=1e-14)
+        if "turn" not in kind:
+            assert told[0] == pytest.approx(x, rel=1e-13)
+
+
+def test_an_arm_turns_from_straight_up_to_straight_down() -> None:
+    arm = float(length_of(DRAWING))
     for angle, rise in ((0.0, arm), (np.pi / 2, 0.0), (np.pi, -arm)):
-        (found,) = ARM.series(np.array([angle]), drawing)
+        (found,) = ARM.series(np.array([angle]), DRAWING)
         assert found == pytest.approx(rise, abs=4.0 * U)
-    assert [float(x) for x in ARM.extremes(drawing)] == pytest.approx([arm, -arm], rel=4.0 * U)
-    angles = np.array([0.0, 0.4, 1.7, 3.0])
-    assert ARM.input_value(arm * np.cos(angles), drawing) == pytest.approx(angles, abs=1e-7)
+    assert [float(x) for x in ARM.extremes(DRAWING)] == pytest.approx([arm, -arm], rel=4.0 * U)
     # A rounding beyond the end is the end.
-    assert ARM.input_value(np.array([1.0001, -1.0001]) * arm, drawing).tolist() == [0.0, np.pi]
-    height = drawing.vectors["ball"][2] - drawing.vectors["pivot"][2]
-    assert float(ARM.drawn(drawing)) == height
+    assert ARM.input_value(np.array([1.0001, -1.0001]) * arm, DRAWING).tolist() == [0.0, np.pi]
+    height = DRAWING.vectors["ball"][2] - DRAWING.vectors["pivot"][2]
+    assert float(ARM.drawn(DRAWING)) == height
 
 
 @pytest.mark.parametrize("angle", [-1e-3, 3.2, 90.0, 180.0, 181.0, 6.0, np.nan])
 def test_an_angle_that_no_rise_tells_is_refused_and_degrees_are_seen(angle: float) -> None:
-    drawing = drawn(6)
     for law in (np.array([angle, 1.0]), np.array([[1.0, 2.0], [angle, 1.0], [-5.0, 0.0]])):
         with pytest.raises(InputOutOfRange, match="0 to pi rad") as caught:
-            ARM.series(law, drawing)
+            ARM.series(law, DRAWING)
         assert caught.value.name == "arm_angle"
         assert np.array_equal(caught.value.value, angle, equal_nan=True)
         # More than a turn cannot be meant in radians, nor more than half a turn in degrees.
@@ -122,27 +184,21 @@ def test_an_angle_that_no_rise_tells_is_refused_and_degrees_are_seen(angle: floa
             assert f"it is {np.pi * angle / 180.0:.10g} rad" in str(caught.value)
 
 
-def test_many_laws_of_an_arm_are_each_of_them() -> None:
-    drawing, laws = drawn(7), np.random.default_rng(7).uniform(0.2, 1.5, (6, 5))
-    together = ARM.series(laws, drawing)
-    for one, law in zip(together, laws, strict=True):
-        # The same sums in another order: of the series of cosh, whose terms are below 5^k here.
-        assert one == pytest.approx(ARM.series(law, drawing), abs=64 * U * 5.0**4)
+@pytest.mark.parametrize("distance", [0.0, -3.0, np.nan])
+def test_a_distance_that_is_not_positive_is_refused(distance: float) -> None:
+    drive, _, _ = CASES["distance"]
+    with pytest.raises(InputOutOfRange, match="a distance above 0 mm"):
+        drive.series(np.array([[distance, 1.0]]), DRAWING)
 
 
-def test_a_rack_goes_in_units_of_the_car_along_its_direction() -> None:
-    drawing = drawn(8)
-    law = np.array([[32.0, -8.0, 2.0], [1.0, 0.0, 0.0]])
-    assert RACK.series(law, drawing).tolist() == [[0.125, -0.03125, 0.0078125], [1.0 / 256.0, 0.0, 0.0]]
-    series, doubts = RACK.series_over(np.array([32.0]), np.array([8.0]), 3, drawing)
+def test_a_rack_goes_in_units_of_the_car_and_loses_nothing() -> None:
+    assert RACK.series(np.array([32.0, -8.0, 2.0]), DRAWING).tolist() == [0.125, -0.03125, 0.0078125]
+    series, doubts = RACK.series_over(np.array([32.0]), np.array([8.0]), 3, DRAWING)
     assert series.tolist() == [[0.125, 0.03125, 0.0, 0.0]]
     assert [float(d[0]) for d in doubts] == [0.0, 0.0, 0.0]
-    lacks, doubt = RACK.rounding(np.array([0.125, 1.0]), drawing, 16.0)
+    lacks, doubt = RACK.rounding(np.array([0.125, 1.0]), DRAWING, 16.0)
     assert (lacks.tolist(), doubt.tolist()) == ([0.0, 0.0], [0.0625, 0.0625])
-    exact = RACK.enclosed([Enclosed.of(np.array([x])) for x in (32.0, -8.0, 2.0)], drawing)
-    assert [float(part.high[0]) for part in exact] == [0.125, -0.03125, 0.0078125]
-    assert float(RACK.drawn(drawing)) == drawing.vectors["inner"][1] - drawing.vectors["centre"][1]
-    assert float(RACK.input_value(np.array(0.125), drawing)) == 32.0
+    assert float(RACK.drawn(DRAWING)) == DRAWING.vectors["inner"][1] - DRAWING.vectors["centre"][1]
     # No rod that is drawn within the car, of the size of 1, reaches as far.
-    assert [float(x) for x in RACK.extremes(drawing)] == [-8.0, 8.0]
+    assert [float(x) for x in RACK.extremes(DRAWING)] == [-8.0, 8.0]
     assert (ARM.unit, ARM.pushes, RACK.unit, RACK.pushes) == ("rad", "", "mm", "inner")

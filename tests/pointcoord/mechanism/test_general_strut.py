@@ -5,15 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Motion, Scene, SceneError, simulate
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
 from pointcoord.numerics.linear import factorise
-from pointcoord.results.closing import ALLOWED, NOTICED
+from pointcoord.results.closing import NOTICED
 
 DRAWN = mechanism_file("macpherson").topology(points=Scene.load("off-axis-strut").mechanism.points)
 
@@ -41,23 +39,6 @@ def varied(seed: int, beside: float) -> Car:
     car["strut_rod_end"] = top + rng.uniform(-0.2, 1.2) * (lower - top)
     car["rack_centre"] = car["tie_rod_inner"]
     return {name: tuple(place.tolist()) for name, place in car.items()}
-
-
-@settings(deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), beside=st.sampled_from([0.0, 1e-9, 1e-3, 1.0, 30.0, 85.0, 150.0]))
-def test_at_the_drawn_inputs_every_point_is_where_it_was_drawn(
-    make_scene: Callable[..., Scene], seed: int, beside: float
-) -> None:
-    car = varied(seed, beside)
-    motion = simulate(make_scene([drawn_angle(car)], [0.0], stop=0.0, samples=1, points=car, closure="drawn"))
-    proof = motion.proof()
-    # The drawn angle is rounded by 2 u pi, which is an arm of 400 mm times that; the points follow it up
-    # to `condition` times as far. The bound covers what the solver adds.
-    angle = 2 * np.finfo(float).eps * np.pi * 400.0 * float(proof.condition[0])
-    for name, place in motion.position.items():
-        assert np.abs(place[0] - car[name]).max() <= max(proof.bound[0], proof.carried_bound[0]) + angle
-    assert motion.closing.largest < 1e-9
-    assert not motion.closing.noticeable
 
 
 def closed_collinear(make_scene: Callable[..., Scene], table: Car) -> Car:
@@ -168,21 +149,6 @@ def test_closing_says_what_moves_and_what_the_drawing_misses(make_scene: Callabl
     assert max(far for name, far in closing.movements.items() if name != "strut_rod_end") < 1e-9
 
 
-def test_a_drawing_that_closing_makes_another_car_of_is_refused(make_scene: Callable[..., Scene]) -> None:
-    for car, miss in (
-        (moved("strut_rod_end", (30.0, 0.0, 0.0)), "strut_rod_end on the strut axis"),
-        (
-            {**moved("tie_rod_inner", (0.0, 0.0, 20.0)), "rack_centre": CAR["tie_rod_inner"]},
-            "tie_rod_inner on the rack",
-        ),
-    ):
-        with pytest.raises(SceneError, match="closing the drawing moves") as caught:
-            simulate(make_scene([1.63], [0.0], points=car, closure="drawn"))
-        assert miss in caught.value.problem
-        assert caught.value.key == "mechanism.points"
-        assert f"{ALLOWED:.0%} of the car's size" in caught.value.allowed
-
-
 def test_the_paper_s_car_is_put_in_line_only_where_the_scene_asks_for_it(
     make_scene: Callable[..., Scene], table: Car
 ) -> None:
@@ -253,17 +219,6 @@ def test_what_can_lock_is_named_before_what_says_how_the_knuckle_is_made() -> No
     assert set(named[: len(locks)]) == locks
 
 
-@pytest.mark.parametrize("inner", ["wheel_axis_inner", "strut_lower"])
-def test_a_spin_axis_without_a_direction_is_refused(make_scene: Callable[..., Scene], inner: str) -> None:
-    car = {**CAR, inner: CAR["wheel_centre"]}
-    if inner == "strut_lower":
-        del car["wheel_axis_inner"]
-        # Where no scene asks for camber, nothing needs the axis.
-        assert make_scene(points=car, closure="drawn", effects=("velocity",))
-    with pytest.raises(SceneError, match=f"{inner} and wheel_centre are at the same place"):
-        make_scene(points=car, closure="drawn")
-
-
 @pytest.mark.parametrize(("share", "refused"), [(0.0099, False), (0.0101, True)])
 def test_one_percent_of_the_size_is_the_limit_of_closing(
     make_scene: Callable[..., Scene], share: float, refused: bool
@@ -273,8 +228,9 @@ def test_one_percent_of_the_size_is_the_limit_of_closing(
     car = moved("strut_rod_end", tuple(far * aside / np.linalg.norm(aside)))
     scene = make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn")
     if refused:
-        with pytest.raises(SceneError, match="another car"):
+        with pytest.raises(SceneError, match="another car") as caught:
             simulate(scene)
+        assert "strut_rod_end on the strut axis" in caught.value.problem
     else:
         # The rod's end keeps its distance from the top, so that it moves a little more than across.
         assert simulate(scene).closing.largest == pytest.approx(far, rel=0.01)
