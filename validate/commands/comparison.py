@@ -18,7 +18,6 @@ from validate.commands.reporting import Page, add_report, page_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
-    UsageError,
     add_quiet,
     add_timings,
     load_scene,
@@ -28,6 +27,7 @@ from validate.commands.usage import (
 )
 from validate.comparison.examined import Examined, examine
 from validate.diagnosis import explain_outcome
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
@@ -163,8 +163,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Raises:
         UsageError: the options do not go together.
-        SceneFolderError, BaselineError: a folder of scenes or a baseline cannot be read.
-        UnknownFormulation, MissingPackage: a formulation is not there.
+        UsageError, UsageError: a folder of scenes or a baseline cannot be read.
+        UsageError, MissingPackage: a formulation is not there.
         OutputError: the results cannot be written.
     """
     if options.data is not None:
@@ -184,7 +184,7 @@ def compare_scenes(
         page: is made of the run, if there is one.
         brief: whether nothing is said but the verdict in a sentence, and where the page is.
     Raises:
-        UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, OutputError: see
+        UsageError, MissingPackage, OutputError: see
             `run`.
     """
     if options.map is not None:

@@ -15,7 +15,6 @@ from validate.commands.reporting import Page
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
-    UsageError,
     add_quiet,
     load_scene,
     name_of,
@@ -25,6 +24,7 @@ from validate.commands.usage import (
 from validate.cost.report import Report
 from validate.cost.row import Part, Row
 from validate.cost.store import Store, StoreError, latest, measured_here, read_rows
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.output.console import Console

@@ -38,7 +38,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints.
 
     Raises:
-        UsageError, UnknownEnding: the file has no name, or another ending than .svg.
+        UsageError: the file has no name, or another ending than .svg.
         SceneError: the scene is wrong.
         OutputError: the picture cannot be written.
     """

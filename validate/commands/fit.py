@@ -12,7 +12,6 @@ from typing import BinaryIO
 from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import (
     STANDARD_INPUT,
-    UsageError,
     add_quiet,
     add_scene,
     load_scene,
@@ -20,6 +19,7 @@ from validate.commands.usage import (
     require_target,
     told_as,
 )
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.fitting.corrected import corrected_text
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
@@ -102,7 +102,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         NO_VERDICT if least squares did not end.
     Raises:
-        UsageError, UnknownEnding: the options do not go together, or the target has no name for a scene.
+        UsageError: the options do not go together, or the target has no name for a scene.
         FileError, FitError, UnknownName: the file, its map or an option is wrong.
         SceneError: the scene is wrong; PointcoordError: it cannot be solved.
         OutputError: a result cannot be written.
@@ -164,7 +164,7 @@ def _targets(options: argparse.Namespace, console: Console) -> dict[str, str]:
     """Where results go, each to a place of its own; standard output is left to one that is to go there.
 
     Raises:
-        UsageError, UnknownEnding, OutputError: see `run`.
+        UsageError, OutputError: see `run`.
     """
     given = {"-o": options.output, "--json": options.json, "--csv": options.csv}
     targets = {option: target for option, target in given.items() if target is not None}

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.reporting import add_report, page_of
-from validate.commands.usage import UsageError, add_quiet, require_target
+from validate.commands.usage import add_quiet, require_target
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -50,10 +51,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run
 
-    try:
-        cases = catalogue.chosen(options.cases)
-    except catalogue.UnknownCase as error:
-        raise UsageError(str(error)) from None
+    cases = catalogue.chosen(options.cases)
     console.quiet, console.mute = options.quiet, options.json == "-"
     if not console.quiet or console.mute:
         console.require("use --quiet, or --quiet --json FILE")

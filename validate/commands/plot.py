@@ -11,7 +11,6 @@ from typing import BinaryIO
 from pointcoord import Motion, NotComputed, PointcoordError, Scene, SceneError, simulate
 from validate.commands.motion import comment, how_many
 from validate.commands.usage import (
-    UsageError,
     add_quiet,
     add_scene,
     load_scene,
@@ -19,7 +18,8 @@ from validate.commands.usage import (
     place_of_result,
     told_as,
 )
-from validate.curves.numbers import TIME, TRAVEL, Curves, Number, UnknownNumber, found, numbers_of, usual
+from validate.curves.numbers import TIME, TRAVEL, Curves, Number, found, numbers_of, usual
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.output.console import Console
@@ -84,7 +84,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the scene and draw it, or the part of it that could be solved.
 
     Raises:
-        UsageError, UnknownEnding: a number or a file is not named as it must be.
+        UsageError: a number or a file is not named as it must be.
         NotComputed: the scene does not ask for a number.
         MissingPackage: pictures need matplotlib.
         SceneError: the scene is wrong.
@@ -147,7 +147,7 @@ def _chosen(options: argparse.Namespace, numbers: Sequence[Number], name: str) -
 def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: str) -> tuple[Number, ...]:
     try:
         named = [number for one in words for number in found(one, numbers)]
-    except UnknownNumber as error:
+    except UsageError as error:
         raise UsageError(f"{name}: {option} {error}") from None
     except NotComputed as error:
         raise UsageError(f"{name}: {option}: {error}") from None

@@ -10,7 +10,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import UsageError, add_quiet, require_target
+from validate.commands.usage import add_quiet, require_target
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.formulations.registry import NAMES
@@ -168,10 +169,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Work out what is not recorded yet, and say what all of it comes to.
 
     Raises:
-        UsageError: the options do not go together, or ask for what is not.
-        RecordsError: the folder cannot be used.
-        NoCluster, ClusterLost: nobody can work it out, or not any more.
-        TaskFailed: a task raised an error.
+        UsageError: the options do not go together, or the folder or the cluster cannot be used.
+        StudyStopped: nobody can work it out any more, or a task raised an error.
         MissingPackage: the reference, Dask or pyarrow is not there.
         OutputError: something cannot be written.
     """
@@ -190,10 +189,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return findings.status
     values = {name.lstrip("-"): _value(options, name) for name in named.options}
     given = {name: value for name, value in values.items() if value is not None}
-    try:
-        study = named.made(given)
-    except _module("validate.hard.catalogue").UnknownCase as error:
-        raise UsageError(str(error)) from None
+    study = named.made(given)
     if not study.tasks:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
     return _worked_out(study, folder, options, journal, console)

@@ -25,7 +25,6 @@ from pointcoord import (
 )
 from pointcoord.toml_text import read_file
 from validate.commands.usage import (
-    UsageError,
     add_quiet,
     add_scene,
     add_timings,
@@ -34,6 +33,7 @@ from validate.commands.usage import (
     require_target,
     told_as,
 )
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -130,7 +130,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the designs, write them as they come, and say what came of them.
 
     Raises:
-        UsageError, UnknownEnding: the options do not go together, or a file has no name or ending.
+        UsageError: the options do not go together, or a file has no name or ending.
         MissingPackage: Parquet needs pyarrow.
         SceneError, SweepError, UnknownName: the scene is wrong, or makes no designs.
         OutputError: a result cannot be written.

@@ -17,7 +17,7 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
     """Write it, and say what to do.
 
     Raises:
-        UnknownEnding: it is not called .toml.
+        UsageError: it is not called .toml.
         OutputError: it cannot be written.
     """
     require_known_ending(target, ENDINGS)

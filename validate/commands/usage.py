@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pointcoord import Scene, SceneError
 from validate.ci.files import Files
+from validate.errors import UsageError
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable
 from validate.plain_text import shown
@@ -20,10 +21,6 @@ from validate.plain_text import shown
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
-
-
-class UsageError(Exception):
-    """The command line is wrong."""
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
@@ -94,7 +91,7 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
     """The file that `-o` names, found to be writable before anything is solved; None is standard output.
 
     Raises:
-        UsageError, UnknownEnding: the file has no name, or one that does not say how to write it.
+        UsageError: the file has no name, or one that does not say how to write it.
         OutputError: it cannot be written.
     """
     target: str | None = None if options.output == "-" else options.output
