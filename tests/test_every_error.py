@@ -68,7 +68,7 @@ def test_error_can_be_met_speaks_clearly_and_carries_its_data(
 def test_error_comes_back_from_another_process_with_its_data(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with pytest.raises(CLASSES[name]) as caught:
+    with pytest.raises(CLASSES[class_of(name)]) as caught:
         RECIPES[name].cook(tmp_path, monkeypatch)
     error = caught.value
     again = pickle.loads(pickle.dumps(error))

@@ -292,12 +292,12 @@ RECIPES: dict[str, Recipe] = {
         ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
         {"instant": 2.7, "start": 0.0, "stop": 2.6},
     ),
-    "pointcoord.errors.MapError": Recipe(
+    "pointcoord.errors.WrongArgument: of a map": Recipe(
         lambda *_: pointcoord.kinematic_map(BOUNCE, {"arm_angle": (1.0, 0.9), "rack": (0.0, 1.0)}),
         ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers, the lower first"),
         {"what": "ranges['arm_angle']", "problem": "is (1.0, 0.9)", "allowed": bool},
     ),
-    "pointcoord.errors.SweepError": Recipe(
+    "pointcoord.errors.WrongArgument: of a sweep": Recipe(
         lambda *_: pointcoord.sweep(BOUNCE, {"strut_top.x": [1.0, 2.0], "strut_top.y": [1.0, 2.0, 3.0]}),
         ("strut_top.x has 2 values where strut_top.y has 3", "as many of each"),
         {"what": "strut_top.x", "problem": bool, "allowed": "as many of each"},

@@ -9,6 +9,7 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import (
+    add_output,
     add_quiet,
     add_scene,
     load_scene,
@@ -40,11 +41,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         description=DESCRIPTION,
     )
     add_scene(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help=f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given, or for -",
+    add_output(
+        parser,
+        "FILE",
+        f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given, or for -",
     )
     parser.add_argument(
         "--instants",

@@ -79,6 +79,20 @@ def write_whole(target: str, write: Callable[[BinaryIO], None]) -> None:
         raise unwritable(target, error) from None
 
 
+def write_content(target: str, content: str | bytes) -> None:
+    """Write a file of a content at hand, see `write_whole`.
+
+    Raises:
+        OutputError: it cannot be written; what was there is whole.
+    """
+    data = content.encode() if isinstance(content, str) else content
+
+    def write(stream: BinaryIO) -> None:
+        stream.write(data)
+
+    write_whole(target, write)
+
+
 def _write_beside(target: str, write: Callable[[BinaryIO], None]) -> None:
     descriptor, beside = _open_beside(target)
     try:
