@@ -297,24 +297,8 @@ class OutsideMotion(PointcoordError, ValueError):
         )
 
 
-class MapError(PointcoordError, ValueError):
-    """A kinematic map cannot be made, used or read as it was asked for.
-
-    Args:
-        what: the argument or the file at fault.
-        problem: what is wrong, with the value.
-        allowed: what would be right.
-    """
-
-    def __init__(self, what: str, problem: str, allowed: str) -> None:
-        self.what = what
-        self.problem = problem
-        self.allowed = allowed
-        super().__init__(f"{what} {problem}; allowed: {allowed}")
-
-
-class SweepError(PointcoordError, ValueError):
-    """Designs cannot be made, solved or read as they were asked for.
+class WrongArgument(PointcoordError, ValueError):
+    """A kinematic map or a sweep cannot be made, used or read as it was asked for.
 
     Args:
         what: the argument, option, file or design at fault.
@@ -327,6 +311,9 @@ class SweepError(PointcoordError, ValueError):
         self.problem = problem
         self.allowed = allowed
         super().__init__(f"{what} {problem}; allowed: {allowed}")
+
+
+MapError = SweepError = WrongArgument
 
 
 class NotCovered(PointcoordError, ValueError):

@@ -38,6 +38,7 @@ ROOMS = {
         "pytest_plugin",
     ),
     "validate": (
+        "errors",
         "extras",
         "exit_status",
         "running",

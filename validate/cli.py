@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from validate.commands.usage import UsageError
 from validate.door import guarded
+from validate.errors import UsageError
 from validate.exit_status import HELP, ExitStatus
 from validate.output.console import Console
 from validate.output.document import program_version, schema_text

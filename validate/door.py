@@ -6,33 +6,21 @@ import sys
 from collections.abc import Callable, Iterator
 
 from pointcoord import PointcoordError
-from validate.ci.baseline import BaselineError
-from validate.ci.scene_folder import SceneFolderError
-from validate.commands.usage import UsageError
 from validate.comparison.examined import told_failure
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError
-from validate.formulations.registry import UnknownFormulation
 from validate.hardpoint_files.axes import UnknownAxes
 from validate.output.console import Console
-from validate.output.files import OutputError, UnknownEnding
+from validate.output.files import OutputError
 from validate.solvers.plain import NoSolver
-from validate.studies.study import ClusterLost, NoCluster, RecordsError, TaskFailed
+from validate.studies.study import StudyStopped
 
-# In the order in which they are looked for: an unknown ending is an output error of its own.
-MEANINGS: tuple[tuple[type[BaseException] | tuple[type[BaseException], ...], ExitStatus], ...] = (
-    (UnknownEnding, ExitStatus.WRONG_INPUT),
-    (OutputError, ExitStatus.NOT_FINISHED),
-    (
-        (UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, NoSolver),
-        ExitStatus.WRONG_INPUT,
-    ),
-    (UnknownAxes, ExitStatus.WRONG_INPUT),
-    ((RecordsError, NoCluster), ExitStatus.WRONG_INPUT),
-    ((ClusterLost, TaskFailed), ExitStatus.NOT_FINISHED),
-    (FormulationError, ExitStatus.NO_VERDICT),
-    (PointcoordError, ExitStatus.WRONG_INPUT),
+MEANINGS: tuple[tuple[tuple[type[BaseException], ...], ExitStatus], ...] = (
+    ((UsageError, PointcoordError, MissingPackage, NoSolver, UnknownAxes), ExitStatus.WRONG_INPUT),
+    ((OutputError, StudyStopped), ExitStatus.NOT_FINISHED),
+    ((FormulationError,), ExitStatus.NO_VERDICT),
 )
 
 

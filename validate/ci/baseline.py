@@ -34,6 +34,7 @@ from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
 from validate.comparison.given import given
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
 from validate.output.files import unwritable, write_whole
@@ -60,20 +61,6 @@ DAMAGED = (
 
 Standing = Literal["compared", "new", "not solved now", "another car", "another motion"]
 MoveVerdict = Literal["agrees", "moved", "not tested", "new", "gone"]
-
-
-class BaselineError(Exception):
-    """A file holds no baseline that can be read.
-
-    Args:
-        target: the file. problem: why not. allowed: what it may be.
-    """
-
-    def __init__(self, target: str, problem: str, allowed: str = ALLOWED) -> None:
-        self.target = target
-        self.problem = problem
-        self.allowed = allowed
-        super().__init__(f"baseline {target}: {problem}; allowed: {allowed}")
 
 
 @dataclass(frozen=True)
@@ -415,26 +402,26 @@ def read_baseline(target: str) -> Baseline:
     """Read a baseline.
 
     Raises:
-        BaselineError: there is none, it is damaged, or it is of another version.
+        UsageError: there is none, it is damaged, or it is of another version.
     """
     try:
         with open(target, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             found = {name: file[name] for name in file.files}
     except OSError as error:
-        raise BaselineError(target, f"cannot be read ({error.strerror or error})") from None
+        raise _unusable(target, f"cannot be read ({error.strerror or error})") from None
     except DAMAGED:
-        raise BaselineError(target, "is no npz file, or a damaged one") from None
+        raise _unusable(target, "is no npz file, or a damaged one") from None
     if str(found.get("format", "")) != FORMAT:
-        raise BaselineError(target, "holds no baseline")
+        raise _unusable(target, "holds no baseline")
     if str(found.get("version", "")) != str(VERSION):
         version = shown(str(found.get("version", "none")))
-        raise BaselineError(target, f"is of version {version}", f"version {VERSION}; save it again")
+        raise _unusable(target, f"is of version {version}", f"version {VERSION}; save it again")
     try:
         head = json.loads(str(found["head"]))
         scenes = {one["scene"]: _scene(one, found) for one in head["scenes"]}
         return Baseline(target, str(head["program"]), scenes)
     except (*DAMAGED, AccuracyError, FormulationError) as error:
-        raise BaselineError(target, f"does not hold a whole baseline ({shown(str(error))})") from None
+        raise _unusable(target, f"does not hold a whole baseline ({shown(str(error))})") from None
 
 
 def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SavedScene:
@@ -458,3 +445,7 @@ def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Saved
 
 def _taken(places: Places, arrays: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, Array]]:
     return {q: {name: arrays[f"a{place}"] for name, place in part.items()} for q, part in places.items()}
+
+
+def _unusable(target: str, problem: str, allowed: str = ALLOWED) -> UsageError:
+    return UsageError(f"baseline {target}: {problem}; allowed: {allowed}")

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import BinaryIO
 
 from validate.ci.baseline import Recorder
 from validate.ci.junit import junit
@@ -17,7 +16,7 @@ from validate.ci.record import Record
 from validate.ci.summary import summary
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.files import OutputError, require_writable, write_whole
+from validate.output.files import OutputError, require_writable, write_content
 
 
 @dataclass(frozen=True)
@@ -94,9 +93,5 @@ def _put(target: str, data: bytes, console: Console) -> None:
     if target == "-":
         console.write(data.decode())
         console.flush()
-        return
-
-    def write(stream: BinaryIO) -> None:
-        stream.write(data)
-
-    write_whole(target, write)
+    else:
+        write_content(target, data)

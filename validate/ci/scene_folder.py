@@ -5,14 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-
-class SceneFolderError(Exception):
-    """A folder that is to hold scenes is none, cannot be read, or holds none."""
-
-    def __init__(self, folder: str, problem: str) -> None:
-        self.folder = folder
-        self.problem = problem
-        super().__init__(f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it")
+from validate.errors import UsageError
 
 
 def scenes_below(folder: str) -> tuple[str, ...]:
@@ -21,12 +14,12 @@ def scenes_below(folder: str) -> tuple[str, ...]:
     Links to folders are not followed.
 
     Raises:
-        SceneFolderError: there is no such folder, a part of it cannot be read, or it holds no scene.
+        UsageError: there is no such folder, a part of it cannot be read, or it holds no scene.
     """
 
     def stop(error: OSError) -> None:
         where = f" {error.filename!r}" if error.filename not in (None, folder) else ""
-        raise SceneFolderError(folder, f"cannot be read{where} ({error.strerror or error})") from None
+        raise _unusable(folder, f"cannot be read{where} ({error.strerror or error})") from None
 
     try:
         found = [
@@ -36,7 +29,11 @@ def scenes_below(folder: str) -> tuple[str, ...]:
             if name.endswith(".toml")
         ]
     except ValueError as error:  # a zero byte in the name
-        raise SceneFolderError(folder, f"names no folder ({error})") from None
+        raise _unusable(folder, f"names no folder ({error})") from None
     if not found:
-        raise SceneFolderError(folder, "holds no scene")
+        raise _unusable(folder, "holds no scene")
     return tuple(str(path) for path in sorted(found, key=lambda path: path.parts))
+
+
+def _unusable(folder: str, problem: str) -> UsageError:
+    return UsageError(f"--scenes-dir {folder}: {problem}; allowed: a folder with a .toml file below it")

@@ -18,7 +18,7 @@ from validate.commands.reporting import Page, add_report, page_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
-    UsageError,
+    add_json,
     add_quiet,
     add_timings,
     load_scene,
@@ -28,6 +28,7 @@ from validate.commands.usage import (
 )
 from validate.comparison.examined import Examined, examine
 from validate.diagnosis import explain_outcome
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
@@ -140,7 +141,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="stop at the first scene that disagrees, has moved or is refused; what was not run is named",
     )
-    parser.add_argument("--json", metavar="FILE", help="write the results as JSON; - for standard output")
+    add_json(parser, "the results")
     parser.add_argument(
         "--junit", metavar="FILE", help="write JUnit XML, a test case for each scene and quantity; - likewise"
     )
@@ -162,9 +163,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare the scenes; each is said, and written as JSON, as soon as it is done.
 
     Raises:
-        UsageError: the options do not go together.
-        SceneFolderError, BaselineError: a folder of scenes or a baseline cannot be read.
-        UnknownFormulation, MissingPackage: a formulation is not there.
+        UsageError: the options do not go together, or a folder, a baseline or a formulation cannot be used.
+        MissingPackage: a formulation's packages are not there.
         OutputError: the results cannot be written.
     """
     if options.data is not None:
@@ -184,8 +184,7 @@ def compare_scenes(
         page: is made of the run, if there is one.
         brief: whether nothing is said but the verdict in a sentence, and where the page is.
     Raises:
-        UsageError, SceneFolderError, BaselineError, UnknownFormulation, MissingPackage, OutputError: see
-            `run`.
+        UsageError, MissingPackage, OutputError: see `run`.
     """
     if options.map is not None:
         raise UsageError("--map is about a file of results; give it with --data FILE")

@@ -3,33 +3,35 @@
 from __future__ import annotations
 
 import argparse
-import importlib
 import os
 import shlex
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO, get_args
+from typing import TYPE_CHECKING, get_args
 
 from pointcoord import UnknownName
 from validate.commands.reporting import Page
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
-    UsageError,
+    add_json,
     add_quiet,
+    leave_output_to,
     load_scene,
     name_of,
+    needed,
     require_target,
     told_as,
+    write_result,
 )
 from validate.cost.report import Report
 from validate.cost.row import Part, Row
 from validate.cost.store import Store, StoreError, latest, measured_here, read_rows
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.extras import MissingPackage
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.files import OutputError, require_writable, write_whole
+from validate.output.files import OutputError, require_writable, write_content
 from validate.output.progress import progress
 
 if TYPE_CHECKING:
@@ -83,7 +85,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--from-rows", action="store_true", help="report what the file holds, and measure nothing"
     )
-    parser.add_argument("--json", metavar="FILE", help="write everything as JSON; - for standard output")
+    add_json(parser, "everything")
     parser.add_argument("--csv", metavar="FILE", help="write every row as CSV; - for standard output")
     parser.add_argument(
         "--report",
@@ -105,10 +107,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         OutputError: something cannot be written.
     """
     _check_options(options)
-    console.quiet = options.quiet
-    console.mute = "-" in (options.json, options.csv)
-    if not console.quiet or console.mute:
-        console.require("use --quiet, with --json FILE, --csv FILE or --report FOLDER")
+    advice = "use --quiet, with --json FILE, --csv FILE or --report FOLDER"
+    leave_output_to((options.json, options.csv), options, console, advice)
     if options.list:
         console.say(_listing())
         return ExitStatus.AGREE
@@ -133,7 +133,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def _listing() -> str:
     """Ways, scenes and parts by name."""
-    of_study, registry = _module("scenes"), _module("ways.registry")
+    of_study = needed("cost", "validate.cost.scenes")
+    registry = needed("cost", "validate.cost.ways.registry")
     wide = max(len(way.name) for way in registry.WAYS)
     return "\n".join(
         (
@@ -148,18 +149,6 @@ def _listing() -> str:
 
 def _needs(way: Way) -> str:
     return f" (needs the package {way.package})" if way.package else ""
-
-
-def _module(name: str) -> Any:
-    """A module of the study.
-
-    Raises:
-        MissingPackage: it needs what the solvers do without.
-    """
-    try:
-        return importlib.import_module(f"validate.cost.{name}")
-    except ImportError as error:
-        raise MissingPackage("cost", error) from None
 
 
 def _check_options(options: argparse.Namespace) -> None:
@@ -202,7 +191,9 @@ def _listed(words: str, option: str, allowed: Sequence[str]) -> list[str]:
 
 def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     """What is to be measured; everything is found before anything is measured."""
-    of_study, registry, study = _module("scenes"), _module("ways.registry"), _module("study")
+    of_study = needed("cost", "validate.cost.scenes")
+    registry = needed("cost", "validate.cost.ways.registry")
+    study = needed("cost", "validate.cost.study")
     ways = registry.WAYS
     if options.ways is not None:
         ways = registry.ways_named(_listed(options.ways, "--ways", [way.name for way in ways]))
@@ -234,7 +225,7 @@ def _measured(
         with journal.closing(lambda: report(rows).data(), lambda: rows, lambda: _rows(len(rows))) as ending:
             try:
                 with progress(console, "what accuracy costs") as told:
-                    rows += _module("study").measure(study, store, told)
+                    rows += needed("cost", "validate.cost.study").measure(study, store, told)
             except BaseException:
                 # What was kept before it stopped is in the file only.
                 rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
@@ -288,18 +279,15 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     """Say and write the report, its JSON apart; the status is that of a run that comes to its end."""
     status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
     console.show(report.parts())
-    if options.csv == "-":
-        console.write(report.csv())
-        console.flush()
-    elif options.csv:
-        _put(options.csv, report.csv().encode())
+    if options.csv:
+        write_result(options.csv, report.csv(), "the rows", console)
     if options.report:
         # Most runs write no page.
         from validate.html.folder import make_folder
 
         make_folder(options.report)
         for name, content in report.files():
-            _put(os.path.join(options.report, name), content)
+            write_content(os.path.join(options.report, name), content)
         from validate.html.run import Run
 
         Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
@@ -318,20 +306,13 @@ def _picture(report: Report, place: Path, console: Console) -> None:
         console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
         return
     if content is not None:
-        _put(str(place), content)
+        write_content(str(place), content)
         console.written.append(f"{place} holds the picture")
         console.say(f"the picture: {place}")
 
 
 def _rows(count: int) -> str:
     return f"{count} row{'' if count == 1 else 's'}"
-
-
-def _put(target: str, content: bytes) -> None:
-    def put(stream: BinaryIO) -> None:
-        stream.write(content)
-
-    write_whole(target, put)
 
 
 def _require_folder(folder: str) -> None:
@@ -342,10 +323,7 @@ def _require_folder(folder: str) -> None:
         MissingPackage: matplotlib, or what a page needs, is not there.
         OutputError: the folder cannot be had.
     """
-    try:
-        importlib.import_module("matplotlib")
-    except ImportError as error:
-        raise MissingPackage("--report", error, "plot") from None
+    needed("--report", "matplotlib", "plot")
     Page(folder).require()
     if os.path.isdir(folder):
         require_writable(os.path.join(folder, "report.md"))

@@ -14,13 +14,13 @@ from validate.commands.reporting import Page
 from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import (
     STANDARD_INPUT,
-    UsageError,
     load_scene,
     name_of,
     result_files,
     told_as,
 )
 from validate.comparison.examined import Examined
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.measured.comparing import OURS, DataOutcome, compare_results
 from validate.measured.map_to_fill_in import map_to_fill_in

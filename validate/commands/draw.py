@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import argparse
-from typing import BinaryIO
 
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.usage import add_scene, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import (
+    add_output,
+    add_scene,
+    load_scene,
+    name_of,
+    place_of_result,
+    told_as,
+    write_result,
+)
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.files import write_whole
 from validate.output.picture import svg
 
 ENDINGS = (".svg",)
@@ -28,9 +34,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         description=DESCRIPTION,
     )
     add_scene(parser)
-    parser.add_argument(
-        "-o", "--output", metavar="FILE.svg", help="where to; standard output if not given, or for -"
-    )
+    add_output(parser, "FILE.svg", "where to; standard output if not given, or for -")
     parser.set_defaults(run=run)
 
 
@@ -38,7 +42,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints.
 
     Raises:
-        UsageError, UnknownEnding: the file has no name, or another ending than .svg.
+        UsageError: the file has no name, or another ending than .svg.
         SceneError: the scene is wrong.
         OutputError: the picture cannot be written.
     """
@@ -49,14 +53,5 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     picture = svg(drawing)
     for warning in warnings_of(scene, drawing.closing):
         console.warn(f"{name}: {warning}")
-    if target is None:
-        console.write(picture)
-        console.flush()
-    else:
-        write_whole(target, lambda stream: _put(stream, picture))
-        console.written = [f"{target} holds the picture"]
+    write_result(target, picture, "the picture", console)
     return ExitStatus.AGREE
-
-
-def _put(stream: BinaryIO, picture: str) -> None:
-    stream.write(picture.encode())

@@ -6,20 +6,22 @@ import argparse
 import math
 import os
 import shlex
-from functools import partial
-from typing import BinaryIO
 
 from validate.commands.to_fill_in import to_be_filled_in
 from validate.commands.usage import (
     STANDARD_INPUT,
-    UsageError,
+    add_json,
+    add_output,
     add_quiet,
     add_scene,
+    leave_output_to,
     load_scene,
     name_of,
     require_target,
     told_as,
+    write_result,
 )
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.fitting.corrected import corrected_text
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
@@ -29,7 +31,7 @@ from validate.measured.map_to_fill_in import map_to_fill_in
 from validate.measured.mapping import read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text
-from validate.output.files import require_known_ending, require_writable, write_whole
+from validate.output.files import require_known_ending, require_writable
 from validate.output.progress import progress
 from validate.plain_text import shown
 
@@ -87,8 +89,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         default=0.0,
         help="how far off the numbers of --data may be beside their digits, each in its column's unit",
     )
-    parser.add_argument("-o", "--output", metavar="SCENE.toml", help="the corrected scene; - for the output")
-    parser.add_argument("--json", metavar="FILE", help="write all of it as JSON; - for standard output")
+    add_output(parser, "SCENE.toml", "the corrected scene; - for the output")
+    add_json(parser, "all of it")
     parser.add_argument(
         "--csv", metavar="FILE", help="write the coordinates and their corrections as a table; - likewise"
     )
@@ -102,7 +104,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         NO_VERDICT if least squares did not end.
     Raises:
-        UsageError, UnknownEnding: the options do not go together, or the target has no name for a scene.
+        UsageError: the options do not go together, or the target has no name for a scene.
         FileError, FitError, UnknownName: the file, its map or an option is wrong.
         SceneError: the scene is wrong; PointcoordError: it cannot be solved.
         OutputError: a result cannot be written.
@@ -138,13 +140,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         "--csv": lambda: table_of(fit),
     }
     for option, target in targets.items():
-        content = texts[option]()
-        if target == "-":
-            console.write(content)
-            console.flush()
-            continue
-        write_whole(target, partial(_put, content))
-        console.written = [*console.written, f"{target} holds {HOLDS[option]}"]
+        write_result(target, texts[option](), HOLDS[option], console)
     if options.output not in (None, "-"):
         console.say(f"{shown(options.output)} is written; try: {_next(options)}")
     return status
@@ -164,7 +160,7 @@ def _targets(options: argparse.Namespace, console: Console) -> dict[str, str]:
     """Where results go, each to a place of its own; standard output is left to one that is to go there.
 
     Raises:
-        UsageError, UnknownEnding, OutputError: see `run`.
+        UsageError, OutputError: see `run`.
     """
     given = {"-o": options.output, "--json": options.json, "--csv": options.csv}
     targets = {option: target for option, target in given.items() if target is not None}
@@ -175,16 +171,11 @@ def _targets(options: argparse.Namespace, console: Console) -> dict[str, str]:
         other = by_place.setdefault(target if target == "-" else os.path.realpath(target), option)
         if other != option:
             raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
-    console.quiet, console.mute = options.quiet, "-" in targets.values()
-    if not console.quiet or console.mute:
-        console.require("use --quiet with -o FILE, --json FILE or --csv FILE")
+    advice = "use --quiet with -o FILE, --json FILE or --csv FILE"
+    leave_output_to(targets.values(), options, console, advice)
     for option, target in targets.items():
         if target != "-":
             if option == "-o":
                 require_known_ending(target, ENDINGS)
             require_writable(target)
     return targets
-
-
-def _put(content: str, stream: BinaryIO) -> None:
-    stream.write(content.encode())

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.reporting import add_report, page_of
-from validate.commands.usage import UsageError, add_quiet, require_target
+from validate.commands.usage import add_json, add_quiet, leave_output_to, require_target
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -27,9 +28,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
-    parser.add_argument(
-        "--json", metavar="FILE", help="write every trial, or the list, as JSON; - for standard output"
-    )
+    add_json(parser, "every trial, or the list,")
     parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
     add_report(parser)
     add_quiet(parser)
@@ -50,13 +49,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run
 
-    try:
-        cases = catalogue.chosen(options.cases)
-    except catalogue.UnknownCase as error:
-        raise UsageError(str(error)) from None
-    console.quiet, console.mute = options.quiet, options.json == "-"
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
+    cases = catalogue.chosen(options.cases)
+    leave_output_to((options.json,), options, console, "use --quiet, or --quiet --json FILE")
     page = page_of(options)
     if page is not None and options.list:
         raise UsageError("--report is about cases that are tried; leave it out with --list")

@@ -5,17 +5,16 @@ from __future__ import annotations
 import argparse
 import os
 from dataclasses import fields
-from typing import BinaryIO
 
 from validate.closed_drawing import warnings_of
 from validate.commands.to_fill_in import to_be_filled_in
-from validate.commands.usage import require_target
+from validate.commands.usage import add_output, require_target, write_result
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.importing import PARTS, SIDES, Choices, Imported, import_hardpoints, names_of
 from validate.output.console import Console
-from validate.output.files import require_known_ending, require_writable, write_whole
+from validate.output.files import require_known_ending, require_writable
 from validate.plain_text import shown
 from validate.tables.units import LENGTHS
 
@@ -36,9 +35,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "import", help="make a scene from another program's hardpoints", description=DESCRIPTION
     )
     parser.add_argument("file", metavar="FILE", help="the other program's file")
-    parser.add_argument(
-        "-o", "--output", metavar="SCENE.toml", help="the scene; standard output if not given, or for -"
-    )
+    add_output(parser, "SCENE.toml", "the scene; standard output if not given, or for -")
     parser.add_argument("--format", metavar="NAME", help="one of the formats; seen in the file if not given")
     parser.add_argument(
         "--suspension", metavar="TYPE", help="as in a scene; seen in the file or by its points if not given"
@@ -81,7 +78,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
     Raises:
-        UsageError, UnknownEnding: the scene has no name, or another ending than .toml.
+        UsageError: the scene has no name, or another ending than .toml.
         SceneError, FileError, UnknownName, UnknownAxes: the file or an option is wrong.
         AssemblyError: the points cannot be put together.
         OutputError: the scene cannot be written.
@@ -100,12 +97,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     found = import_hardpoints(options.file, **said)
     name = shown(options.file)
     told = (*found.doubts, *warnings_of(found.scene, found.bounce.closing))
-    if target is None:
-        console.write(found.text)
-        console.flush()
-    else:
-        write_whole(target, lambda stream: _put(stream, found.text))
-        console.written = [f"{target} holds the scene"]
+    write_result(target, found.text, "the scene", console)
+    if target is not None:
         console.say("\n".join(_report(name, found)))
         console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
     for warning in told:
@@ -120,10 +113,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             "these the points, axes and side of this drawing?"
         )
     return ExitStatus.DISAGREE if wrong else ExitStatus.AGREE
-
-
-def _put(stream: BinaryIO, text: str) -> None:
-    stream.write(text.encode())
 
 
 def _report(name: str, found: Imported) -> list[str]:

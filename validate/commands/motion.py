@@ -9,7 +9,7 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import (
-    UsageError,
+    add_output,
     add_quiet,
     add_scene,
     load_scene,
@@ -17,6 +17,7 @@ from validate.commands.usage import (
     place_of_result,
     told_as,
 )
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.motion_tables import ENDINGS, require_writer, write_csv, write_motion
@@ -40,11 +41,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         description=DESCRIPTION,
     )
     add_scene(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help=f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given, or for -",
+    add_output(
+        parser,
+        "FILE",
+        f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given, or for -",
     )
     parser.add_argument(
         "--instants",
@@ -81,7 +81,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the scene and write its motion, or the part of it that could be solved.
 
     Raises:
-        UsageError, UnknownEnding: the file has no name, or none that says how to write it.
+        UsageError: the file has no name, or none that says how to write it.
         MissingPackage: Parquet needs pyarrow.
         SceneError: the scene is wrong.
         OutputError: the motion cannot be written.

@@ -12,7 +12,7 @@ from pointcoord import Scene, SceneError, built_in_scenes
 from pointcoord.mechanism.file import MECHANISMS, is_path, shipped
 from pointcoord.scene.scene_file import SCENES
 from pointcoord.toml_text import parsed, read_file
-from validate.commands.usage import UsageError
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.files import require_writable, write_whole

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
-from importlib import import_module
 from pathlib import Path
-from typing import BinaryIO
 
 from pointcoord import Motion, NotComputed, PointcoordError, Scene, SceneError, simulate
 from validate.commands.motion import comment, how_many
 from validate.commands.usage import (
-    UsageError,
+    add_output,
     add_quiet,
     add_scene,
     load_scene,
     name_of,
+    needed,
     place_of_result,
     told_as,
+    write_result,
 )
-from validate.curves.numbers import TIME, TRAVEL, Curves, Number, UnknownNumber, found, numbers_of, usual
+from validate.curves.numbers import TIME, TRAVEL, Curves, Number, found, numbers_of, usual
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.extras import MissingPackage
 from validate.output.console import Console
-from validate.output.files import write_whole
 from validate.output.progress import progress
 
 ENDINGS = (".svg", ".png")
@@ -48,11 +47,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "plot", help="draw curves of a scene's motion (SVG, PNG)", description=DESCRIPTION
     )
     add_scene(parser)
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help=f"where to, by its ending {' or '.join(ENDINGS)}; SVG on standard output if not given, or for -",
+    add_output(
+        parser,
+        "FILE",
+        f"where to, by its ending {' or '.join(ENDINGS)}; SVG on standard output if not given, or for -",
     )
     parser.add_argument(
         "--y", metavar="NUMBER", action="append", help="what goes upward on the paper; may be given again"
@@ -84,7 +82,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the scene and draw it, or the part of it that could be solved.
 
     Raises:
-        UsageError, UnknownEnding: a number or a file is not named as it must be.
+        UsageError: a number or a file is not named as it must be.
         NotComputed: the scene does not ask for a number.
         MissingPackage: pictures need matplotlib.
         SceneError: the scene is wrong.
@@ -92,7 +90,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """
     console.quiet = options.quiet
     target = place_of_result(options, ENDINGS, console)
-    require_matplotlib()
+    needed("plot", "matplotlib", "plot")
     scene, name = load_scene(options.scene), name_of(options.scene)
     numbers = numbers_of(scene)
     chosen = _chosen(options, numbers, name)
@@ -116,18 +114,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.AGREE
 
 
-def require_matplotlib() -> None:
-    """Find out that pictures cannot be drawn before anything is solved.
-
-    Raises:
-        MissingPackage: matplotlib is not there.
-    """
-    try:
-        import_module("matplotlib")
-    except ImportError as error:
-        raise MissingPackage("plot", error, "plot") from None
-
-
 def _chosen(options: argparse.Namespace, numbers: Sequence[Number], name: str) -> Curves | None:
     """What the command line asks for; None if it leaves that open."""
     if options.x is None and options.y is None:
@@ -147,7 +133,7 @@ def _chosen(options: argparse.Namespace, numbers: Sequence[Number], name: str) -
 def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: str) -> tuple[Number, ...]:
     try:
         named = [number for one in words for number in found(one, numbers)]
-    except UnknownNumber as error:
+    except UsageError as error:
         raise UsageError(f"{name}: {option} {error}") from None
     except NotComputed as error:
         raise UsageError(f"{name}: {option}: {error}") from None
@@ -172,13 +158,4 @@ def _draw(
     title = scene.title or name_of(options.scene)
     ending = ".svg" if target is None else Path(target).suffix
     content = drawn(figure(curves, motion, samples, title, options.degrees), ending.removeprefix("."))
-    if target is None:
-        console.write(content.decode("utf-8"))
-        console.flush()
-    else:
-        write_whole(target, lambda stream: _put(stream, content))
-        console.written = [f"{target} holds the picture"]
-
-
-def _put(stream: BinaryIO, content: bytes) -> None:
-    stream.write(content)
+    write_result(target, content, "the picture", console)

@@ -12,9 +12,9 @@ from pathlib import Path
 from pointcoord import built_in_scenes
 from validate.commands.comparison import add_options, compare_scenes
 from validate.commands.reporting import Page
-from validate.commands.usage import UsageError
 from validate.cost.report import Report
 from validate.cost.store import StoreError, latest, read_rows
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.html.hard_cases import HardCases, read_hard_cases
 from validate.html.run import Run
@@ -59,7 +59,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Raises:
         UsageError: the options do not go together, or a file of rows cannot be used.
-        HardFileError: a file holds no hard cases.
+        UsageError: a file holds no hard cases.
         MissingPackage: a page needs the extra `report`, a formulation its own packages.
         OutputError: the report cannot be written.
     """

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from validate.commands.usage import UsageError
+from validate.errors import UsageError
 from validate.output.console import Console
 from validate.plain_text import shown
 
@@ -79,7 +79,7 @@ class Page:
             UsageError: the folder has no name, or cannot be a report's.
             OutputError: it cannot be written.
         """
-        from validate.html.folder import NotOurs, require_folder
+        from validate.html.folder import require_folder
         from validate.html.page import require_templates
 
         if not self.folder.strip():
@@ -87,10 +87,7 @@ class Page:
                 f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
             )
         require_templates()
-        try:
-            require_folder(self.folder)
-        except NotOurs as error:
-            raise UsageError(str(error)) from None
+        require_folder(self.folder)
 
     def write(self, run: Run, console: Console) -> Run:
         """Write the page of a run.

@@ -6,13 +6,12 @@ import argparse
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import UsageError, add_quiet, require_target
+from validate.commands.usage import add_json, add_quiet, leave_output_to, needed, require_target
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.extras import MissingPackage
 from validate.formulations.registry import NAMES
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -66,7 +65,7 @@ class Named:
             MissingPackage: what it needs is not there.
         """
         module, function = self.maker
-        study: Study = getattr(_module(f"validate.studies.{module}"), function)(**given)
+        study: Study = getattr(needed("study", f"validate.studies.{module}"), function)(**given)
         return study
 
 
@@ -159,7 +158,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
             action="store_true",
             help="say what all records in the folder come to, and work out nothing",
         )
-        one.add_argument("--json", metavar="FILE", help="write the findings as JSON; - for standard output")
+        add_json(one, "the findings")
         add_quiet(one)
     parser.set_defaults(run=run)
 
@@ -168,21 +167,17 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Work out what is not recorded yet, and say what all of it comes to.
 
     Raises:
-        UsageError: the options do not go together, or ask for what is not.
-        RecordsError: the folder cannot be used.
-        NoCluster, ClusterLost: nobody can work it out, or not any more.
-        TaskFailed: a task raised an error.
+        UsageError: the options do not go together, or the folder or the cluster cannot be used.
+        StudyStopped: nobody can work it out any more, or a task raised an error.
         MissingPackage: the reference, Dask or pyarrow is not there.
         OutputError: something cannot be written.
     """
     _check(options)
-    console.quiet, console.mute = options.quiet, options.json == "-"
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
+    leave_output_to((options.json,), options, console, "use --quiet, or --quiet --json FILE")
     named, folder = STUDIES[options.study], Path(options.records or f"pointcoord-{options.study}")
     journal = Journal(options.json, Head.of(options.study, options.command, timed=True), console)
     for package in ("mpmath", "flint", "pinocchio"):
-        _module(package)
+        needed("study", package)
     if options.from_records:
         findings = _recorded(named, folder, options.study)
         console.show(findings.parts)
@@ -190,10 +185,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return findings.status
     values = {name.lstrip("-"): _value(options, name) for name in named.options}
     given = {name: value for name, value in values.items() if value is not None}
-    try:
-        study = named.made(given)
-    except _module("validate.hard.catalogue").UnknownCase as error:
-        raise UsageError(str(error)) from None
+    study = named.made(given)
     if not study.tasks:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
     return _worked_out(study, folder, options, journal, console)
@@ -228,7 +220,7 @@ def _value(options: argparse.Namespace, name: str) -> Any:
 
 def _recorded(named: Named, folder: Path, name: str) -> Findings:
     """What all records in a folder come to."""
-    there = _module("validate.studies.store").look(folder)
+    there = needed("study", "validate.studies.store").look(folder)
     if there.study != name:
         raise UsageError(
             f"--records {shown(str(folder))} holds the study {there.study!r}, not {name!r}; "
@@ -243,13 +235,13 @@ def _worked_out(
     study: Study, folder: Path, options: argparse.Namespace, journal: Journal, console: Console
 ) -> ExitStatus:
     """Work out what is missing, and say what the tasks that are asked for come to."""
-    cluster, where = _module("validate.studies.cluster"), shown(str(folder))
+    cluster, where = needed("study", "validate.studies.cluster"), shown(str(folder))
     local = options.scheduler == LOCAL
     who = "processes of this machine" if local else f"the scheduler {shown(options.scheduler)}"
     # Found out before a folder is made.
     cluster.quiet_dask()
     with ExitStack() as stack:
-        store = stack.enter_context(_module("validate.studies.store").adding_to(folder, study))
+        store = stack.enter_context(needed("study", "validate.studies.store").adding_to(folder, study))
         recorded = store.tasks()
         missing = [task for task in study.tasks if task not in recorded]
         before = there = len(study.tasks) - len(missing)
@@ -280,15 +272,3 @@ def _worked_out(
             ending.status = findings.status
     console.show(findings.parts)
     return ending.status
-
-
-def _module(name: str) -> Any:
-    """A module that needs what the solvers do without.
-
-    Raises:
-        MissingPackage: that is not there.
-    """
-    try:
-        return import_module(name)
-    except ImportError as error:
-        raise MissingPackage("study", error) from None

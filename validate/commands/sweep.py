@@ -25,15 +25,18 @@ from pointcoord import (
 )
 from pointcoord.toml_text import read_file
 from validate.commands.usage import (
-    UsageError,
+    add_json,
+    add_output,
     add_quiet,
     add_scene,
     add_timings,
+    leave_output_to,
     load_scene,
     name_of,
     require_target,
     told_as,
 )
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -95,11 +98,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         type=_whole,
         help="of what is random; 0 if not given: the same designs each time",
     )
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help=f"every number, by the ending {' or '.join(ENDINGS)}; CSV on standard output for -",
+    add_output(
+        parser,
+        "FILE",
+        f"every number, by the ending {' or '.join(ENDINGS)}; CSV on standard output for -",
     )
     parser.add_argument(
         "--instants",
@@ -114,7 +116,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         default=256.0,
         help="what designs that are solved in one block may take; 256 if not given, whatever their number",
     )
-    parser.add_argument("--json", metavar="FILE", help="write the summary as JSON; - for standard output")
+    add_json(parser, "the summary")
     add_timings(parser)
     add_quiet(parser)
     parser.set_defaults(run=run)
@@ -130,7 +132,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Solve the designs, write them as they come, and say what came of them.
 
     Raises:
-        UsageError, UnknownEnding: the options do not go together, or a file has no name or ending.
+        UsageError: the options do not go together, or a file has no name or ending.
         MissingPackage: Parquet needs pyarrow.
         SceneError, SweepError, UnknownName: the scene is wrong, or makes no designs.
         OutputError: a result cannot be written.
@@ -184,9 +186,8 @@ def _target(options: argparse.Namespace, console: Console) -> str | None:
     """The file that `-o` names, found to be writable before anything is solved; None if there is none."""
     if options.output == options.json == "-":
         raise UsageError("-o - and --json - both take standard output; give one of them a file")
-    console.quiet, console.mute = options.quiet, "-" in (options.output, options.json)
-    if not console.quiet or console.mute:
-        console.require("use --quiet, with -o FILE or --json FILE")
+    advice = "use --quiet, with -o FILE or --json FILE"
+    leave_output_to((options.output, options.json), options, console, advice)
     target: str | None = None if options.output == "-" else options.output
     inputs = tuple(file for file in (options.scene, options.designs) if file)
     require_target(target, "-o", inputs)

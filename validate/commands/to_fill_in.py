@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import BinaryIO
-
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.files import require_known_ending, write_whole
+from validate.output.files import require_known_ending, write_content
 from validate.plain_text import shown
 
 ENDINGS = (".toml",)
@@ -17,14 +14,10 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
     """Write it, and say what to do.
 
     Raises:
-        UnknownEnding: it is not called .toml.
+        UsageError: it is not called .toml.
         OutputError: it cannot be written.
     """
     require_known_ending(target, ENDINGS)
-    write_whole(target, partial(_put, text.encode()))
+    write_content(target, text)
     console.complain(f"{shown(target)} was not there: it is written; fill it in, and run this again")
     return ExitStatus.WRONG_INPUT
-
-
-def _put(content: bytes, stream: BinaryIO) -> None:
-    stream.write(content)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pointcoord
 import validate
-from validate.commands.usage import UsageError
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 

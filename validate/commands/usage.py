@@ -9,21 +9,21 @@ import stat
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from pointcoord import Scene, SceneError
 from validate.ci.files import Files
+from validate.errors import UsageError
+from validate.extras import MissingPackage
 from validate.output.console import Console
-from validate.output.files import require_known_ending, require_writable
+from validate.output.files import require_known_ending, require_writable, write_content
 from validate.plain_text import shown
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
-
-
-class UsageError(Exception):
-    """The command line is wrong."""
 
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
@@ -43,6 +43,60 @@ def add_timings(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="write into the JSON when the run began and when it was written",
     )
+
+
+def add_json(parser: argparse.ArgumentParser, what: str) -> None:
+    """Results for other programs."""
+    parser.add_argument("--json", metavar="FILE", help=f"write {what} as JSON; - for standard output")
+
+
+def add_output(parser: argparse.ArgumentParser, metavar: str, help: str) -> None:
+    """Where the one result of a command goes."""
+    parser.add_argument("-o", "--output", metavar=metavar, help=help)
+
+
+def leave_output_to(
+    results: Collection[str | None], options: argparse.Namespace, console: Console, advice: str
+) -> None:
+    """Say nothing on standard output but the result that is to go there, if one is.
+
+    Args:
+        results: the targets of all results that may go there.
+        advice: what to do where standard output is closed.
+    Raises:
+        OutputError: it is closed and wanted.
+    """
+    console.quiet, console.mute = options.quiet, "-" in results
+    if not console.quiet or console.mute:
+        console.require(advice)
+
+
+def write_result(target: str | None, content: str | bytes, holds: str, console: Console) -> None:
+    """Write a result whole to its file, or to standard output for None or -.
+
+    Args:
+        holds: what it is, for the one who interrupts the program.
+    Raises:
+        OutputError: it cannot be written.
+    """
+    if target in (None, "-"):
+        console.write(content if isinstance(content, str) else content.decode())
+        console.flush()
+        return
+    write_content(target, content)
+    console.written.append(f"{target} holds {holds}")
+
+
+def needed(part: str, module: str, extra: str = "validate") -> Any:
+    """A module that needs packages that the solvers do without.
+
+    Raises:
+        MissingPackage: they are not there.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise MissingPackage(part, error, extra) from None
 
 
 def positive(what: str) -> Callable[[str], float]:
@@ -94,7 +148,7 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
     """The file that `-o` names, found to be writable before anything is solved; None is standard output.
 
     Raises:
-        UsageError, UnknownEnding: the file has no name, or one that does not say how to write it.
+        UsageError: the file has no name, or one that does not say how to write it.
         OutputError: it cannot be written.
     """
     target: str | None = None if options.output == "-" else options.output
@@ -151,9 +205,7 @@ def result_files(options: argparse.Namespace, read: Sequence[str], console: Cons
         other = by_place.setdefault(place, option)
         if other != option and {other, option} != {"--baseline", "--save-baseline"}:
             raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
-    console.quiet, console.mute = options.quiet, "-" in texts.values()
-    if not console.quiet or console.mute:
-        console.require("use --quiet, or --quiet --json FILE")
+    leave_output_to(texts.values(), options, console, "use --quiet, or --quiet --json FILE")
     return Files(options.junit, options.summary, options.save_baseline)
 
 

@@ -15,6 +15,7 @@ from pointcoord.effects.angle import WheelAngles
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from validate.closed_drawing import closed_drawing
+from validate.errors import UsageError
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -22,14 +23,6 @@ Read = Callable[[Motion, Samples], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
-
-
-class UnknownNumber(Exception):
-    """The words name no number of the scene, or more than can be drawn for them."""
-
-    def __init__(self, words: str, problem: str) -> None:
-        self.words = words
-        super().__init__(f"{shown(words)!r} {problem}")
 
 
 @dataclass(frozen=True)
@@ -182,17 +175,19 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     that are not needed; without a quantity the first that fits is meant, position before velocity.
 
     Raises:
-        UnknownNumber: they fit none, or numbers of more than one name.
+        UsageError: they fit none, or numbers of more than one name.
         NotComputed: the scene does not ask for it; the message says how to.
     """
     parts = tuple(words.split("."))
     fitting = [n for n in numbers if _in_order(parts, n.path)]
     fitting = [n for n in fitting if n.path[0] == fitting[0].path[0]]
     if not fitting:
-        raise UnknownNumber(words, f"is no number of this scene{_meant(words, numbers)}; {_there(numbers)}")
+        raise UsageError(
+            f"{shown(words)!r} is no number of this scene{_meant(words, numbers)}; {_there(numbers)}"
+        )
     if len({n.path[:2] for n in fitting}) > 1:
         some = ", ".join(dict.fromkeys(".".join(n.path[:2]) for n in fitting))
-        raise UnknownNumber(words, f"is more than one number; say which, such as {some}")
+        raise UsageError(f"{shown(words)!r} is more than one number; say which, such as {some}")
     for number in fitting:
         if number.missing is not None:
             raise number.missing

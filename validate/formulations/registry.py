@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
+from validate.errors import UsageError
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Formulation
@@ -14,14 +15,6 @@ from validate.paper.printed import PRINTED
 if TYPE_CHECKING:
     from validate.formulations.outside_programs import Engine
     from validate.peers.linkage import Linkage
-
-
-class UnknownFormulation(Exception):
-    """A name that no formulation has; the message lists those that exist."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-        super().__init__(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
 
 
 _POINT_COORDINATES: dict[str, Formulation] = {
@@ -62,7 +55,7 @@ def formulation(name: str) -> Formulation:
     """A formulation by its name; what it needs is imported when it is used.
 
     Raises:
-        UnknownFormulation: no formulation has this name.
+        UsageError: no formulation has this name.
         MissingPackage: a package that it needs is not installed, or does not load.
     """
     if name in _POINT_COORDINATES:
@@ -70,7 +63,7 @@ def formulation(name: str) -> Formulation:
     if name in OUTSIDE:
         return _outside(name)
     if name not in _IN_PINOCCHIO:
-        raise UnknownFormulation(name)
+        raise UsageError(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
     try:
         return _IN_PINOCCHIO[name]()
     except MissingPackage:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 
+from validate.errors import UsageError
 from validate.hard.case import Case
 from validate.hard.cases import (
     body_rates,
@@ -62,25 +63,17 @@ FEW_VALUES: Mapping[str, str] = {
 }
 
 
-class UnknownCase(Exception):
-    """A name that no case has; the message gives near names and how to list all."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-        # All names are in lower case.
-        near = get_close_matches(name.lower(), [case.name for case in CASES], n=3)
-        hint = f"; near names: {', '.join(near)}" if near else ""
-        super().__init__(f"no hard case is called {name!r}{hint}; pointcoord hard --list names all")
-
-
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:
     """The cases of these names in the order of the catalogue, or all without names.
 
     Raises:
-        UnknownCase: a name that no case has.
+        UsageError: a name that no case has.
     """
-    known = {case.name for case in CASES}
+    known = [case.name for case in CASES]
     for name in names:
         if name not in known:
-            raise UnknownCase(name)
+            # All names are in lower case.
+            near = get_close_matches(name.lower(), known, n=3)
+            hint = f"; near names: {', '.join(near)}" if near else ""
+            raise UsageError(f"no hard case is called {name!r}{hint}; pointcoord hard --list names all")
     return tuple(case for case in CASES if not names or case.name in names)

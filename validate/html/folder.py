@@ -8,18 +8,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
+from validate.errors import UsageError
 from validate.html.data import OF_COST, WORDS, data_files
 from validate.html.page import GENERATOR, page
 from validate.html.run import Run
-from validate.output.files import OutputError, require_writable, unwritable, write_whole
+from validate.output.files import require_writable, unwritable, write_whole
 
 PAGE = "index.html"
 # The mark of our pages is near their beginning.
 BEGINNING = 4096
-
-
-class NotOurs(OutputError):
-    """The folder holds a page that is no report, or is no folder."""
 
 
 def require_folder(folder: str) -> None:
@@ -28,14 +25,14 @@ def require_folder(folder: str) -> None:
     One that is not there is made and taken away again: a run that is stopped leaves nothing.
 
     Raises:
-        NotOurs: it is a file, or holds a page that this program did not make.
+        UsageError: it is a file, or holds a page that this program did not make.
         OutputError: it cannot be made or written.
     """
     place = Path(folder)
     made: list[Path] = []
     try:
         if place.exists() and not place.is_dir():
-            raise NotOurs(folder, "is a file; allowed: a folder, which is made if it is not there")
+            raise UsageError(f"{folder}: is a file; allowed: a folder, which is made if it is not there")
         made = [one for one in (place, *place.parents) if not one.exists()]
         place.mkdir(parents=True, exist_ok=True)
         old = place / PAGE
@@ -43,12 +40,12 @@ def require_folder(folder: str) -> None:
             with old.open("rb") as stream:
                 ours = f'content="{GENERATOR}"'.encode() in stream.read(BEGINNING)
             if not ours:
-                raise NotOurs(str(old), "is no report of this program; give another folder, or move it away")
+                raise UsageError(f"{old}: is no report of this program; give another folder, or move it away")
     except OSError as error:
         raise unwritable(folder, error) from None
     except ValueError as error:
         # A path with a zero byte in it.
-        raise NotOurs(folder, f"names no folder ({error})") from None
+        raise UsageError(f"{folder}: names no folder ({error})") from None
     try:
         for name in (*WORDS, PAGE):
             require_writable(os.path.join(folder, name))

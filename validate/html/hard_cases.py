@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pointcoord import PointcoordError
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.document import SCHEMA_VERSION
 from validate.plain_text import shown
@@ -17,19 +17,6 @@ from validate.plain_text import shown
 ALLOWED = "a file that `pointcoord hard --json FILE` wrote"
 # What reading other data than those of hard cases ends with.
 DAMAGED = (LookupError, TypeError, ValueError, AttributeError, RecursionError)
-
-
-class HardFileError(PointcoordError, ValueError):
-    """A file holds no hard cases.
-
-    Args:
-        file: it. problem: why not.
-    """
-
-    def __init__(self, file: str, problem: str) -> None:
-        self.file = file
-        self.problem = problem
-        super().__init__(f"--hard {file}: {problem}; allowed: {ALLOWED}")
 
 
 @dataclass(frozen=True)
@@ -154,26 +141,26 @@ def read_hard_cases(file: str) -> HardCases:
     """Read what a run of hard cases kept.
 
     Raises:
-        HardFileError: it holds none.
+        UsageError: it holds none.
     """
     try:
         document = json.loads(Path(file).read_bytes())
     except OSError as error:
-        raise HardFileError(shown(file), f"cannot be read ({error.strerror})") from None
+        raise _unusable(file, f"cannot be read ({error.strerror})") from None
     except (ValueError, RecursionError):
-        raise HardFileError(shown(file), "is no JSON") from None
+        raise _unusable(file, "is no JSON") from None
     if not isinstance(document, dict) or document.get("kind") != "hard":
-        raise HardFileError(shown(file), "holds no hard cases")
+        raise _unusable(file, "holds no hard cases")
     if document.get("schema_version") != SCHEMA_VERSION:
         version = shown(str(document.get("schema_version")))
-        raise HardFileError(
-            shown(file), f"is of schema version {version}, and this program reads {SCHEMA_VERSION}"
-        )
+        raise _unusable(file, f"is of schema version {version}, and this program reads {SCHEMA_VERSION}")
     if document.get("complete") is not True:
-        raise HardFileError(shown(file), "is of a run that did not come to its end")
+        raise _unusable(file, "is of a run that did not come to its end")
     try:
         return HardCases.of(document)
     except DAMAGED as error:
-        raise HardFileError(
-            shown(file), f"is damaged ({type(error).__name__}: {shown(str(error))})"
-        ) from None
+        raise _unusable(file, f"is damaged ({type(error).__name__}: {shown(str(error))})") from None
+
+
+def _unusable(file: str, problem: str) -> UsageError:
+    return UsageError(f"--hard {shown(file)}: {problem}; allowed: {ALLOWED}")

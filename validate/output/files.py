@@ -13,6 +13,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
+from validate.errors import UsageError
+
 
 class OutputError(Exception):
     """A result cannot be written where it was asked for.
@@ -28,18 +30,14 @@ class OutputError(Exception):
         super().__init__(f"{target}: {problem}")
 
 
-class UnknownEnding(OutputError):
-    """The name of a file does not say how to write it."""
-
-
 def require_known_ending(target: str, endings: Iterable[str]) -> None:
     """Refuse a name whose ending does not say how to write the file.
 
     Raises:
-        UnknownEnding: it is none of these.
+        UsageError: it is none of these.
     """
     if Path(target).suffix not in endings:
-        raise UnknownEnding(target, f"has no known ending; allowed: {', '.join(endings)}")
+        raise UsageError(f"{target}: has no known ending; allowed: {', '.join(endings)}")
 
 
 def unwritable(target: str, error: OSError) -> OutputError:
@@ -79,6 +77,20 @@ def write_whole(target: str, write: Callable[[BinaryIO], None]) -> None:
         _write_beside(target, write)
     except OSError as error:
         raise unwritable(target, error) from None
+
+
+def write_content(target: str, content: str | bytes) -> None:
+    """Write a file of a content at hand, see `write_whole`.
+
+    Raises:
+        OutputError: it cannot be written; what was there is whole.
+    """
+    data = content.encode() if isinstance(content, str) else content
+
+    def write(stream: BinaryIO) -> None:
+        stream.write(data)
+
+    write_whole(target, write)
 
 
 def _write_beside(target: str, write: Callable[[BinaryIO], None]) -> None:

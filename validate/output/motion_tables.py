@@ -167,7 +167,7 @@ def write_motion(target: str, motion: Motion, instants: int | None = None) -> No
     Args:
         instants: how many, evenly over the motion; its own if not given.
     Raises:
-        UnknownEnding: the ending is none of `ENDINGS`.
+        UsageError: the ending is none of `ENDINGS`.
         MissingPackage: Parquet needs pyarrow.
         OutputError: the file cannot be written; what was there is whole.
         NotComputed: instants are given, and the method knows the motion at its own only.

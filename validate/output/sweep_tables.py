@@ -157,7 +157,7 @@ def write_sweep(target: str, blocks: Blocks, count: int) -> None:
     Args:
         count: how many designs there are in all blocks.
     Raises:
-        UnknownEnding: the ending is none of `ENDINGS`.
+        UsageError: the ending is none of `ENDINGS`.
         MissingPackage: Parquet needs pyarrow.
         OutputError: the file cannot be written; what was there is whole.
         PointcoordError: as the blocks raise it.

@@ -16,16 +16,15 @@ from multiprocessing import resource_tracker
 from typing import Any
 
 from validate.comparison.examined import told_failure
+from validate.errors import UsageError
 from validate.extras import MissingPackage
 from validate.plain_text import one_line, shown
 from validate.studies.store import Store
 from validate.studies.study import (
-    ClusterLost,
-    NoCluster,
     Row,
     Study,
+    StudyStopped,
     Task,
-    TaskFailed,
     differences,
     made_by,
 )
@@ -54,9 +53,9 @@ def run(
     Args:
         told: how many of the tasks are recorded, whenever there are more.
     Raises:
-        NoCluster: a worker runs another program, or several tasks at once.
-        ClusterLost: the scheduler is gone, or a task ends its workers one after the other.
-        TaskFailed: a task raised an error.
+        UsageError: a worker runs another program, or several tasks at once.
+        StudyStopped: the scheduler is gone, or a task ends its workers one after the other.
+        StudyStopped: a task raised an error.
         OutputError: the records cannot be written.
     """
     distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
@@ -94,10 +93,10 @@ def _work_out(
     """How many tasks there are, and their rows, worked out in the process of a worker by one thread."""
     worker = import_module("distributed").get_worker()
     if told := differences(made_by(), program):
-        raise NoCluster(f"the worker {worker.address} runs something else: {told}; install the same there")
+        raise UsageError(f"the worker {worker.address} runs something else: {told}; install the same there")
     if worker.state.nthreads != 1:
         # What tasks share, such as the filter of warnings, they would share unguarded.
-        raise NoCluster(
+        raise UsageError(
             f"the worker {worker.address} takes {worker.state.nthreads} tasks at once, a study takes workers "
             "of one; start it with --nthreads 1"
         )
@@ -108,16 +107,16 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
     """The rows of a task, worked out here by one thread.
 
     Raises:
-        NoCluster: a package is not there. TaskFailed: the task raised an error.
+        UsageError: a package is not there. StudyStopped: the task raised an error.
     """
     began = time.perf_counter()
     try:
         with import_module("threadpoolctl").threadpool_limits(1):
             rows = examine(task)
     except ImportError as error:
-        raise NoCluster(f"worker {worker}: {error}") from error
+        raise UsageError(f"worker {worker}: {error}") from error
     except Exception as error:
-        raise TaskFailed(
+        raise StudyStopped(
             f"{' '.join(map(str, task))}: {type(error).__name__}: {told_failure(error)}"
         ) from error
     every = {**task._asdict(), "seconds": time.perf_counter() - began, "worker": worker}
@@ -130,20 +129,20 @@ def _result(future: Any, client: Any) -> tuple[int, list[Row]]:
     try:
         result: tuple[int, list[Row]] = future.result()
         return result
-    except (NoCluster, TaskFailed):
+    except (UsageError, StudyStopped):
         raise
     except distributed.KilledWorker as error:
-        raise ClusterLost(
+        raise StudyStopped(
             f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of "
             f"them {error.last_worker.address}; look into its log, and at its memory"
         ) from None
     except Exception as error:
         if isinstance(error, distributed.CancelledError) or client.status != "running":
-            raise ClusterLost(
+            raise StudyStopped(
                 "the scheduler does not answer any more; the same command goes on elsewhere"
             ) from None
         told = one_line(f"{type(error).__name__}: {error}")
-        raise NoCluster(
+        raise UsageError(
             f"a worker cannot run this program ({told}); it needs {INSTALL}, of this version"
         ) from None
 
@@ -156,7 +155,7 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
         workers: how many processes of this machine; as many as it has processors for us, if not given.
     Raises:
         MissingPackage: Dask is not there.
-        NoCluster: nothing answers, or there is no worker.
+        UsageError: nothing answers, or there is no worker.
     """
     distributed = quiet_dask()
     with ExitStack() as stack:
@@ -171,7 +170,7 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
         try:
             client.wait_for_workers(1, timeout=FIRST_WORKER)
         except TimeoutError:
-            raise NoCluster(
+            raise UsageError(
                 f"the scheduler {shown(address)} has no worker after {FIRST_WORKER:g} s; start one: "
                 f"dask worker {shown(address)} --nthreads 1"
             ) from None
@@ -199,7 +198,7 @@ def _local(distributed: Any, workers: int | None) -> Iterator[Any]:
     """Processes of this machine, one thread each; one that dies is started again.
 
     Raises:
-        NoCluster: they do not start.
+        UsageError: they do not start.
     """
     # A terminal sends Ctrl-C to all; who ends the workers is this program. Threads and processes that begin
     # here, and theirs, never see it. Whoever starts the tracker of multiprocessing would hear again.
@@ -219,7 +218,7 @@ def _local(distributed: Any, workers: int | None) -> Iterator[Any]:
         )
     except Exception as error:
         told = one_line(f"{type(error).__name__}: {error}")
-        raise NoCluster(f"processes of this machine do not start ({told}); try --workers 1") from None
+        raise UsageError(f"processes of this machine do not start ({told}); try --workers 1") from None
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
     try:
@@ -232,7 +231,7 @@ def _require_scheduler(distributed: Any, address: str) -> None:
     """See that a scheduler answers: a client of something else waits for ever.
 
     Raises:
-        NoCluster: none does.
+        UsageError: none does.
     """
 
     async def asked() -> Any:
@@ -253,7 +252,7 @@ def _require_scheduler(distributed: Any, address: str) -> None:
         told = "something else answers"
     except Exception as error:
         told = one_line(str(error)) or "no answer"
-    raise NoCluster(
+    raise UsageError(
         f"the scheduler {shown(address)} does not answer as a Dask scheduler ({told}, after "
         f"{time.monotonic() - began:.1f} s); give --scheduler an address such as tcp://HOST:8786, where dask "
         "scheduler runs, or leave it out"

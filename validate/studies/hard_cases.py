@@ -26,7 +26,7 @@ def hard(cases: Sequence[str] = ()) -> Study:
     else was measured there.
 
     Raises:
-        UnknownCase: there is no such case.
+        UsageError: there is no such case.
     """
     tasks = [Task(case.name, i) for case in chosen(cases) for i in range(len(case.values))]
     return Study(

@@ -22,9 +22,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from validate.errors import UsageError
 from validate.extras import MissingPackage
 from validate.output.files import unwritable, write_whole
-from validate.studies.study import RecordsError, Row, Study, Task, differences, made_by
+from validate.plain_text import shown
+from validate.studies.study import Row, Study, Task, differences, made_by
 
 HEAD, LOCK = "_study.json", "_lock"
 EVERY = {"part": "string", "number": "int64", "seconds": "float64", "worker": "string"}
@@ -54,7 +56,7 @@ class Store:
         """Those that need not be worked out again.
 
         Raises:
-            RecordsError: a file cannot be read.
+            UsageError: a file cannot be read.
         """
         return {Task(row["part"], row["number"]) for row in self._read(Task._fields)}
 
@@ -62,7 +64,7 @@ class Store:
         """The rows of tasks in their order, whenever they were worked out; of all tasks if none are given.
 
         Raises:
-            RecordsError: a file cannot be read.
+            UsageError: a file cannot be read.
         """
         found: dict[Task, list[Row]] = {}
         for row in self._read(tuple(self.columns)):
@@ -80,7 +82,7 @@ class Store:
                 here = {Task(row["part"], row["number"]) for row in rows}
             except (OSError, ValueError, KeyError) as error:
                 told = " ".join(str(error).split())
-                raise RecordsError(
+                raise _unusable(
                     self.folder,
                     f"{file.name} cannot be read as what this study records ({told}); delete this file to "
                     "work out its tasks again",
@@ -109,10 +111,10 @@ def look(folder: Path) -> Store:
     """The records that are in a folder, whoever made them, to be read only.
 
     Raises:
-        RecordsError: there are none.
+        UsageError: there are none.
     """
     if (store := _found(folder)) is None:
-        raise RecordsError(folder, "holds no records of a study; run the study first")
+        raise _unusable(folder, "holds no records of a study; run the study first")
     return store
 
 
@@ -123,7 +125,7 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
     A folder that is made here goes again if nothing comes into it.
 
     Raises:
-        RecordsError: they are of something else, another run adds to them now, or there is no room.
+        UsageError: they are of something else, another run adds to them now, or there is no room.
         OutputError: the folder takes no files.
     """
     _arrow("parquet")
@@ -133,9 +135,9 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
     if there is not None and there.files():
         _require_same(there, store)
     elif not new and not folder.is_dir():
-        raise RecordsError(folder, "is a file, and records take a folder; give another name")
+        raise _unusable(folder, "is a file, and records take a folder; give another name")
     elif not new and set(os.listdir(folder)) - {HEAD, LOCK}:
-        raise RecordsError(folder, "holds something else than records of a study; give another folder")
+        raise _unusable(folder, "holds something else than records of a study; give another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
@@ -165,23 +167,23 @@ def _put(file: Path, write: Any) -> None:
 
 def _require_same(there: Store, here: Store) -> None:
     if there.study != here.study:
-        raise RecordsError(there.folder, f"holds the study {there.study!r}, not {here.study!r}; {ANOTHER}")
+        raise _unusable(there.folder, f"holds the study {there.study!r}, not {here.study!r}; {ANOTHER}")
     if told := differences({**there.settings, **there.made_by}, {**here.settings, **here.made_by}):
-        raise RecordsError(there.folder, f"was begun with something else: {told}; {ANOTHER}")
+        raise _unusable(there.folder, f"was begun with something else: {told}; {ANOTHER}")
 
 
 def _take(lock: int, folder: Path) -> None:
     """Take the folder for this run alone; the lock goes with the process, however it ends.
 
     Raises:
-        RecordsError: another run has it.
+        UsageError: another run has it.
     """
     import fcntl
 
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise RecordsError(folder, "another run adds to them now; wait, or give another folder") from None
+        raise _unusable(folder, "another run adds to them now; wait, or give another folder") from None
     except OSError:
         pass  # A disk that knows no locks: a task that two runs work out counts once.
 
@@ -190,16 +192,16 @@ def _found(folder: Path) -> Store | None:
     """What a folder says that it holds; None if it says nothing.
 
     Raises:
-        RecordsError: it says something that this program does not know.
+        UsageError: it says something that this program does not know.
     """
     try:
         return Store(folder=folder, **json.loads((folder / HEAD).read_text(encoding="utf-8")))
     except (FileNotFoundError, NotADirectoryError):
         return None
     except OSError as error:
-        raise RecordsError(folder, f"{HEAD} cannot be read ({error.strerror}); {ANOTHER}") from None
+        raise _unusable(folder, f"{HEAD} cannot be read ({error.strerror}); {ANOTHER}") from None
     except (ValueError, TypeError):
-        raise RecordsError(folder, f"{HEAD} does not say what the records are of; {ANOTHER}") from None
+        raise _unusable(folder, f"{HEAD} does not say what the records are of; {ANOTHER}") from None
 
 
 def _arrow(module: str = "") -> Any:
@@ -212,3 +214,7 @@ def _arrow(module: str = "") -> Any:
         return import_module(f"pyarrow.{module}" if module else "pyarrow")
     except ImportError as error:
         raise MissingPackage("study", error, "cluster") from None
+
+
+def _unusable(folder: Path, problem: str) -> UsageError:
+    return UsageError(f"--records {shown(str(folder))}: {problem}")

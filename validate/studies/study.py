@@ -8,42 +8,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from validate.exit_status import ExitStatus
 from validate.output.document import code_digest, machine, program_version
 from validate.output.table import Part
-from validate.plain_text import shown
 
 Row = dict[str, Any]
 """A value for each column of its study; None, or no key, where it has none."""
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint")
 
 
-class RecordsError(Exception):
-    """A folder of records cannot be used.
-
-    Args:
-        folder: that it is. problem: why not, and what to do.
-    """
-
-    def __init__(self, folder: Path, problem: str) -> None:
-        self.folder = folder
-        self.problem = problem
-        super().__init__(f"--records {shown(str(folder))}: {problem}")
-
-
-class NoCluster(Exception):
-    """There is no cluster that could work out a study; the message says what to do."""
-
-
-class ClusterLost(Exception):
-    """A cluster that worked does not any more; the message says how."""
-
-
-class TaskFailed(Exception):
-    """A task raised an error; the message names both."""
+class StudyStopped(Exception):
+    """A study cannot go on: a task raised an error, or the cluster does not work any more."""
 
 
 class Task(NamedTuple):

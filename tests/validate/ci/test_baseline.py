@@ -14,12 +14,13 @@ from program import PAST_ITS_END, short_scene
 from pointcoord import Scene
 from validate import Outcome, Solution, compare
 from validate.ci import baseline as module
-from validate.ci.baseline import Baseline, BaselineError, Recorder, read_baseline
+from validate.ci.baseline import Baseline, Recorder, read_baseline
 from validate.ci.junit import junit
 from validate.ci.record import Record
 from validate.cli import main
 from validate.comparison.compare import compare_solutions
 from validate.comparison.examined import Examined
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 
@@ -228,7 +229,7 @@ def test_a_file_that_is_no_whole_baseline_is_refused_in_one_line(
 ) -> None:
     saved(tmp_path)
     damaged(tmp_path / "b.npz", how)
-    with pytest.raises(BaselineError) as caught:
+    with pytest.raises(UsageError) as caught:
         read_baseline(str(tmp_path / "b.npz"))
     assert words in str(caught.value)
     assert main(["validate", "steer", "--baseline", str(tmp_path / "b.npz")]) == 2

@@ -13,7 +13,8 @@ from pointcoord.effects.registry import EFFECTS
 from validate.cli import main
 from validate.commands import plot
 from validate.curves import picture
-from validate.curves.numbers import Curves, UnknownNumber, found, numbers_of, usual
+from validate.curves.numbers import Curves, found, numbers_of, usual
+from validate.errors import UsageError
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -192,7 +193,7 @@ def test_a_point_that_the_scene_does_not_report_is_said_how_to_have() -> None:
     for words in ("wheel_centre.z", "travel"):
         with pytest.raises(NotComputed, match="add 'wheel_centre' to the scene's points"):
             found(words, numbers_of(scene))
-    with pytest.raises(UnknownNumber, match="is more than one number"):
+    with pytest.raises(UsageError, match="is more than one number"):
         found("z", numbers_of(scene))
 
 

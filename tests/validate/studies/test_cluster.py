@@ -23,12 +23,13 @@ from counted_study import counted, without_who_and_how_long, worked_out
 from program import ENVIRONMENT, PROGRAM
 
 from validate.cli import main
+from validate.errors import UsageError
 from validate.extras import MissingPackage
 from validate.studies import cluster
 from validate.studies.hard_cases import hard
 from validate.studies.random_cars import random_cars
 from validate.studies.store import Store, adding_to, look
-from validate.studies.study import ClusterLost, NoCluster, Row, Task, TaskFailed, made_by
+from validate.studies.study import Row, StudyStopped, Task, made_by
 
 
 def cluster_of(threads_per_worker: int = 1, **options: Any) -> Any:
@@ -127,7 +128,7 @@ def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> 
 def test_a_worker_of_several_tasks_is_refused(tmp_path: Path) -> None:
     with (
         cluster_of(n_workers=1, threads_per_worker=2, processes=False) as other,
-        pytest.raises(NoCluster, match=r"takes 2 tasks at once.* --nthreads 1"),
+        pytest.raises(UsageError, match=r"takes 2 tasks at once.* --nthreads 1"),
     ):
         ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
 
@@ -136,14 +137,16 @@ def test_a_cluster_without_workers_is_refused(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(cluster, "FIRST_WORKER", 0.2)
     with (
         cluster_of(n_workers=0, processes=False) as other,
-        pytest.raises(NoCluster, match=r"has no worker after .* dask worker .* --nthreads 1"),
+        pytest.raises(UsageError, match=r"has no worker after .* dask worker .* --nthreads 1"),
     ):
         ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
 
 
 def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, tmp_path: Path) -> None:
     study, other = counted(6, tmp_path / "marks", wrong=5), SimpleNamespace(scheduler_address=address)
-    with pytest.raises(TaskFailed, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "):
+    with pytest.raises(
+        StudyStopped, match=r"^all 5: ZeroDivisionError: no square at counted_study\.py:\d+; "
+    ):
         ran(study, tmp_path / "records", other)
     assert {task.number for task in look(tmp_path / "records").tasks()} == {0, 1, 2, 3}
 
@@ -152,7 +155,7 @@ def test_a_package_that_a_worker_lacks_is_named_and_is_no_defect() -> None:
     def lacking(task: Task) -> list[Row]:
         raise MissingPackage("mujoco", ModuleNotFoundError(name="mujoco"), "peers")
 
-    with pytest.raises(NoCluster, match=r"^worker tcp://far:1: 'mujoco' needs the package .*peers\]'$"):
+    with pytest.raises(UsageError, match=r"^worker tcp://far:1: 'mujoco' needs the package .*peers\]'$"):
         cluster.rows_of(lacking, Task("scenes", 0), "tcp://far:1")
 
 
@@ -165,7 +168,7 @@ def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
         def result(self) -> None:
             raise killed
 
-    with pytest.raises(ClusterLost, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
+    with pytest.raises(StudyStopped, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
         cluster._result(Fatal(), None)
 
 
@@ -199,7 +202,7 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
             if done:
                 gone.close()
 
-        with pytest.raises(ClusterLost, match="does not answer any more; the same command goes on"):
+        with pytest.raises(StudyStopped, match="does not answer any more; the same command goes on"):
             ran(study, tmp_path / "records", gone, tell)
     store = look(tmp_path / "records")
     assert 0 < len(store.tasks()) == len(store.rows()) < 40

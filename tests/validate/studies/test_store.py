@@ -10,12 +10,13 @@ import pyarrow.dataset
 import pytest
 
 from validate.cli import main
+from validate.errors import UsageError
 from validate.output.files import OutputError
 from validate.studies import store
 from validate.studies.bounds import bounds
 from validate.studies.claims import claims
 from validate.studies.store import HEAD, Store, adding_to, look
-from validate.studies.study import RecordsError, Row, Study, Task
+from validate.studies.study import Row, Study, Task
 
 BOUNDS = bounds(3, 0, seed=5)
 
@@ -58,7 +59,7 @@ def test_others_read_the_folder_while_something_is_being_written(tmp_path: Path)
         assert pyarrow.dataset.dataset(str(tmp_path)).to_table().num_rows == 2
         assert list(pandas.read_parquet(tmp_path)["number"]) == [0, 1]
         assert len(look(tmp_path).tasks()) == 2
-        with pytest.raises(RecordsError, match="another run adds to them now"):
+        with pytest.raises(UsageError, match="another run adds to them now"):
             recorded(tmp_path, [2])
 
 
@@ -68,7 +69,7 @@ def test_others_read_the_folder_while_something_is_being_written(tmp_path: Path)
 )
 def test_records_of_something_else_are_not_gone_on_with(tmp_path: Path, other: Study, words: str) -> None:
     recorded(tmp_path, [0])
-    with pytest.raises(RecordsError, match="give another folder by --records") as caught:
+    with pytest.raises(UsageError, match="give another folder by --records") as caught:
         recorded(tmp_path, [1], study=other)
     assert words in str(caught.value)
 
@@ -79,7 +80,7 @@ def test_records_of_another_program_are_not_gone_on_with(
 ) -> None:
     mine = dict(recorded(tmp_path, [0]).made_by)
     monkeypatch.setattr(store, "made_by", lambda: {**mine, changed: "9.0"})
-    with pytest.raises(RecordsError, match=rf"{changed} .*, here 9\.0"):
+    with pytest.raises(UsageError, match=rf"{changed} .*, here 9\.0"):
         recorded(tmp_path, [1])
 
 
@@ -94,16 +95,16 @@ def test_a_run_that_recorded_nothing_leaves_nothing_and_holds_nobody_to_anything
 @pytest.mark.parametrize("head", ["[]", "{}", '{"study": 7}', "", '{"format": 1, "study": "bounds"}'])
 def test_a_folder_that_does_not_say_what_it_is_is_refused(tmp_path: Path, head: str) -> None:
     (tmp_path / HEAD).write_text(head)
-    with pytest.raises(RecordsError, match="give another folder"):
+    with pytest.raises(UsageError, match="give another folder"):
         recorded(tmp_path, [0])
 
 
 def test_nothing_is_put_beside_other_peoples_files(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("mine")
-    with pytest.raises(RecordsError, match="something else than records"):
+    with pytest.raises(UsageError, match="something else than records"):
         recorded(tmp_path, [0])
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
-    with pytest.raises(RecordsError, match="is a file"):
+    with pytest.raises(UsageError, match="is a file"):
         recorded(tmp_path / "thesis.txt", [0])
     with pytest.raises(OutputError, match="cannot be written"):
         recorded(tmp_path / "thesis.txt" / "below", [0])
@@ -114,7 +115,7 @@ def test_a_broken_file_is_named_with_what_to_do(tmp_path: Path) -> None:
     whole = there.files()[0].read_bytes()
     for broken in (whole[: len(whole) // 2], b"", b"number\n1\n"):
         there.files()[0].write_bytes(broken)
-        with pytest.raises(RecordsError, match=r"000000.parquet cannot be read .* delete this file"):
+        with pytest.raises(UsageError, match=r"000000.parquet cannot be read .* delete this file"):
             there.tasks()
 
 
