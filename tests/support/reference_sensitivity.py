@@ -117,7 +117,9 @@ def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> 
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
     places = {name: part_of(p, "value") for name, p in points.items()}
     axes = Axes.of(places, design, ball_vector)
-    slopes_of_effects = {name: effect.slope(axes) for name, effect in effects_of(axes).items()}
+    slopes_of_effects = {
+        name: arb(slope_of(effect.evaluate(axes))) for name, effect in effects_of(axes).items()
+    }
     effects = {name: slope for name, slope in slopes_of_effects.items() if slope.is_finite()}
     bounds = {
         quantity: max(x.rad() for vector in named.values() for x in vector)

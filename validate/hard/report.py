@@ -10,7 +10,7 @@ from typing import Any, get_args
 
 from validate.hard.case import OURS, Answer, Case, Expected, Outcome
 from validate.hard.run import MAP, Examined, as_expected, counts, refusals
-from validate.output.table import Part, Table, text_of
+from validate.output.table import Part, Table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SHORT = 90  # characters of a reason in a table
@@ -32,13 +32,8 @@ def listing(cases: Sequence[Case]) -> str:
     return "\n".join(lines)
 
 
-def case_text(result: Examined, every_value: bool = False) -> str:
-    """What came of a case: a row per formulation, and per value as well if asked for."""
-    return text_of(case_parts(result, every_value))
-
-
 def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
-    """The same with its tables apart."""
+    """What came of a case: a row per formulation, and per value as well if asked for."""
     case, values = result.case, result.case.values
     lines: list[Part] = [
         f"{case.name}: {case.why}",

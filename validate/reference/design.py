@@ -140,10 +140,6 @@ class Design:
         outboard = -1 if plain["side"] == "left" else 1
         return cls(exact, mechanism, table, origin, unit, z, y, outboard, _chosen(mechanism, table))
 
-    def with_table(self, table: Mapping[str, Vector]) -> Mechanism:
-        """The mechanism of points elsewhere, local: the same rows and unknowns with other coefficients."""
-        return compiled(self.plain, table, self.unit)
-
     @property
     def names(self) -> tuple[str, ...]:
         """The points that this car has."""
@@ -205,7 +201,7 @@ class Design:
 
 @lru_cache(maxsize=256)
 def _equations(design: Design, precision: int) -> Equations:
-    return equations_in(design.mechanism, design.chosen, lambda numbers: as_ball(numbers[0]))
+    return equations_in(design.mechanism, design.chosen, as_ball)
 
 
 def values_only(known: Known) -> Known:

@@ -72,46 +72,29 @@ class Equations:
 
 
 def equations_in(
-    mechanism: Mechanism,
-    rows: Sequence[int],
-    number: Callable[[Sequence[Fraction]], Scalar],
-    *moved: Mechanism,
+    mechanism: Mechanism, rows: Sequence[int], number: Callable[[Fraction], Scalar]
 ) -> Equations:
     """The equations with their coefficients in one kind of number.
 
     Args:
         rows: those that are solved, as many as unknowns.
-        number: the coefficient of that kind, from the exact one and the same one of each `moved` drawing.
+        number: a fraction in that kind.
     """
-    every = (mechanism, *moved)
 
-    def terms(polynomials: Sequence[Polynomial]) -> Terms:
-        monomials = {m: None for one in polynomials for m in one.terms}
-        ordered = sorted(monomials, key=lambda m: -len(m))
-        zero = Fraction(0)
-        return tuple((m, number([one.terms.get(m, zero) for one in polynomials])) for m in ordered)
+    def terms(one: Polynomial) -> Terms:
+        return tuple((m, number(one.terms[m])) for m in sorted(one.terms, key=lambda m: -len(m)))
 
-    def vector(vectors: Sequence[Vector]) -> tuple[Terms, Terms, Terms]:
-        x, y, z = (terms([v[axis] for v in vectors]) for axis in range(3))
-        return x, y, z
-
-    chosen = [[one.rows[row] for one in every] for row in rows]
-    entries = []
-    for i, row in enumerate(chosen):
-        for j in sorted({s for one in row for m in one.terms for s in m if s < mechanism.size}):
-            entries.append((i, j, terms([one.derivative(j) for one in row])))
+    chosen = [mechanism.rows[row] for row in rows]
     return Equations(
         size=mechanism.size,
         rows=tuple(terms(row) for row in chosen),
-        entries=tuple(entries),
-        places={name: vector([one.places[name] for one in every]) for name in mechanism.places},
-        frames={
-            name: (
-                vector([one.frames[name][0] for one in every]),
-                vector([one.frames[name][1] for one in every]),
-            )
-            for name in mechanism.frames
-        },
+        entries=tuple(
+            (i, j, terms(row.derivative(j)))
+            for i, row in enumerate(chosen)
+            for j in sorted({s for m in row.terms for s in m if s < mechanism.size})
+        ),
+        places={name: each(terms, place) for name, place in mechanism.places.items()},
+        frames={name: (each(terms, u), each(terms, v)) for name, (u, v) in mechanism.frames.items()},
     )
 
 

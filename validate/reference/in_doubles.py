@@ -31,7 +31,7 @@ ORDERS = 3  # a number, its rate and its acceleration
 @lru_cache(maxsize=64)
 def equations_in_doubles(design: Design) -> Equations:
     """The equations with their coefficients rounded to doubles."""
-    return equations_in(design.mechanism, design.chosen, lambda numbers: float(numbers[0]))
+    return equations_in(design.mechanism, design.chosen, float)
 
 
 def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> Known:

@@ -19,7 +19,7 @@ from validate.hard import trial
 from validate.hard.cars import paper_car
 from validate.hard.case import FAILS, IF_ANY, RIGHT, Answer, Case, Expected, Trial
 from validate.hard.classify import judged_answer
-from validate.hard.report import case_text, results_data, summary_parts
+from validate.hard.report import case_parts, results_data, summary_parts
 from validate.hard.run import as_expected, examine
 from validate.hard.trial import scene_case, try_scene
 from validate.output.document import json_text
@@ -204,8 +204,8 @@ def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
     )
     assert not as_expected([refused])
     assert refused.gives_up("absolute") == (1, Answer("absolute", "refused", "why"))
-    assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in case_text(refused)
-    assert "gives up at 0.1: why" in case_text(refused)
+    assert "NOT AS EXPECTED: absolute is refused at 0.1: why" in text_of(case_parts(refused))
+    assert "gives up at 0.1: why" in text_of(case_parts(refused))
     assert "NOT as expected: 1 answer, 0 wrong without a warning, in made." in text_of(
         summary_parts([refused])
     )
@@ -243,9 +243,10 @@ def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -
     mended = replace(
         result.trials[1], answers=(Answer("pointcoord", "right", share=math.nan), result.trials[1].answers[1])
     )
-    text = case_text(replace(result, trials=(result.trials[0], mended)), every_value=True)
+    tried = replace(result, trials=(result.trials[0], mended))
+    text = text_of(case_parts(tried, every_value=True))
     assert "absolute gives up at 131, before pointcoord, which never gives up." in text
-    data = results_data([replace(result, trials=(result.trials[0], mended))])
+    data = results_data([tried])
     written = json.loads(json_text(data))
     assert written["cases"][0]["trials"][1]["answers"][0]["share"] is None
     assert written["cases"][0]["expected"]["absolute"]["right_from"] is None

@@ -19,7 +19,7 @@ def exact_equations(name: str) -> tuple[Equations, int]:
     """The equations in fractions, and how many numbers of inputs they take."""
     design = DRAWINGS[name]()
     count = sum(len(drive.drawn()) for drive in design.mechanism.drives.values())
-    return equations_in(design.mechanism, design.chosen, lambda numbers: numbers[0]), count
+    return equations_in(design.mechanism, design.chosen, lambda number: number), count
 
 
 @pytest.mark.parametrize("name", DRAWINGS)

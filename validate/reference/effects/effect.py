@@ -88,10 +88,6 @@ class Effect:
         """The number."""
         return arb(value_of(self.evaluate(axes)))
 
-    def slope(self, axes: Axes) -> arb:
-        """Its derivative by the parameter of the duals; not finite where it has none."""
-        return arb(slope_of(self.evaluate(axes)))
-
 
 def angle(y: Scalar, x: Scalar) -> Scalar:
     """atan2(y, x), rad, of balls, of arrays or of duals of these."""
