@@ -192,11 +192,12 @@ class _Trial:
         def left(more: float) -> float:
             return self.left({i: _Change("", factor, more)})
 
-        def gaps(more: Array) -> Array | None:
-            gap = self._gaps({i: _Change("", factor, float(more[0]))})
+        def gaps(sets: Array) -> Array:
+            gap = np.stack([self._gaps({i: _Change("", factor, float(more))}) for (more,) in sets])
             # Rows out of reach say nothing of it; most of them must say something.
-            told = np.isfinite(gap) | ~self.there
-            return np.where(np.isfinite(gap), gap, 0.0).ravel() if told.mean() >= NEARLY_ALL else None
+            found = np.isfinite(gap)
+            enough = (found | ~self.there).mean(axis=(1, 2), keepdims=True) >= NEARLY_ALL
+            return np.where(found | enough, np.nan_to_num(gap), np.nan).reshape(len(sets), -1)
 
         nothing = np.zeros(self.theirs.size)
         starts = (fitted(gaps, [begin], STEP[s.meaning.unit], nothing) for begin in {0.0, drawn})

@@ -62,15 +62,13 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
         found = []
         for chosen in choices:
 
-            def moved(amounts: Array, chosen: Names = chosen) -> Array | None:
-                if np.abs(amounts).max() > farthest:
-                    return None
-                offsets = {name: np.array([a]) for name, a in zip(chosen, amounts.tolist(), strict=True)}
-                return np.asarray(_read(few, offsets, looked)[0])
+            def moved(amounts: Array, chosen: Names = chosen) -> Array:
+                near = np.clip(amounts, -farthest, farthest)
+                return _read(few, dict(zip(chosen, near.T, strict=True)), looked)
 
             amounts = fitted(moved, [0.0] * len(chosen), STEP, theirs)
-            numbers = None if amounts is None else moved(amounts)
-            if amounts is not None and numbers is not None:
+            if amounts is not None and np.abs(amounts).max() < farthest:
+                (numbers,) = moved(amounts[None])
                 found.append((float(np.linalg.norm(theirs - numbers)), chosen, amounts))
         done = False
         for left, chosen, amounts in found:

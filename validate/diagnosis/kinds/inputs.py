@@ -66,7 +66,11 @@ def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
                 taken[name][which] = value
             return {name: (k, m) for name, (k, m) in taken.items()}
 
-        found = fitted(lambda values: read(at(values)), [OURS[which] for _, which in places], STEP, theirs)
+        def numbers(sets: Array) -> Array:
+            found = [read(at(values)) for values in sets]
+            return np.stack([np.full(len(theirs), np.nan) if one is None else one for one in found])
+
+        found = fitted(numbers, [OURS[which] for _, which in places], STEP, theirs)
         if found is None:
             return None
         for i, (name, which) in enumerate(places):

@@ -40,11 +40,9 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
     if len(some) < 5:
         return
 
-    def read(shifts: Array) -> Array | None:
-        if abs(shifts[0]) > pad:
-            return None
-        found = _moved(motion, times[some] + whole + shifts[0])
-        return np.concatenate([found[row].ravel() for row in looked])
+    def read(shifts: Array) -> Array:
+        found = [_moved(motion, times[some] + whole + np.clip(shift, -pad, pad)) for (shift,) in shifts]
+        return np.stack([np.concatenate([one[row].ravel() for row in looked]) for one in found])
 
     flat = np.concatenate([evidence.given[row][some].ravel() for row in looked])
     rest = fitted(read, [0.0], 1e-4 * pad, flat)
