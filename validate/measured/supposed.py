@@ -201,9 +201,10 @@ class _Trial:
 
         nothing = np.zeros(self.theirs.size)
         starts = (fitted(gaps, [begin], STEP[s.meaning.unit], nothing) for begin in {0.0, drawn})
-        best = min((float(one[0]) for one in starts if one is not None), key=left, default=math.nan)
+        zeros = [float(one[0]) for one in starts if one is not None]
+        best = min(zeros, key=left, default=0.0)
         least = left(best)
-        if not least <= PROMISING:
+        if not zeros or not least <= PROMISING:
             return None
         rounded = (s.factor * round(best / s.factor, decimals) for decimals in range(7))
         more = next((one for one in rounded if left(one) <= CLOSE * least), best)
