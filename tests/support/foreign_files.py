@@ -5,13 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from decimal import Decimal
+from pathlib import Path
+from typing import Any
 
 from pointcoord import Scene
+from validate.hardpoint_files.importing import Imported, import_hardpoints
 
 Points = Mapping[str, tuple[float, float, float]]
 
 WISHBONE = Scene.load("double-wishbone")
 STRUT = Scene.load("off-axis-strut")
+CAR: Points = {n: place for n, place in WISHBONE.mechanism.points.items() if n != "rack_centre"}
 
 LOTUS = {
     "lower_arm_front": "Lower wishbone front pivot",
@@ -48,6 +52,18 @@ STATIC = {
     "CASTOR ANGLE": 4.94,
     "KINGPIN ANGLE": 7.0,
 }
+
+
+def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> Imported:
+    """What becomes of a file of such a text."""
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return import_hardpoints(path, **choices)
+
+
+def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
+    """The points of an imported scene."""
+    return {point.name: tuple(float(number) for number in point.place) for point in found.points}
 
 
 def lotus_report(points: Points = WISHBONE.mechanism.points, static: Mapping[str, float] = STATIC) -> str:

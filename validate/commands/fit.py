@@ -27,8 +27,7 @@ from validate.fitting.corrected import corrected_text
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
 from validate.fitting.record import data_of, table_of
 from validate.fitting.words import text_of, warnings_of_fit
-from validate.measured.map_to_fill_in import map_to_fill_in
-from validate.measured.mapping import read_results
+from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text
 from validate.output.files import require_known_ending, require_writable

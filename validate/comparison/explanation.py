@@ -11,7 +11,7 @@ class Explanation:
 
     Attributes:
         words: which numbers, and what was done to them.
-        kind: of fault, as its file in `diagnosis.kinds` calls it; two kinds joined by "and".
+        kind: of fault, as `diagnosis.kinds` calls it; two kinds joined by "and".
         quantities: whose numbers it explains: a quantity where it explains all that disagrees of it and
             undoes nothing that agrees, else quantity.name.
         leftover: the largest difference that is left when the fault is undone / what it is held to; more

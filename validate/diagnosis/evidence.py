@@ -5,7 +5,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -27,7 +27,6 @@ Array = NDArray[np.float64]
 Row = tuple[str, str]
 Rows = Mapping[Row, Array]
 
-EVENLY = 32  # instants of the telling ones
 MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
 # How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
 CLEAR = 4.0
@@ -51,7 +50,21 @@ def kind_of(row: Row) -> str:
     return QUANTITIES[row[0]].of
 
 
-def _told(amount: Array | float) -> str:
+def together(rows: Iterable[Row]) -> list[tuple[Row, ...]]:
+    """Rows whose numbers are looked at together: a quantity's vectors; each number of the car by itself."""
+    groups: dict[object, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(row if kind_of(row) == "car" else row[0], []).append(row)
+    return [tuple(some) for some in groups.values()]
+
+
+def axes_of(scene: Scene) -> CarAxes:
+    """The directions of a scene's car."""
+    part = scene.mechanism
+    return CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+
+
+def _in_digits(amount: Array | float) -> str:
     return f"{amount:.6g}" if np.ndim(amount) == 0 else f"({', '.join(f'{c:.6g}' for c in np.ravel(amount))})"
 
 
@@ -104,7 +117,6 @@ class Evidence:
         given, held: the numbers, (N, 3) or (N,).
         allowed: how far a given number may be from the one that it is held to, likewise.
         wrong: the rows that disagree.
-        only: keys of the faults that are to be looked at; None: all.
         over_time: whether the instants are times; else rows of a file, of inputs or travels.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
@@ -120,7 +132,6 @@ class Evidence:
     allowed: Rows
     wrong: tuple[Row, ...]
     solved: Solved
-    only: frozenset[Hashable] | None = None
     in_our_units: bool = True
     over_time: bool = True
     own: Rows = field(default_factory=dict)
@@ -181,44 +192,11 @@ class Evidence:
 
     def in_words(self, row: Row, amount: Array | float) -> str:
         """An amount of a row with its unit, and in the one that it is given in."""
-        said = f"{_told(amount)} {self.unit_of(row)}"
+        said = f"{_in_digits(amount)} {self.unit_of(row)}"
         if row not in self.theirs or not self.in_our_units:
             return said
         unit, factor = self.theirs[row]
-        return f"{said} ({_told(amount / factor)} {unit})"
-
-    def wants(self, key: Hashable) -> bool:
-        """Whether a fault is to be looked at."""
-        return self.only is None or key in self.only
-
-    def wanting(self, keys: Iterable[Hashable]) -> Evidence:
-        """The same for some faults only."""
-        return replace(self, only=frozenset(keys))
-
-    @cached_property
-    def telling(self) -> Evidence:
-        """The same at some instants: evenly, and where numbers are largest or farthest off.
-
-        Of each row where ours is largest, so that what is allowed of rounding is the same; of each quantity
-        and number of the car where both differ most, where that is most beside what is allowed, and where
-        theirs is largest.
-        """
-        count = len(self.times)
-        some = {*np.linspace(0, count - 1, min(EVENLY, count)).astype(int).tolist()}
-        most: dict[object, dict[str, tuple[float, int]]] = {}
-        for row in self.wrong:
-            held, given = (part[row].reshape(count, -1) for part in (self.held, self.given))
-            gap = np.abs(given - held)
-            some.add(int(np.argmax(np.abs(held).max(axis=1))))
-            kinds = most.setdefault(row if kind_of(row) == "car" else row[0], {})
-            allowed = (self.allowed[row] + self.own.get(row, 0.0)).reshape(count, -1)
-            for what, of in (("gap", gap), ("share", gap / allowed), ("theirs", np.abs(given))):
-                worst = np.nan_to_num(of, nan=np.inf).max(axis=1)
-                at = int(np.argmax(worst))
-                if what not in kinds or worst[at] > kinds[what][0]:
-                    kinds[what] = float(worst[at]), at
-        some |= {at for kinds in most.values() for _, at in kinds.values()}
-        return self.at(sorted(some))
+        return f"{said} ({_in_digits(amount / factor)} {unit})"
 
     def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
         """The same with other numbers to hold the given ones against: values, and what they may differ."""
@@ -244,10 +222,7 @@ class Evidence:
 
     def largest(self, quantity: str) -> float:
         """The largest held number of a quantity."""
-        if quantity not in self._largest:
-            some = [np.abs(self.held[row]).max(initial=0.0) for row in self.held if row[0] == quantity]
-            self._largest[quantity] = float(max(some))
-        return self._largest[quantity]
+        return max(float(np.abs(self.held[r]).max(initial=0.0)) for r in self.held if r[0] == quantity)
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
         """What is allowed of numbers that were computed again, from the held ones or from the drawing.
@@ -259,51 +234,56 @@ class Evidence:
         )
         return np.asarray(2.0 * self.allowed[row] + 8.0 * EPS * largest)
 
-    def share_apart(self, rows: tuple[Row, ...]) -> float | None:
-        """The largest difference of rows in parts of the largest held number; None where there is none."""
-        if rows not in self._apart:
-            finite = all(np.isfinite(self.given[row]).all() for row in rows)
-            most = max(float(np.abs(self.held[row]).max()) for row in rows)
-            apart = max(float(np.abs(self.given[row] - self.held[row]).max()) for row in rows)
-            self._apart[rows] = apart / most if finite and most > 0.0 else None
-        return self._apart[rows]
+    def by(self, motion: Motion) -> dict[Row, tuple[Array, Array]]:
+        """What each row would be of another motion, and how far from that it may be."""
+        samples = motion.at(self.times)
+        proven = motion.proof_of(samples, rates=True).proven
+        rows: dict[Row, tuple[Array, Array]] = {}
+        for row in self.held:
+            quantity, of = row
+            if of in samples.numbers[quantity]:
+                value = np.array(samples.numbers[quantity][of])
+                # These are off by their own bound, and by as much again for what numbers of its laws, such as
+                # a factor that is found, are rounded by.
+                bound = np.nan_to_num(proven[quantity][of], posinf=0.0)
+                rows[row] = (value, 2.0 * (self.rounded(row, value) + bound))
+        return rows
 
-    def distinct(self, rows: tuple[Row, ...]) -> int:
+    def distinct(self, rows: Sequence[Row]) -> int:
         """How many distinct numbers that are off rows have, beside one of each axis; the fewer of both sides.
 
         One number of each axis is none to tell anything by.
         """
-        if rows not in self._distinct:
-            self._distinct[rows] = min(
-                self._distinct_of(numbers, rows) for numbers in (self.held, self.given)
-            )
-        return self._distinct[rows]
+        counts = []
+        for numbers in self.both:
+            values: dict[int, list[Array]] = {}
+            steps: dict[int, float] = {}
+            for row in rows:
+                part = numbers[row].reshape(len(self.times), -1)
+                allowed = self.allowed[row] + self.own.get(row, 0.0)
+                off = ~(np.abs(self.given[row] - self.held[row]) <= allowed).reshape(part.shape)
+                # Two numbers of which each may be off by what is allowed, on both sides.
+                step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
+                for axis in range(part.shape[1]):
+                    values.setdefault(axis, []).append(part[off[:, axis], axis])
+                    steps[axis] = max(steps.get(axis, 0.0), step)
+            apart = (_apart_by(steps[axis], np.concatenate(some)) for axis, some in values.items())
+            counts.append(sum(max(count - 1, 0) for count in apart))
+        return min(counts)
 
-    def _distinct_of(self, numbers: Rows, rows: tuple[Row, ...]) -> int:
-        values: dict[int, list[Array]] = {}
-        steps: dict[int, float] = {}
-        for row in rows:
-            part = numbers[row].reshape(len(self.times), -1)
-            allowed = self.allowed[row] + self.own.get(row, 0.0)
-            off = ~(np.abs(self.given[row] - self.held[row]) <= allowed).reshape(part.shape)
-            # Two numbers of which each may be off by what is allowed, on both sides.
-            step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
-            for axis in range(part.shape[1]):
-                values.setdefault(axis, []).append(part[off[:, axis], axis])
-                steps[axis] = max(steps.get(axis, 0.0), step)
-        return sum(max(_apart_by(steps[axis], np.concatenate(some)) - 1, 0) for axis, some in values.items())
+    @property
+    def both(self) -> tuple[Rows, Rows]:
+        """The held and the given numbers."""
+        return self.held, self.given
 
-    @cached_property
-    def _apart(self) -> dict[tuple[Row, ...], float | None]:
-        return {}
-
-    @cached_property
-    def _largest(self) -> dict[str, float]:
-        return {}
-
-    @cached_property
-    def _distinct(self) -> dict[tuple[Row, ...], int]:
-        return {}
+    @property
+    def first_wrong(self) -> tuple[Row, ...]:
+        """Numbers of one unit that disagree: positions if there are any, then angles, else the first."""
+        for of in ("mm", "rad"):
+            best = [row for row in self.wrong if length_or_angle(row) == of and order(row) == 0]
+            if best:
+                return tuple(best)
+        return self.wrong_of(self.wrong[0][0])
 
     def wrong_of(self, quantity: str) -> tuple[Row, ...]:
         """The rows of a quantity that disagree."""
@@ -322,8 +302,7 @@ class Evidence:
     @cached_property
     def axes(self) -> CarAxes:
         """The car's directions."""
-        part = self.scene.mechanism
-        return CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+        return axes_of(self.scene)
 
     def places(self, point: str) -> Array | None:
         """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""

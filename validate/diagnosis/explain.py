@@ -10,18 +10,11 @@ wider, and would explain it by itself.
 
 The kinds that need only arithmetic come first, each alone; then those that solve other cars; then two faults
 in the same numbers.
-
-Of many instants some are looked at first (`Evidence.telling`; of rates by differences the first ones, without
-the end of these). A fault that explains all numbers explains those, and what is allowed of them is the same
-(of differences it is less by the rounding of the largest number, here SPARED times at most): none is lost
-that explains whole rows. One that lowers a difference WORTH times lowers it there too, where it is largest,
-but for how much smaller the largest number is that it makes of ours there: it is given up only where it
-lowers it less than WORTH / SPARED times. What is claimed is claimed of all instants.
 """
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
@@ -31,9 +24,9 @@ from pointcoord import PointcoordError, Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Outcome
 from validate.comparison.explanation import Explanation
-from validate.diagnosis.evidence import Evidence, Row, kind_of, order
+from validate.diagnosis.evidence import Evidence, Row, kind_of, order, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind
-from validate.diagnosis.kinds import kinds
+from validate.diagnosis.kinds import KINDS, OFFSET, UNIT
 from validate.formulations.protocol import Solution
 
 # By how many times a fault must lower a difference that it does not explain whole. What is fitted to noise
@@ -43,12 +36,7 @@ WORTH = 20.0
 ENOUGH = 1e3
 # By how many times another factor may leave less than a unit's own does, as one fitted to noise may.
 FITTED = 2.0
-# More instants than this are looked at in part first.
-MANY = 300
-UNIT = "unit"
 AND = ", and "  # between two faults
-SPARED = 10.0
-AHEAD = 64  # instants at the beginning, for kinds that look at neighbours
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
 
@@ -92,10 +80,10 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     """The same of numbers that are already beside each other."""
     if not evidence.wrong or not len(evidence.times):
         return ()
-    found = list(_supposed(evidence, _quick()))
-    if evidence.over_time and _open(evidence, found, mostly=True):
-        elsewhere = _elsewhere(evidence)
-        solving = [kind for kind in kinds() if kind.solves and (elsewhere or kind.in_place)]
+    quick = [kind for kind in KINDS if not kind.solves and not kind.last]
+    found = list(_supposed(evidence, quick))
+    if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
+        solving = [kind for kind in KINDS if kind.solves]
         deep = list(_supposed(evidence, [kind for kind in solving if kind.first]))
         if _open(evidence, deep):
             deep += _supposed(evidence, [kind for kind in solving if not kind.first])
@@ -104,13 +92,12 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
             # What other faults the same car has beside it.
             left = tuple(row for row in evidence.wrong if row not in one.rows)
             if left and one.whole:
-                after = evidence.after(one.hypothesis.rows, left)
-                found += _supposed(after, _quick())
+                found += _supposed(evidence.after(one.hypothesis.rows, left), quick)
     if left := _open(evidence, found):
         found += _pairs(replace(evidence, wrong=left))
     if left := _open(evidence, found):
-        found += _supposed(replace(evidence, wrong=left), [kind for kind in kinds() if kind.last])
-    return tuple(_told(evidence, one) for one in _best(_ranked(found)))
+        found += _supposed(replace(evidence, wrong=left), [kind for kind in KINDS if kind.last])
+    return tuple(_in_words(evidence, one) for one in _best(_ranked(found)))
 
 
 def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
@@ -121,10 +108,6 @@ def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
     one, two = outcome.solutions
     held, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
     return explain(scene, given, held, outcome)
-
-
-def _quick() -> list[Kind]:
-    return [kind for kind in kinds() if not kind.solves and not kind.last and not kind.follows]
 
 
 def _elsewhere(evidence: Evidence) -> bool:
@@ -143,45 +126,24 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
 
 
 def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
-    """What the numbers carry of the faults of some kinds; the same fault of several quantities is one."""
+    """What the numbers carry of the faults of some kinds."""
     for kind in some:
-        if kind.of_time and not evidence.over_time:
-            continue
-        here = evidence
-        # A car that cannot be solved, or gives no such numbers, explains nothing.
-        with suppress(PointcoordError):
-            if kind.reach is not None and len(evidence.times) > MANY:
-                here = evidence.wanting(_promising(evidence, kind, kind.reach))
-                if not here.only:
-                    continue
-            for one in _merged(kind, here).values():
-                carried = _carried(evidence, one) if here.wants(one.key) else None
-                if carried is not None:
-                    yield carried
+        if evidence.over_time or not kind.of_time:
+            # A car that cannot be solved, or gives no such numbers, explains nothing.
+            with suppress(PointcoordError):
+                for one in _merged(kind, evidence):
+                    if (carried := _carried(evidence, one)) is not None:
+                        yield carried
 
 
-def _merged(kind: Kind, evidence: Evidence) -> dict[Hashable, Hypothesis]:
-    """The faults of a kind by their keys."""
+def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
+    """The faults of a kind; the same fault of several quantities is one."""
     merged: dict[Hashable, Hypothesis] = {}
-    for one in kind.hypotheses(evidence):
+    for one in kind.suppose(evidence):
         known = merged.get(one.key)
-        merged[one.key] = one if known is None else replace(known, rows={**known.rows, **one.rows})
-    return merged
-
-
-def _promising(evidence: Evidence, kind: Kind, reach: int) -> Iterator[Hashable]:
-    """The keys of faults that may explain something of all instants, by some of these."""
-    few = evidence.at(range(AHEAD + reach)) if reach else evidence.telling
-    count = len(few.times) - reach
-    for key, one in _merged(kind, few).items():
-        seen = few.at(range(count)) if reach else few
-        rows = {row: (value[:count], allowed[:count]) for row, (value, allowed) in one.rows.items()}
-        wrong = [row for row in rows if row in evidence.wrong]
-        enough = SPARED if reach else 1.0
-        if any(seen.left(row, *rows[row]) <= enough for row in wrong) or any(
-            _lowered(seen, replace(one, rows=rows), group) * SPARED >= WORTH for group in _together(wrong)
-        ):
-            yield key
+        rows = one.rows if known is None else {**known.rows, **one.rows}
+        merged[one.key] = replace(one, kind=kind.name, rows=rows)
+    return merged.values()
 
 
 def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
@@ -194,17 +156,16 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
                 left[row] = share
         elif hypothesis.whole and share > 1.0:
             return None
+    fitted = hypothesis.fitted
     exact = [row for row, share in left.items() if share <= 1.0]
-    exact = [row for some in _together(exact) if _decided(evidence, some, hypothesis.fitted) for row in some]
+    exact = [row for some in together(exact) if evidence.distinct(some) > fitted for row in some]
     if exact:
         return _Found(hypothesis, tuple(exact), max(left[row] for row in exact), np.inf)
-    if hypothesis.aside:
-        return None
-    lowered = {tuple(some): _lowered(evidence, hypothesis, some) for some in _together([*left])}
+    lowered = {some: _lowered(evidence, hypothesis, some) for some in together(left)}
     partly = {
-        rows: factor
-        for rows, factor in lowered.items()
-        if factor >= WORTH and _decided(evidence, rows, hypothesis.fitted)
+        some: factor
+        for some, factor in lowered.items()
+        if factor >= WORTH and evidence.distinct(some) > fitted
     }
     if not partly:
         return None
@@ -219,20 +180,19 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
     zeros leave more than it does (of a unit with an offset, one number), and none has another unit whose
     factor is not the one that fits them best.
     """
-    before = evidence.share_apart(tuple(rows))
-    if before is None:
-        return 0.0
-    then, theirs = (
+    would_be = {row: hypothesis.rows[row][0] for row in rows}
+    ours, theirs, then = (
         np.concatenate([part[row].reshape(len(evidence.times), -1) for row in rows])
-        for part in ({row: hypothesis.rows[row][0] for row in rows}, evidence.given)
+        for part in (*evidence.both, would_be)
     )
-    faults = hypothesis.kind.split(" and ")
-    apart, most = float(np.abs(theirs - then).max()), float(np.abs(then).max())
-    if not most > 0.0:
+    largest, most = float(np.abs(ours).max()), float(np.abs(then).max())
+    if not np.isfinite(theirs).all() or not largest > 0.0 or not most > 0.0:
         return 0.0
+    before, apart = float(np.abs(theirs - ours).max()) / largest, float(np.abs(theirs - then).max())
     if not apart > 0.0:
         return np.inf
-    nothing = theirs - theirs.mean(axis=0) if UNIT in faults and "offset" in faults else theirs
+    faults = hypothesis.kind.split(" and ")
+    nothing = theirs - theirs.mean(axis=0) if UNIT in faults and OFFSET in faults else theirs
     lowered = min(before * most / apart, float(np.abs(nothing).max()) / apart)
     if UNIT in faults:
         factor = float(np.sum(then * theirs) / np.sum(then * then))
@@ -241,73 +201,51 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
     return lowered
 
 
-def _together(rows: Sequence[Row]) -> list[list[Row]]:
-    """Rows whose numbers are looked at together: a quantity's vectors; each number of the car by itself."""
-    groups: dict[object, list[Row]] = {}
-    for row in rows:
-        groups.setdefault(row if kind_of(row) == "car" else row[0], []).append(row)
-    return list(groups.values())
-
-
-def _decided(evidence: Evidence, rows: Sequence[Row], fitted: int) -> bool:
-    """Whether rows have enough distinct numbers that are off to tell one fault from another."""
-    return evidence.distinct(tuple(rows)) > fitted
-
-
 def _pairs(evidence: Evidence) -> Iterator[_Found]:
     """Two faults in the same numbers: the second in what the first makes of ours."""
-    opening = [kind for kind in kinds() if kind.opens and (evidence.over_time or not kind.of_time)]
-    closing = [kind for kind in kinds() if kind.closes]
     count = len(evidence.times)
     few = np.unique(np.linspace(0, count - 1, min(FEW, count)).astype(np.intp))
     largest = [
-        max(rows, key=lambda row: np.abs(evidence.held[row]).max()) for rows in _together(evidence.wrong)
+        max(rows, key=lambda row: np.abs(evidence.held[row]).max()) for rows in together(evidence.wrong)
     ]
     thin = replace(evidence.at(few.tolist()), wrong=tuple(largest))
-    for first in opening:
-        promising = _seconds(thin, first, closing)
-        if promising:
-            yield from _seconds(evidence, first, closing, promising).values()
+    for first in KINDS:
+        if first.opens and (evidence.over_time or not first.of_time):
+            promising = {key for key, _ in _seconds(thin, first)}
+            yield from _seconds(evidence, first, promising).values()
 
 
 def _seconds(
-    evidence: Evidence,
-    first: Kind,
-    closing: Sequence[Kind],
-    only: Iterable[tuple[Hashable, Hashable]] | None = None,
+    evidence: Evidence, first: Kind, promising: Collection[Hashable] | None = None
 ) -> dict[tuple[Hashable, Hashable], _Found]:
-    """What a fault of one kind and another of other kinds explain, by both faults.
+    """What a fault of one kind and another one after it explain together, by both faults.
 
     Args:
-        only: the pairs to try.
+        promising: the keys of the first faults to try; None: all.
     """
-    wanted = None if only is None else set(only)
-    firsts = None if wanted is None else {pair[0] for pair in wanted}
-    begun = _merged(first, evidence if firsts is None else evidence.wanting(firsts))
     found: dict[tuple[Hashable, Hashable], _Found] = {}
-    for one in begun.values():
-        if firsts is not None and one.key not in firsts:
+    if promising is not None and not promising:
+        return found
+    for one in _merged(first, evidence):
+        if promising is not None and one.key not in promising:
             continue
         wrong = tuple(row for row in evidence.wrong if row in one.rows)
-        after = replace(evidence.after(one.rows, wrong), only=None, in_our_units=first.name != UNIT)
-        for kind in closing:
-            if kind.name == first.name or (kind.follows and first.name not in kind.follows):
+        after = replace(evidence.after(one.rows, wrong), in_our_units=first.name != UNIT)
+        for kind in KINDS:
+            if not kind.closes or kind.name == first.name:
                 continue
-            for two in kind.hypotheses(after):
-                key = (one.key, (kind.name, two.key))
-                if wanted is not None and two.fitted == 0 and key not in wanted:
-                    continue
-                both = Hypothesis(
+            for two in _merged(kind, after):
+                both = replace(
+                    two,
                     kind=f"{first.name} and {kind.name}",
-                    key=key,
                     words=f"{one.words}{AND}{two.words}",
-                    rows={**(found[key].hypothesis.rows if key in found else {}), **two.rows},
                     fitted=one.fitted + two.fitted,
                     cost=one.cost + two.cost + 1.0,
+                    looser=False,
                 )
                 carried = _carried(evidence, both)
                 if carried is not None and _needed(evidence, one, carried):
-                    found[key] = carried
+                    found[one.key, (kind.name, two.key)] = carried
     return found
 
 
@@ -322,8 +260,7 @@ def _ranked(found: Iterable[_Found]) -> list[_Found]:
 
     def place(one: _Found) -> tuple[float, ...]:
         decades = 0.0 if one.whole else -np.floor(np.log10(min(one.lowered, 1e300)))
-        aside = one.hypothesis.aside
-        return (aside, not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
+        return (not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
 
     return sorted(found, key=place)
 
@@ -373,7 +310,7 @@ def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
     return False
 
 
-def _told(evidence: Evidence, found: _Found) -> Explanation:
+def _in_words(evidence: Evidence, found: _Found) -> Explanation:
     quantities: list[str] = []
     said: list[str] = []
     for quantity in evidence.wrong_quantities:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -72,15 +72,15 @@ class Format:
     known_by: str
     axes: Axes
     unit: str
-    side: str
-    axes_told_by: str
-    vocabulary: Vocabulary | None
-    refused: str
-    refused_words: str
-    angles: Mapping[str, str]
     not_needed: tuple[str, ...]
-    our_own_names: bool
     suspensions: Mapping[str, Names]
+    side: str = ""
+    axes_told_by: str = ""
+    vocabulary: Vocabulary | None = None
+    refused: str = ""
+    refused_words: str = ""
+    angles: Mapping[str, str] = field(default_factory=dict)
+    our_own_names: bool = False
 
     def called(self, said: str) -> str | None:
         """Our type of the suspension that a file calls so; None if it is none of ours."""
@@ -125,32 +125,27 @@ def formats() -> Mapping[str, Format]:
     return {one.name: one for one in sorted(found, key=lambda one: (not one.known_by, one.name))}
 
 
-def _format(name: str, table: Mapping[str, Any]) -> Format:
+def _format(name: str, table: dict[str, Any]) -> Format:
+    suspensions = {
+        kind: Names(
+            own.get("called", {}),
+            {ours: tuple(theirs) for ours, theirs in own["names"].items()},
+            tuple(own.get("notes", ())),
+        )
+        for kind, own in table.pop("suspensions").items()
+    }
+    refused = table.pop("refused", {})
+    idle = table.pop("idle", {}).get("words", [])
+    if "vocabulary" in table:
+        table["vocabulary"] = Vocabulary.of(table["vocabulary"], idle)
     return Format(
         name=name,
-        words=table["words"],
-        form=table["form"],
-        known_by=table["known_by"],
-        axes=Axes.of(table["axes"]),
-        unit=table["unit"],
-        side=table.get("side", ""),
-        axes_told_by=table.get("axes_told_by", ""),
-        vocabulary=Vocabulary.of(table["vocabulary"], table["idle"]["words"])
-        if "vocabulary" in table
-        else None,
-        refused=table.get("refused", {}).get("known_by", ""),
-        refused_words=table.get("refused", {}).get("words", ""),
-        angles=table.get("angles", {}),
-        not_needed=tuple(table.get("not_needed", {}).get("names", ())),
-        our_own_names=table.get("our_own_names", False),
-        suspensions={
-            kind: Names(
-                called=own.get("called", {}),
-                names={ours: tuple(theirs) for ours, theirs in own["names"].items()},
-                notes=tuple(own.get("notes", ())),
-            )
-            for kind, own in table["suspensions"].items()
-        },
+        axes=Axes.of(table.pop("axes")),
+        not_needed=tuple(table.pop("not_needed", {}).get("names", ())),
+        suspensions=suspensions,
+        refused=refused.get("known_by", ""),
+        refused_words=refused.get("words", ""),
+        **table,
     )
 
 

@@ -177,8 +177,9 @@ class _Import:
         values = self.values(part, side_said)
         self.require_all(kind, topology, words, ours, others, axis, values)
         doubts = list(self.contents.doubts.get(part, ()))
-        (axes, axes_by), unit = self.axes(topology, ours, side_said), self.unit()
-        doubts += self.against_axes(axes, axes_by, topology, ours)
+        axes, axes_by, doubted = self.axes(topology, ours, side_said)
+        unit = self.unit()
+        doubts += doubted
         doubts += self.against_unit(unit, ours)
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
         side = self.side(side_said, topology, turned, axes)
@@ -437,8 +438,36 @@ class _Import:
 
     # Axes, unit and side, and what speaks against them.
 
-    def axes(self, topology: Topology, ours: Mapping[str, FilePoint], side: str) -> tuple[Axes, str]:
-        """Where x, y and z point, and who says so; points under our own names have our own axes."""
+    def axes(
+        self, topology: Topology, ours: Mapping[str, FilePoint], side: str
+    ) -> tuple[Axes, str, list[str]]:
+        """Where x, y and z point, who says so, and the doubts of it.
+
+        Axes that nobody said and the car's points speak against are refused; those of the user are doubted.
+        """
+        said, by = self.axes_said(ours)
+        seen, outboard, words = self.seen(topology, ours)
+        # Which way is left no point shows: it decides which wheel this is.
+        both = [] if seen is None else [seen, seen.other_handed]
+        ways = [(one.option, SIDES[one.to_scene(outboard, "mm")[1] > 0]) for one in both]
+        if said is None:
+            told = "does not say where x, y and z point"
+            if seen is None:
+                raise self.refuse(told, f"--axes with {ALLOWED}")
+            # A wheel of a known side shows it.
+            known = self.choices.side or side
+            some = [f"--axes {one} of a {wheel} wheel" for one, wheel in ways if known in ("", wheel)]
+            raise self.refuse(told, f"{' or '.join(some)}, as {words} lie; or others, if they are so")
+        if seen is None or _same_but_for_left(said, seen):
+            return said, by, []
+        told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
+        if self.choices.axes is not None:
+            return said, by, [f"{told}: are these the right axes and names?"]
+        every = " or ".join(f"--axes {one} of a {wheel} wheel" for one, wheel in ways)
+        raise self.refuse(told, f"{every} if that is so, --axes {said.option} if not")
+
+    def axes_said(self, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, str]:
+        """The axes that somebody says, and who; points under our own names have our own axes."""
         if self.choices.axes is not None:
             return Axes.of(self.choices.axes), "--axes"
         if self.contents.axes:
@@ -447,37 +476,27 @@ class _Import:
         if self.format.our_own_names and all(self.is_our_own(*one) for one in read.items()):
             return OUR_AXES, "its points' names, which are ours"
         told_by = self.format.axes_told_by
-        telling = (
-            [point for point in read.values() if re.fullmatch(told_by, plain(point.name))] if told_by else []
-        )
-        if not told_by or telling:
-            return self.format.axes, f"names such as {short(telling[0].name)}" if telling else "its format"
-        told = "does not say where x, y and z point"
-        seen, outboard, words = self.seen(topology, ours)
-        if seen is None:
-            raise self.refuse(told, f"--axes with {ALLOWED}")
-        # Which way is left no point shows; a wheel of a known side does.
-        ways = [
-            f"--axes {one.option} of a {wheel} wheel"
-            for one in (seen, seen.other_handed)
-            for wheel in [_seen_side(one, outboard)]
-            if wheel == (self.choices.side or side or wheel)
-        ]
-        raise self.refuse(told, f"{' or '.join(ways)}, as {words} lie; or others, if they are so")
+        if not told_by:
+            return self.format.axes, "its format"
+        telling = [point for point in read.values() if re.fullmatch(told_by, plain(point.name))]
+        return (self.format.axes, f"names such as {short(telling[0].name)}") if telling else (None, "")
 
     def seen(self, topology: Topology, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, Place, str]:
         """The axes in which a car's points lie as these, where outboard is, and what shows it.
 
         There are none where the mechanism does not say which points lie so.
         """
-        outboard = _difference(ours[topology.wheel_centre].place, ours[topology.inboard].place)
+
+        def difference(one: str, other: str) -> Place:
+            (a, b, c), (d, e, f) = ours[one].place, ours[other].place
+            return a - d, b - e, c - f
+
+        outboard = difference(topology.wheel_centre, topology.inboard)
         if not (topology.front_and_rear and topology.steering_axis):
             return None, outboard, ""
         (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
-        forward, upward = (
-            _difference(ours[one].place, ours[other].place) for one, other in ((front, rear), (high, low))
-        )
-        return axes_seen(forward, upward), outboard, f"{front} seen from {rear} and {high} from {low}"
+        words = f"{front} seen from {rear} and {high} from {low}"
+        return axes_seen(difference(front, rear), difference(high, low)), outboard, words
 
     def is_our_own(self, ours: str, point: FilePoint) -> bool:
         """Whether a point of the file has our own name as we write it, with or without a side and an axle."""
@@ -499,23 +518,6 @@ class _Import:
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm"
         )
-
-    def against_axes(
-        self, axes: Axes, axes_by: str, topology: Topology, ours: Mapping[str, FilePoint]
-    ) -> list[str]:
-        """Refuse axes that nobody said and the car's points speak against; doubt those of the user."""
-        seen, outboard, words = self.seen(topology, ours)
-        if seen is None or _same_but_for_left(axes, seen):
-            return []
-        told = f"has axes {axes.words} by {axes_by}, but {words} lie as in {seen.words}"
-        if self.choices.axes is not None:
-            return [f"{told}: are these the right axes and names?"]
-        # Which way is left no point shows: it decides which wheel this is.
-        ways = [
-            f"--axes {one.option} of a {_seen_side(one, outboard)} wheel" for one in (seen, seen.other_handed)
-        ]
-        allowed = f"{' or '.join(ways)} if that is so, --axes {axes.option} if not"
-        raise self.refuse(told, allowed)
 
     def against_unit(self, unit: str, ours: Mapping[str, FilePoint]) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
@@ -602,15 +604,6 @@ def _same_but_for_left(axes: Axes, seen: Axes) -> bool:
     return said - sideways == shown - sideways and same_line
 
 
-def _seen_side(axes: Axes, outboard: Place) -> str:
-    """The wheel whose outboard direction this is, in these axes."""
-    return SIDES[axes.to_scene(outboard, "mm")[1] > 0]
-
-
 def _some(words: Sequence[str]) -> str:
     """The first of many."""
     return ", ".join(words[:12]) + (f" and {len(words) - 12} more" if len(words) > 12 else "")
-
-
-def _difference(one: Place, other: Place) -> Place:
-    return one[0] - other[0], one[1] - other[1], one[2] - other[2]

@@ -36,11 +36,11 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
+from pointcoord.effects.angle import Angle
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.linkage.car_axes import CarAxes
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
-from validate.diagnosis.evidence import Evidence, Solved
+from validate.diagnosis.evidence import Evidence, Solved, axes_of
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
@@ -100,9 +100,7 @@ class Held:
     @property
     def gap(self) -> Array:
         """Difference of every number, (N,), NaN where there is none."""
-        gap = np.abs(self.series.values - self.ours)
-        # Whole turns apart is the same angle.
-        return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if self.series.meaning.unit == "rad" else gap
+        return _apart(self.series.values, self.ours, self.series)
 
     @property
     def counts(self) -> tuple[int, int]:
@@ -399,18 +397,6 @@ def _on_the_grid(scene: Scene, times: Array) -> Scene:
     return there if times[-1] > times[0] and even else scene
 
 
-def as_solution(measured: Measured, scene: Scene, accuracy: float | None = None) -> Solution:
-    """A file as a solution; what it claims of each number is the tolerance above.
-
-    Its times are those of `DataOutcome.outcome`; components that the file does not give are NaN, and claim 0.
-
-    Raises:
-        FileError, PointcoordError: see `compare_results`.
-    """
-    held, _, _ = _held(measured, scene, accuracy)
-    return _solution(measured, held, measured.source)
-
-
 def _held(
     measured: Measured, scene: Scene, accuracy: float | None, poses: Poses | None = None
 ) -> tuple[list[Held], Solution, tuple[str, ...]]:
@@ -427,52 +413,45 @@ def _held(
     stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
     if unsaid:
         notes.append(_granted(unsaid, measured, scene))
-    around: list[tuple[bool, Found, Found]] = []
+    around: list[tuple[bool, list[Found]]] = []
     for i, s in enumerate((*measured.independent, *measured.rates)):
         off = s.off
         if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
             off = off + scene.tolerance
         if off.any():
             ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
-            sides = [poses.at(end[:first], end[first:]) for end in ends]
-            around.append((not s.said and bool(s.off.any()), sides[0], sides[1]))
-    found, unknown = [], []
+            around.append((not s.said and bool(s.off.any()), [poses.at(e[:first], e[first:]) for e in ends]))
     largest: dict[tuple[str, str], float] = {}
     for s in measured.numbers:
         of = s.meaning.quantity, s.meaning.per
         largest[of] = max(largest.get(of, 0.0), float(np.nanmax(np.abs(s.values), initial=0.0)))
+    found, nothing = [], np.zeros(len(values[0]))
     for s in measured.numbers:
         mine, bound = ours_of(s, here, scene)
-        if mine is None or bound is None:
-            unknown.append(s)
-        swing, supposed = np.zeros(len(values[0])), np.zeros(len(values[0]))
-        for unstated, *pair in around:
-            change = [np.zeros_like(swing)]
-            for side in pair:
-                there = ours_of(s, side, scene)[0]
-                if there is not None and mine is not None:
-                    change.append(np.nan_to_num(_turned(np.abs(there - mine), s)))
-            swing = swing + np.max(change, axis=0)
-            supposed = supposed + unstated * np.max(change, axis=0)
-        ours = np.full(len(swing), np.nan) if mine is None else mine
+        swing, supposed = nothing, nothing
+        for unstated, sides in around:
+            there = [ours_of(s, side, scene)[0] for side in sides]
+            gaps = [np.nan_to_num(_apart(t, mine, s)) for t in there if t is not None and mine is not None]
+            change = np.max([nothing, *gaps], axis=0)
+            swing, supposed = swing + change, supposed + unstated * change
+        ours = np.full(len(nothing), np.nan) if mine is None else mine
         own_accuracy = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
         rounding = 4.0 * EPS * largest[s.meaning.quantity, s.meaning.per]
-        allowed = s.off + swing + rounding
-        allowed = allowed + sum(0.0 if part is None else part for part in (own_accuracy, bound))
-        own = np.zeros(len(swing)) if bound is None else np.asarray(bound)
+        parts = (own_accuracy, bound)
+        allowed = s.off + swing + rounding + sum(0.0 if part is None else part for part in parts)
         why = "" if mine is not None else here.unrated or NO_NUMBERS
+        own = nothing if bound is None else bound
         found.append(Held(s, ours, np.where(np.isfinite(ours), allowed, np.nan), swing, supposed, own, why))
-    if unknown:
-        names = ", ".join(shown(s.column) for s in unknown)
-        notes.append(f"{names} is not tested: {here.unrated or NO_NUMBERS}")
+    if unknown := [shown(h.series.column) for h in found if h.unknown]:
+        notes.append(f"{', '.join(unknown)} is not tested: {here.unrated or NO_NUMBERS}")
     notes += _widened(measured, found)
     instants = _instants(measured)
-    count = len(instants)
-    numbers = {q: {n: np.asarray(a) for n, a in part.items()} for q, part in here.numbers.items()}
     claims = {
-        q: {n: np.nan_to_num(a) for n, a in part.items()} for q, part in here.bounds.items() if q in numbers
+        q: {n: np.nan_to_num(a) for n, a in part.items()}
+        for q, part in here.bounds.items()
+        if q in here.numbers
     }
-    solution = Solution(OURS, instants, numbers, Accuracy(np.ones(count), claims, proven=True))
+    solution = Solution(OURS, instants, here.numbers, Accuracy(np.ones(len(instants)), claims, proven=True))
     return found, solution, tuple(notes)
 
 
@@ -537,76 +516,61 @@ def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
     )
 
 
-def _turned(gap: Array, series: Series) -> Array:
+def _apart(one: Array, other: Array, series: Series) -> Array:
+    """How far numbers of a column are apart; whole turns apart is the same angle."""
+    gap = np.abs(one - other)
     return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if series.meaning.unit == "rad" else gap
 
 
 def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
     """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
-    meaning = series.meaning
-    part = found.numbers.get(meaning.quantity, {})
-    if meaning.per:
-        return _derivative(series, found, scene)
-    if meaning.name not in part:
+    meaning, angle = series.meaning, angle_of(series.meaning)
+    if meaning.per and meaning.per not in found.slopes:
         return None, None
-    if series.definition == ARCSINE:
-        return _arcsine(series, found, scene)
-    bound = found.bounds.get(meaning.quantity, {}).get(meaning.name, np.zeros_like(part[meaning.name]))
-    if meaning.axis is None:
-        return part[meaning.name], bound
-    return part[meaning.name][:, meaning.axis], bound[:, meaning.axis]
+    if meaning.per and angle is None:
+        slopes = found.slopes[meaning.per]
+        values, bounds = slopes.places, slopes.bounds
+    elif meaning.name not in found.numbers.get(meaning.quantity, {}):
+        return None, None
+    elif angle is not None and (meaning.per or series.definition == ARCSINE):
+        return _of_a_line(series, angle, found, scene)
+    else:
+        values = found.numbers[meaning.quantity]
+        bounds = found.bounds.get(meaning.quantity, {})
+    if meaning.name not in values:
+        return None, None
+    value = values[meaning.name]
+    bound = bounds.get(meaning.name, np.zeros_like(value))
+    return (value, bound) if meaning.axis is None else (value[:, meaning.axis], bound[:, meaning.axis])
 
 
-def _arcsine(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
-    """An angle as the arcsine of a component of its line, not as that of a projection of it."""
-    angle = angle_of(series.meaning)
-    (positions,) = (part for quantity, part in found.numbers.items() if quantity == PLACES)
-    bounds = found.bounds.get(PLACES, {})
-    assert angle is not None  # the map of columns was checked
-    part = scene.mechanism
-    axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
-    start, end = angle.ends(part.topology)
-    line = positions[end] - positions[start]
-    long = np.linalg.norm(line, axis=-1)
-    sine = axes.component(line, angle.sine) / long
-    # Both ends may be off by b along each axis: the line turns by at most 2 sqrt(3) b / its length, and an
-    # arcsine grows by 1 / cosine of that.
-    off = np.max([np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds], axis=0)
-    bound = 2.0 * math.sqrt(3.0) * off / long / np.sqrt(1.0 - sine**2)
-    return np.asarray(np.arcsin(sine)), np.asarray(bound)
-
-
-def _derivative(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
-    """A coordinate or an angle of a line by an independent column.
+def _of_a_line(series: Series, angle: Angle, found: Found, scene: Scene) -> tuple[Array, Array]:
+    """The arcsine of a component of an angle's line, not of a projection of it; or the angle's derivative.
 
     With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
     """
-    meaning, angle = series.meaning, angle_of(series.meaning)
-    if meaning.per not in found.slopes:
-        return None, None
-    slopes = found.slopes[meaning.per]
-    if angle is None:
-        if meaning.name not in slopes.places:
-            return None, None
-        return slopes.places[meaning.name][:, meaning.axis], slopes.bounds[meaning.name][:, meaning.axis]
-    part = scene.mechanism
-    axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
-    start, end = angle.ends(part.topology)
-    parts, offs = [], []
-    for places, bounds in ((found.numbers[PLACES], found.bounds[PLACES]), (slopes.places, slopes.bounds)):
-        line = places[end] - places[start]
-        parts += [axes.component(line, angle.sine), axes.component(line, angle.cosine)]
-        # Each end may be off by that along each axis.
+    axes, (start, end) = axes_of(scene), angle.ends(scene.mechanism.topology)
+
+    def line(places: Mapping[str, Array], bounds: Mapping[str, Array]) -> tuple[Array, Array]:
+        """From end to end, and how far it may be off: each end may be by its bound along each axis."""
         ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
-        offs.append(2.0 * math.sqrt(3.0) * np.max(ends, axis=0))
-    s, c, s_, c_ = parts
-    off, off_ = offs
+        return places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
+
+    along, off = line(found.numbers[PLACES], found.bounds[PLACES])
+    s = axes.component(along, angle.sine)
+    if not series.meaning.per:
+        long = np.linalg.norm(along, axis=-1)
+        # The line turns by what it may be off / its length at most, an arcsine grows by 1 / cosine of that.
+        return np.arcsin(s / long), np.asarray(off / long / np.sqrt(1.0 - (s / long) ** 2))
+    slopes = found.slopes[series.meaning.per]
+    going, off_ = line(slopes.places, slopes.bounds)
+    c = axes.component(along, angle.cosine)
+    s_, c_ = axes.component(going, angle.sine), axes.component(going, angle.cosine)
     square = s**2 + c**2
     value = (s_ * c - c_ * s) / square
     changed = (np.abs(c) + np.abs(s)) * off_ + (np.abs(s_) + np.abs(c_)) * off
     # To first order; what is left is smaller by the bound / the line's length.
-    bound = 1.001 * (changed / square + 2.0 * np.abs(value) * off / np.sqrt(square))
-    return np.asarray(value), np.asarray(bound)
+    return value, 1.001 * (changed / square + 2.0 * np.abs(value) * off / np.sqrt(square))
 
 
 def _out_of_reach(measured: Measured, found: Found) -> list[str]:

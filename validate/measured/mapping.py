@@ -53,6 +53,7 @@ from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
 from validate.plain_text import shown
 from validate.tables.errors import FileError
 from validate.tables.units import allowed_units, below_of, factor_of, is_unit
+from validate.toml_written import key_of, value_of
 
 Array = NDArray[np.float64]
 
@@ -268,25 +269,33 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     )
 
 
-@dataclass(frozen=True)
-class KnownColumns:
-    """What is known of a file's columns without a map.
+def map_to_fill_in(file: str, scene: Scene) -> str:
+    """The text of a map (TOML) of a file of results: what is known of each column, and a line for the others.
 
-    Attributes:
-        columns: by name, what each is in words and its unit, empty where that is not known.
-        names: of what can be compared.
+    Raises:
+        FileError: the file cannot be read.
+        MissingPackage: Parquet needs pyarrow.
     """
-
-    columns: Mapping[str, tuple[str, str]]
-    names: tuple[str, ...]
-
-
-def known_columns(columns: Columns, scene: Scene) -> KnownColumns:
-    """What columns are by their own names and units."""
+    columns = read_columns(file)
     map = _Map("", {}, columns, scene)
-    meanings = {name: map._meaning(name) for name in columns.names}
-    words = {name: "" if one is None else one.words for name, one in meanings.items()}
-    return KnownColumns({name: (words[name], map._unit_of(name)) for name in columns.names}, map.known)
+    topology = scene.mechanism.topology
+    inputs = ", ".join(f"{INPUT}.{name}" for name in topology.inputs)
+    lines = [
+        f"# What the columns of {columns.source} are. Fill in what is missing, and take its # away.",
+        f"# is: time, {inputs}, travel.POINT, travel.{CONTACT}, QUANTITY.NAME[.AXIS], ignore",
+        f"#     such as {PLACES}.{topology.wheel_centre}.z, {', '.join(map.known[:5])}",
+        "# unit: mm, deg, rad, s and the like. More keys: sign = -1, offset = 0.5, definition = 'arcsine',",
+        "#     printed = 0.01 (the unit of the last digit; 0: exact as written), accuracy = 0.001",
+        f"# rolling_radius = 300.0    # mm, of travel.{CONTACT}",
+        "",
+        "[columns]",
+    ]
+    for name in columns.names:
+        meaning, unit = map.meaning(name), map.unit_of(name)
+        off = "" if meaning and unit else "# "
+        words = value_of({"is": meaning.words if meaning else "", "unit": shown(unit)})
+        lines.append(f"{off}{key_of(shown(name))} = {words}")
+    return "\n".join(lines) + "\n"
 
 
 def map_shown(names: Iterable[str]) -> list[str]:
@@ -414,7 +423,7 @@ class _Map:
     @property
     def ignored(self) -> tuple[str, ...]:
         """Columns that are left out, in words."""
-        out, told = [name for name in self.columns.names if self._meaning(name) is None], self._parts
+        out, told = [name for name in self.columns.names if self.meaning(name) is None], self._parts
         unnamed = [name for name in out if told and name not in told]
         known = [name for name in out if name not in unnamed]
         holding = {n: what for n, what in self.columns.no_numbers.items() if what != NOTHING_AT_ALL}
@@ -426,7 +435,7 @@ class _Map:
             notes.append(f"left out: {', '.join(map_shown(unnamed))} ({why})")
         return tuple(notes)
 
-    def _meaning(self, column: str) -> Meaning | None:
+    def meaning(self, column: str) -> Meaning | None:
         """What a column is; None for what is to be left out.
 
         Raises:
@@ -458,7 +467,7 @@ class _Map:
         """Whether a column that a map does not name is a number of ours beside those that it names."""
         said = [part.get("is", name) for name, part in self._parts.items()]
         taken = any(self._named(name) == found for name in said if isinstance(name, str))
-        return found is not None and found.kind == "number" and not taken and bool(self._unit_of(column))
+        return found is not None and found.kind == "number" and not taken and bool(self.unit_of(column))
 
     def _named(self, name: str) -> Meaning | None:
         """By its whole name, or by an end of it that nothing else has; a derivative by what it is of."""
@@ -477,12 +486,12 @@ class _Map:
     def series(self) -> list[Series]:
         """Every column that means something, in our units."""
         found: dict[str, Series] = {}
-        meant_by = {column: self._meaning(column) for column in self.columns.names}
+        meant_by = {column: self.meaning(column) for column in self.columns.names}
         by_column = {column: one for column, one in meant_by.items() if one is not None}
         slopes = [
             column
             for column, one in by_column.items()
-            if one.kind == "number" and (one.per or below_of(self._unit_of(column), one.unit))
+            if one.kind == "number" and (one.per or below_of(self.unit_of(column), one.unit))
         ]
         for column in sorted(by_column, key=lambda column: column in slopes):
             meaning = by_column[column]
@@ -500,7 +509,7 @@ class _Map:
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
 
-    def _unit_of(self, column: str) -> str:
+    def unit_of(self, column: str) -> str:
         """The unit of a column as the map or the file says it; empty where neither does."""
         said = self._parts.get(column, {}).get("unit")
         if said is not None and not isinstance(said, str):
@@ -509,7 +518,7 @@ class _Map:
 
     def _derivative(self, column: str, meaning: Meaning, independent: Sequence[Series]) -> Meaning:
         """What a derivative is by, of the columns that rows are taken by."""
-        unit, of = self._unit_of(column), replace(meaning, per="")
+        unit, of = self.unit_of(column), replace(meaning, per="")
         if "/" in meaning.unit or (meaning.quantity != PLACES and angle_of(meaning) is None):
             problem, allowed = f"is a derivative of {of.words}", "one of a coordinate or an angle of a line"
             raise self._column(column, problem, allowed)
@@ -541,7 +550,7 @@ class _Map:
     def _sign_of(self, words: str) -> float:
         """The sign that the map gives to the column of a meaning."""
         for column, part in self._parts.items():
-            named = self._meaning(column)
+            named = self.meaning(column)
             if named is not None and named.words == words:
                 return self.number_at("sign", 1.0, part, f"columns.{column}.")
         return 1.0
@@ -582,7 +591,7 @@ class _Map:
         allowed = allowed_units(meaning.unit)
         if not isinstance(part.get("unit", ""), str):
             raise self._is(f"columns.{column}.unit", part["unit"], allowed)
-        said = part["unit"] if "unit" in part else self._unit_of(column)
+        said = part["unit"] if "unit" in part else self.unit_of(column)
         factor = factor_of(said, meaning.unit) if said else None
         if factor is None:
             problem = f"{shown(said)!r} is no unit of {meaning.words}"

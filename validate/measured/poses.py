@@ -21,11 +21,11 @@ from pointcoord import KinematicMap, Motion, Scene, kinematic_map, simulate, sol
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
+from validate.diagnosis.evidence import axes_of
 from validate.formulations.asked_numbers import per_second
 from validate.measured.mapping import (
     CONTACT,
@@ -202,11 +202,10 @@ class Driven:
         reached[[*reasons]] = False
         places = {name: np.where(reached[:, None], place, np.nan) for name, place in poses.position.items()}
         numbers: Numbers = {PLACES: places}
-        part = self.scene.mechanism
-        axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+        axes, topology = axes_of(self.scene), self.scene.mechanism.topology
         for s in asked:
             if (angle := angle_of(s.meaning)) is not None:
-                start, end = (places[point] for point in angle.ends(part.topology))
+                start, end = (places[point] for point in angle.ends(topology))
                 numbers.setdefault(s.meaning.quantity, {})[s.meaning.name] = angle.value(start, end, axes)
         bounds = {PLACES: {name: np.zeros_like(place) for name, place in places.items()}}
         return Found(numbers, bounds, reached, reasons, inputs)

@@ -11,14 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
 from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from pointcoord import PointcoordError
+from validate.diagnosis.least import fitted
 from validate.measured.mapping import INPUT, TIME, Measured, Series
 from validate.measured.poses import Driven, Found, of_a_pose
 from validate.plain_text import shown
@@ -31,7 +30,6 @@ OursOf = Callable[[Series, Found], Array | None]
 ROWS = 16  # that poses are solved at
 NEARLY_ALL = 0.8  # of them must be in reach
 STEP = {"rad": 1e-5, "mm": 1e-3}  # of differences by an offset
-FAR = 1e3  # spreads of a number, which a row without a pose counts as
 # What a supposition may leave of the differences, of the numbers' own spread, to be held to the whole file.
 PROMISING = 0.05
 # By what a rounded offset may leave more than the found one, which least squares put lowest.
@@ -64,7 +62,8 @@ class _Change:
     found: bool = False
 
 
-SAME = _Change()
+Changes = dict[int, _Change]
+"""What some columns are changed by, by their places."""
 
 
 def likely(driven: Driven, measured: Measured, ours_of: OursOf) -> Iterator[Supposed]:
@@ -75,42 +74,42 @@ def likely(driven: Driven, measured: Measured, ours_of: OursOf) -> Iterator[Supp
         return
     trial = _Trial(driven, _some(measured), ours_of)
     try:
-        before = trial.left([SAME] * len(measured.independent))
+        before = trial.left({})
         tried = [(trial.left(changes), changes) for changes in trial.supposed()]
     except PointcoordError:
         return
     kept = [(left, changes) for left, changes in tried if left <= PROMISING and left < before]
     # Simple before far-fetched, where both leave as little as the digits of a file allow.
-    kept.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), sum(c.cost for c in one[1])))
+    kept.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), sum(c.cost for c in one[1].values())))
     for _, changes in kept:
         yield from _changed(measured, changes)
 
 
-def _changed(measured: Measured, changes: Sequence[_Change]) -> Iterator[Supposed]:
+def _changed(measured: Measured, changes: Changes) -> Iterator[Supposed]:
     """The file with its independent columns changed."""
-    both = list(zip(measured.independent, changes, strict=True))
-    words = ", and ".join(f"{shown(s.column)} {change.words}" for s, change in both if change.words)
-    fitted = any(change.found for change in changes)
-    independent = tuple(
-        replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off) for s, c in both
-    )
-    turned = {s.meaning.words for s, c in both if c.factor < 0.0}
+    independent = list(measured.independent)
+    for i, c in changes.items():
+        s = independent[i]
+        independent[i] = replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off)
+    words = ", and ".join(f"{shown(independent[i].column)} {change.words}" for i, change in changes.items())
+    other = replace(measured, independent=tuple(independent))
+    fitted = any(change.found for change in changes.values())
+    turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
     slopes = [s for s in measured.numbers if s.meaning.per in turned]
     numbers = tuple(replace(s, values=-s.values) if s in slopes else s for s in measured.numbers)
-    yield Supposed(words, replace(measured, independent=independent, numbers=numbers), fitted)
+    yield Supposed(words, replace(other, numbers=numbers), fitted)
     if slopes:
         # Derivatives by a column that counts the other way do so too, if they were not made of another.
         names = ", ".join(shown(s.column) for s in slopes)
-        words = f"{words}, and {names} is by it as it is said"
-        yield Supposed(words, replace(measured, independent=independent), fitted)
+        yield Supposed(f"{words}, and {names} is by it as it is said", other, fitted)
 
 
 def in_reach(driven: Driven, measured: Measured) -> Iterator[str]:
     """Units of a column that bring nearly all rows within reach, in words; nearest the said one first."""
     some = _some(measured)
     for i, s in enumerate(some.independent):
-        units = [(n, size / s.factor) for n, size in _units(s.meaning.unit)]
-        for name, factor in sorted(units, key=lambda one: abs(math.log(one[1]))):
+        others = [(name, size / s.factor) for name, size in _units(s.meaning.unit)]
+        for name, factor in sorted(others, key=lambda one: abs(math.log(one[1]))):
             values = [factor * v.values if k == i else v.values for k, v in enumerate(some.independent)]
             _, lost = driven.inputs(values)
             if abs(factor - 1.0) <= 1e-9 or len(lost) > (1.0 - NEARLY_ALL) * len(some.rows):
@@ -127,29 +126,30 @@ def _some(measured: Measured) -> Measured:
     return replace(measured, numbers=numbers).taken(rows)
 
 
-@dataclass(frozen=True, repr=False)
 class _Trial:
     """A file's numbers by other values of its independent columns."""
 
-    driven: Driven
-    measured: Measured
-    ours_of: OursOf
+    def __init__(self, driven: Driven, measured: Measured, ours_of: OursOf) -> None:
+        self.driven, self.measured, self.ours_of = driven, measured, ours_of
+        self.theirs = np.stack([s.values for s in measured.numbers])
+        self.there = np.isfinite(self.theirs)
+        wide = np.max(self.theirs, axis=1, where=self.there, initial=-np.inf)
+        wide -= np.min(self.theirs, axis=1, where=self.there, initial=np.inf)
+        self.spread = np.where(wide > 0.0, wide, 1.0)[:, None]
 
-    def supposed(self) -> Iterator[list[_Change]]:
+    def supposed(self) -> Iterator[Changes]:
         """What each column is changed by: one alone, two together, one by another zero."""
-        columns = self.measured.independent
-        known = [list(self._known(s)) for s in columns]
+        known = [list(self._known(s)) for s in self.measured.independent]
         for i, changes in enumerate(known):
-            yield from (_one(len(columns), {i: change}) for change in changes)
+            yield from ({i: change} for change in changes)
         for (i, first), (j, second) in combinations(enumerate(known), 2):
             for one, two in product(first, second):
                 # Of units of two columns only that both are in the same.
                 if abs(one.factor) == abs(two.factor):
-                    yield _one(len(columns), {i: replace(one, cost=one.cost + 1.0), j: two})
-        for i in range(len(columns)):
-            for factor in (1.0, -1.0):
-                if change := self._other_zero(i, factor):
-                    yield _one(len(columns), {i: change})
+                    yield {i: replace(one, cost=one.cost + 1.0), j: two}
+        for i, factor in product(range(len(known)), (1.0, -1.0)):
+            if change := self._other_zero(i, factor):
+                yield {i: change}
 
     def _known(self, s: Series) -> Iterator[_Change]:
         """Changes of a column that nothing is found for."""
@@ -163,7 +163,8 @@ class _Trial:
             if other:
                 yield _Change(of_unit, factor, 0.0, 1.1)
             if unit != "rad" or not other:
-                yield _Change(_both(of_unit, "has the other sign"), -factor, 0.0, 1.0 + 1.1 * other)
+                both = f"{of_unit}, and has the other sign" if other else "has the other sign"
+                yield _Change(both, -factor, 0.0, 1.0 + 1.1 * other)
             if drawn:
                 home = f"{of_unit}, and from the drawing on" if other else "counts from the drawing on"
                 yield _Change(home, factor, drawn, 1.1 + other)
@@ -173,79 +174,62 @@ class _Trial:
         """An input of the drawing; a travel counts from there by itself."""
         return self.driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
 
-    def left(self, changes: Sequence[_Change]) -> float:
+    def left(self, changes: Changes) -> float:
         """What is left of the differences, of their numbers' spread; infinite where rows are out of reach."""
-        columns = self.measured.independent
-        gap = self._gaps([c.factor * s.values + c.more for s, c in zip(columns, changes, strict=True)])
-        told = np.isfinite(gap) | ~np.isfinite(self._theirs)
+        gap = self._gaps(changes)
+        found = np.isfinite(gap)
         # A supposition must make sense of nearly all rows.
-        if not told.all(axis=0).mean() >= NEARLY_ALL or not np.isfinite(gap).any():
+        if not (found | ~self.there).all(axis=0).mean() >= NEARLY_ALL or not found.any():
             return math.inf
         return float(np.sqrt(np.nanmean(gap**2)))
 
     def _other_zero(self, i: int, factor: float) -> _Change | None:
         """The zero that least squares find for a column, as round as it may be; None if none comes near."""
-        columns = self.measured.independent
-        s, drawn, count = columns[i], self._drawn(columns[i]), len(columns)
-        way = "counts the other way, and " if factor < 0.0 else ""
+        s = self.measured.independent[i]
+        drawn, unit = self._drawn(s), _unit_of(s)
 
-        def change(more: float) -> list[_Change]:
-            return _one(count, {i: _Change("", factor, more)})
+        def left(more: float) -> float:
+            return self.left({i: _Change("", factor, more)})
 
-        def gaps(more: Array) -> Array:
-            values = [factor * c.values + more if c is s else c.values for c in columns]
-            gap = np.where(np.isfinite(self._theirs), self._gaps(values), 0.0)
-            return np.nan_to_num(gap, nan=FAR).ravel()
+        def gaps(sets: Array) -> Array:
+            gap = np.stack([self._gaps({i: _Change("", factor, float(more))}) for (more,) in sets])
+            # Rows out of reach say nothing of it; most of them must say something.
+            found = np.isfinite(gap)
+            enough = (found | ~self.there).mean(axis=(1, 2), keepdims=True) >= NEARLY_ALL
+            return np.where(found | enough, np.nan_to_num(gap), np.nan).reshape(len(sets), -1)
 
-        step = STEP[s.meaning.unit]
-        search = partial(least_squares, gaps, x_scale=1e3 * step)
-        found = [
-            float(search([begin], diff_step=step / max(abs(begin), step)).x[0]) for begin in {0.0, drawn}
-        ]
-        best = min(found, key=lambda more: self.left(change(more)))
-        least = self.left(change(best))
-        if not least <= PROMISING:
+        nothing = np.zeros(self.theirs.size)
+        starts = (fitted(gaps, [begin], STEP[s.meaning.unit], nothing) for begin in {0.0, drawn})
+        zeros = [float(one[0]) for one in starts if one is not None]
+        best = min(zeros, key=left, default=0.0)
+        least = left(best)
+        if not zeros or not least <= PROMISING:
             return None
         rounded = (s.factor * round(best / s.factor, decimals) for decimals in range(7))
-        more = next((one for one in rounded if self.left(change(one)) <= CLOSE * least), best)
+        more = next((one for one in rounded if left(one) <= CLOSE * least), best)
         if drawn and factor > 0.0 and abs(more - drawn) <= NEAR * abs(drawn):
             return _Change("counts from the drawing on", factor, more, 2.0, found=True)
+        way = "counts the other way, and " if factor < 0.0 else ""
         missing = "missing" if more > 0.0 else "too many"
-        words = f"{way}counts from another zero: {abs(more / s.factor):.5g} {_unit_of(s)} are {missing}"
+        words = f"{way}counts from another zero: {abs(more / s.factor):.5g} {unit} are {missing}"
         return _Change(words, factor, more, 3.0 - factor, found=True)
 
-    @cached_property
-    def _theirs(self) -> Array:
-        return np.stack([s.values for s in self.measured.numbers])
-
-    @cached_property
-    def _spread(self) -> Array:
-        there = np.isfinite(self._theirs)
-        highest = np.max(self._theirs, axis=1, where=there, initial=-np.inf)
-        wide = highest - np.min(self._theirs, axis=1, where=there, initial=np.inf)
-        return np.where(wide > 0.0, wide, 1.0)[:, None]
-
-    def _gaps(self, values: Sequence[Array]) -> Array:
+    def _gaps(self, changes: Changes) -> Array:
         """Theirs less ours, of the spread of theirs, (columns, rows); NaN where there is no pose."""
         numbers = self.measured.numbers
+        values: Sequence[Array] = [
+            s.values if i not in changes else changes[i].factor * s.values + changes[i].more
+            for i, s in enumerate(self.measured.independent)
+        ]
         if len(self.driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(values[0]):
-            return np.full_like(self._theirs, np.nan)
+            return np.full_like(self.theirs, np.nan)
         found = self.driven.poses(values, numbers)
         ours = [self.ours_of(s, found) for s in numbers]
         nothing = np.full(len(values[0]), np.nan)
-        gap = self._theirs - np.stack([nothing if one is None else one for one in ours])
+        gap = self.theirs - np.stack([nothing if one is None else one for one in ours])
         angles = np.array([s.meaning.unit == "rad" for s in numbers])[:, None]
         turned = (gap + math.pi) % (2.0 * math.pi) - math.pi
-        return np.asarray(np.where(angles, turned, gap) / self._spread)
-
-
-def _one(count: int, changes: dict[int, _Change]) -> list[_Change]:
-    """Some columns changed, and the others as they are."""
-    return [changes.get(i, SAME) for i in range(count)]
-
-
-def _both(first: str, second: str) -> str:
-    return f"{first}, and {second}" if first else second
+        return np.asarray(np.where(angles, turned, gap) / self.spread)
 
 
 def _unit_of(s: Series) -> str:

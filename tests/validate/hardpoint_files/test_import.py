@@ -3,34 +3,26 @@
 from collections.abc import Mapping
 from math import cos, degrees, radians, sin
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from foreign_files import ARMS, OPTIMUMK, STRUT, WISHBONE, chrono, lotus_report, table
+from foreign_files import CAR, OPTIMUMK, STRUT, WISHBONE, chrono, drawn, imported, lotus_report, table
 
 from pointcoord import PointcoordError, Scene, simulate, standing
-from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.mechanism import mechanism_file
 from validate.cli import main
 from validate.hardpoint_files.axes import DIRECTIONS, Axes, UnknownAxes
 from validate.hardpoint_files.format import FORMS, formats
-from validate.hardpoint_files.importing import Imported, import_hardpoints
+from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
 
 POINTS = WISHBONE.mechanism.points
-CAR = {name: place for name, place in POINTS.items() if name != "rack_centre"}
 MIRRORED = {name: (x, -y, z) for name, (x, y, z) in CAR.items()}
+EXCHANGED = OPTIMUMK | {
+    "lower_arm_front": OPTIMUMK["lower_arm_rear"],
+    "lower_arm_rear": OPTIMUMK["lower_arm_front"],
+}
 LEFT_CHRONO = chrono("double_wishbone", POINTS, 1)
-
-
-def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> Imported:
-    path = folder / name
-    path.write_text(text, encoding="utf-8")
-    return import_hardpoints(path, **choices)
-
-
-def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
-    return {point.name: tuple(float(number) for number in point.place) for point in found.points}
 
 
 def curves(scene: Scene) -> dict[str, np.ndarray]:
@@ -258,15 +250,6 @@ def test_a_unit_that_makes_no_car_is_refused_with_those_that_do(tmp_path: Path) 
         imported(tmp_path, table(titles="Point,X (mm),Y (mm),Z (mm)\n"), unit="m")
 
 
-def test_exchanged_front_and_rear_are_refused(tmp_path: Path) -> None:
-    names = OPTIMUMK | {
-        "lower_arm_front": OPTIMUMK["lower_arm_rear"],
-        "lower_arm_rear": OPTIMUMK["lower_arm_front"],
-    }
-    with pytest.raises(FileError, match="lower_arm_front seen from lower_arm_rear"):
-        imported(tmp_path, table(names=names))
-
-
 @pytest.mark.parametrize("mirror", [False, True])
 def test_a_wheel_that_the_file_has_not_is_made_by_the_options_that_the_refusal_names(
     mirror: bool, tmp_path: Path
@@ -295,18 +278,6 @@ def test_a_wheel_on_the_other_side_than_said_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="--side right if y is not counted from the middle"):
         imported(tmp_path, table(moved))
     assert imported(tmp_path, table(moved), side="right").scene.mechanism.side == "right"
-
-
-def test_a_table_of_both_wheels_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
-    rows = [f"{name};{x};{y};{z};{x};{-y};{z}" for name, (x, y, z) in CAR.items()]
-    text = "Point;Left X [mm];Left Y [mm];Left Z [mm];Right X [mm];Right Y [mm];Right Z [mm]\n" + "\n".join(
-        rows
-    )
-    text = text.replace(".0", ",0")
-    with pytest.raises(FileError, match="--side left or --side right"):
-        imported(tmp_path, text, axes="rearward,left,up")
-    for side, car in (("left", MIRRORED), ("right", CAR)):
-        assert drawn(imported(tmp_path, text, axes="rearward,left,up", side=side)) == car
 
 
 def test_a_report_of_both_axles_gives_the_one_that_is_asked_for(tmp_path: Path) -> None:
@@ -365,13 +336,6 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     assert [point.name for point in found.unknown] == ["Hub"]
 
 
-def test_a_suspension_that_a_format_has_no_names_for_is_asked_for_by_name(tmp_path: Path) -> None:
-    with pytest.raises(FileError) as caught:
-        imported(tmp_path, lotus_report(), suspension="macpherson")
-    for words in ("lacks lower_arm_front", "strut_top", "of a macpherson", "'Wheel centre point' on line 18"):
-        assert words in str(caught.value)
-
-
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -414,8 +378,10 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
             table(titles="Point,X (furlong),Y,Z\n"),
             r"line 1: has no column of x in .*X \(furlong\)",
         ),
+        (table(names=EXCHANGED), "lower_arm_front seen from lower_arm_rear"),
         ("", "has no points"),
         ("only words", "has no points"),
+        ("PK\x03\x04\x00\x00", "is no text"),
         (LEFT_CHRONO.replace("]", ",", 1), "is no JSON"),
         (
             LEFT_CHRONO.replace('"Suspension"', '"Steering"'),
@@ -466,16 +432,6 @@ def test_a_file_with_random_damage_is_imported_or_refused_in_one_line(
     assert 5 < refused < 60
 
 
-def test_text_of_a_spreadsheet_is_read_whatever_its_code(tmp_path: Path) -> None:
-    for code in ("utf-8-sig", "utf-16", "cp1252"):
-        path = tmp_path / f"{code}.csv"
-        path.write_bytes(table(separator="\t", titles="Données\tX\tY\tZ\n").encode(code))
-        assert drawn(import_hardpoints(path)) == CAR
-    path.write_bytes(b"PK\x03\x04\x00\x00")
-    with pytest.raises(FileError, match="is no text"):
-        import_hardpoints(path)
-
-
 def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> None:
     text = LEFT_CHRONO.replace("{", "{ // Type\n/* a\n\nb */", 1).replace("our own", "our // own")
     assert drawn(imported(tmp_path, text, mirror=True))["wheel_centre"] == CAR["wheel_centre"]
@@ -501,7 +457,3 @@ def test_axes_are_three_directions_at_right_angles() -> None:
     assert Axes.of("forward,left,up").right_handed
     assert Axes.of("rearward,right,up").right_handed
     assert not Axes.of("forward,right,up").right_handed
-
-
-def test_arms_of_the_written_files_are_those_of_the_suspensions() -> None:
-    assert {*ARMS} <= {*shipped()}

@@ -2,19 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
-from foreign_files import OPTIMUMK, STRUT, WISHBONE, table
+from foreign_files import CAR, OPTIMUMK, STRUT, drawn, imported, table
 
 from pointcoord import Scene
 from validate.cli import main
 from validate.hardpoint_files.format import formats
-from validate.hardpoint_files.importing import Imported, import_hardpoints
 from validate.tables.errors import FileError
 
-POINTS = WISHBONE.mechanism.points
-CAR = {name: place for name, place in POINTS.items() if name != "rack_centre"}
 WORDS = {
     "lower_arm_front": "LCA_IN_FRONT",
     "lower_arm_rear": "LCA_IN_REAR",
@@ -35,16 +31,6 @@ WHEELS = {
     ("rear", "right"): {name: (x + 1500.0, y + 2.0, z) for name, (x, y, z) in CAR.items()},
     ("rear", "left"): {name: (x + 1500.0, -y - 3.0, z) for name, (x, y, z) in CAR.items()},
 }
-
-
-def imported(folder: Path, text: str, **choices: Any) -> Imported:
-    path = folder / "car.csv"
-    path.write_text(text, encoding="utf-8")
-    return import_hardpoints(path, **choices)
-
-
-def drawn(found: Imported) -> dict[str, tuple[float, ...]]:
-    return {point.name: tuple(float(number) for number in point.place) for point in found.points}
 
 
 def cells(place: Sequence[float]) -> str:
@@ -167,6 +153,8 @@ SHAPES: dict[str, str] = {
 def test_each_wheel_of_a_table_of_four_is_the_one_that_is_asked_for(text: str, tmp_path: Path) -> None:
     with pytest.raises(FileError, match="--part front or --part rear"):
         imported(tmp_path, text, axes=OURS)
+    with pytest.raises(FileError, match="--side left or --side right"):
+        imported(tmp_path, text, axes=OURS, part="front")
     for (part, side), car in WHEELS.items():
         found = imported(tmp_path, text, axes=OURS, part=part, side=side)
         assert drawn(found) == car
@@ -427,16 +415,6 @@ def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path)
 
 
 FORMS = {
-    "by spaces": "\n".join(
-        ["Point X Y Z", *(f"{WORDS[n]} " + cells(p).replace(",", "  ") for n, p in CAR.items())]
-    ),
-    "decimal commas": "\n".join(["Point;X;Y;Z", *rows(str)]).replace(",", ";").replace(".", ","),
-    "decimal commas in quotes": "\n".join(
-        [
-            "Point,X,Y,Z",
-            *(f"{WORDS[n]}," + ",".join(f'"{v!r}"'.replace(".", ",") for v in p) for n, p in CAR.items()),
-        ]
-    ),
     "columns turned about": "\n".join(
         ["Z,X,Name,Y", *(f"{z!r},{x!r},{WORDS[n]},{y!r}" for n, (x, y, z) in CAR.items())]
     ),
@@ -469,7 +447,7 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     assert "TIE_ROD_IN,none" in broken
     with pytest.raises(FileError, match="x of 'TIE_ROD_IN' is 'none'"):
         imported(tmp_path, broken, axes=OURS)
-    assert main(["import", str(tmp_path / "car.csv"), "--axes", OURS]) == 2
+    assert main(["import", str(tmp_path / "car.txt"), "--axes", OURS]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
@@ -500,8 +478,8 @@ def test_a_table_that_cannot_be_read_is_told_in_one_line(text: str, words: str, 
 def test_points_in_one_place_make_no_car(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # A table whose tie rod nobody has filled in.
     car = CAR | {"tie_rod_inner": (0.0, 0.0, 0.0), "tie_rod_outer": (0.0, 0.0, 0.0)}
-    (tmp_path / "car.csv").write_text("\n".join(["Point,X,Y,Z", *rows(str, car)]))
-    assert main(["import", str(tmp_path / "car.csv"), "--axes", OURS]) == 2
+    (tmp_path / "car.txt").write_text("\n".join(["Point,X,Y,Z", *rows(str, car)]))
+    assert main(["import", str(tmp_path / "car.txt"), "--axes", OURS]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "tie_rod_inner - tie_rod_outer has no length" in line
 

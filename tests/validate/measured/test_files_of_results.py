@@ -14,7 +14,7 @@ import pytest
 from pointcoord import Scene, simulate, solve_poses, standing
 from validate.cli import main
 from validate.fitting.curves import Curves
-from validate.measured.comparing import DataOutcome, as_solution, compare_results
+from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import understood
 from validate.measured.poses import poses_of
 from validate.measured.reading import columns_of_text
@@ -23,6 +23,11 @@ from validate.paper.tables import TABLE_2, TABLE_3, PrintedRow, compare_with_pap
 from validate.tables.errors import FileError
 
 STEER = Scene.load("steer")
+
+
+def tolerances(found: DataOutcome) -> Mapping[str, Mapping[str, Any]]:
+    """What each number of a file is held to."""
+    return found.outcome.solutions[0].accuracy.claims
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
@@ -90,7 +95,7 @@ def test_digits_in_full_are_held_to_what_points_off_by_the_tolerance_make_of_the
     for tolerance in (1e-9, 1e-7):
         car = STEER.model_copy(update={"tolerance": tolerance})
         measured = understood(columns_of_text("\n".join(lines), "x"), {}, car, "x")
-        claims = as_solution(measured, car).accuracy.claims
+        claims = tolerances(compare_results(measured, car, "steer"))
         found.append((claims["position"]["wheel_centre"][:, 0], claims["wheel"]["camber"]))
     for fine, coarse in zip(*found, strict=True):
         # Beside rounding and our own bound, which are far below.
@@ -101,7 +106,7 @@ def test_digits_in_full_are_held_to_what_points_off_by_the_tolerance_make_of_the
     # An axis of some 100 mm turns by e / 100 mm at least.
     assert ((angle > 1e-12) & (angle < 1e-9)).all()
     stated = understood(columns_of_text("\n".join(lines), "x"), {}, STEER, "x")
-    said = as_solution(stated, STEER, accuracy=1e-3).accuracy.claims["position"]["wheel_centre"][:, 0]
+    said = tolerances(compare_results(stated, STEER, "steer", 1e-3))["position"]["wheel_centre"][:, 0]
     assert said == pytest.approx(1e-3, rel=1e-6)
 
 
@@ -137,8 +142,8 @@ def test_times_that_are_rounded_widen_by_what_the_motion_does_meanwhile() -> Non
     text = "time [s],position.wheel_centre.x [mm]\n" + "".join(
         f"{t:.1f},{place:.6f}\n" for t, place in zip(times, x, strict=True)
     )
-    solution = as_solution(understood(columns_of_text(text, "x"), {}, STEER, "x"), STEER)
-    claims = solution.accuracy.claims["position"]["wheel_centre"][:, 0]
+    found = compare_results(understood(columns_of_text(text, "x"), {}, STEER, "x"), STEER, "steer")
+    claims = tolerances(found)["position"]["wheel_centre"][:, 0]
     change = [np.abs(motion.at(times + side).position["wheel_centre"][:, 0] - x) for side in (-0.05, 0.05)]
     assert claims == pytest.approx(np.max(change, axis=0) + 0.5e-6, abs=1e-9)
 

@@ -1,16 +1,41 @@
-"""The kinds of faults that are looked for: a file each, with one `KIND`; a new kind is a new file."""
+"""The kinds of faults that are looked for, as data; a new kind is a function and a line here."""
 
 from __future__ import annotations
 
-from functools import cache
-from importlib import import_module
-from pkgutil import iter_modules
-
 from validate.diagnosis.hypothesis import Kind
+from validate.diagnosis.kinds.angles import other_definitions
+from validate.diagnosis.kinds.assembly import other_assemblies, other_closures
+from validate.diagnosis.kinds.hardpoint import misread_hardpoints
+from validate.diagnosis.kinds.inputs import wrong_inputs
+from validate.diagnosis.kinds.numbers import (
+    exchanged_axes,
+    factors,
+    mirrored,
+    offsets,
+    other_signs,
+    other_units,
+    printed_digits,
+    swapped,
+)
+from validate.diagnosis.kinds.rates import differences, rates_per_input
+from validate.diagnosis.kinds.time_shift import shifted_in_time
 
-
-@cache
-def kinds() -> tuple[Kind, ...]:
-    """All of them, in the order of their files' names."""
-    names = sorted(found.name for found in iter_modules(__path__))
-    return tuple(import_module(f"{__name__}.{name}").KIND for name in names)
+UNIT, OFFSET = "unit", "offset"
+KINDS = (
+    Kind("sign", other_signs, opens=True, closes=True),
+    Kind("axes", exchanged_axes, opens=True),
+    Kind("mirror", mirrored),
+    Kind(UNIT, other_units, opens=True, closes=True),
+    Kind(OFFSET, offsets, closes=True),
+    Kind("definition", other_definitions, opens=True),
+    Kind("digits", printed_digits, closes=True),
+    Kind("swapped", swapped),
+    Kind("differences", differences, of_time=True),
+    Kind("per input", rates_per_input, opens=True, of_time=True),
+    Kind("closure", other_closures, solves=True, first=True, of_time=True),
+    Kind("input", wrong_inputs, solves=True, first=True, of_time=True),
+    Kind("branch", other_assemblies, solves=True, of_time=True),
+    Kind("hardpoint", misread_hardpoints, solves=True, of_time=True),
+    Kind("time shift", shifted_in_time, solves=True, of_time=True),
+    Kind("factor", factors, last=True),
+)

@@ -1,0 +1,55 @@
+"""Another definition of an angle.
+
+Ours is projected: atan2(p, q) with p and q the components of a line along two directions of the car. With l
+the line and r its third component, sources also print arcsin(p / |l|) (camber: Adams' turning tables; toe:
+OptimumK), the sine p / |l| itself, the slope p / q, and the angle to the plane's other direction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.angle import WheelAngles
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.numerics.rounding import EPS
+from validate.diagnosis.evidence import Evidence, kind_of
+from validate.diagnosis.hypothesis import Hypothesis
+
+Array = NDArray[np.float64]
+
+DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
+    "arcsin of the component, not projected": lambda p, q, n: np.arcsin(p / n),
+    "the angle to its perpendicular": lambda p, q, n: np.arctan2(q, p),
+    "the angle between the line and the axis, in space": lambda p, q, n: np.arccos(q / n),
+    "the angle to the opposite direction": lambda p, q, n: np.arctan2(p, -q),
+    "the component of a unit vector, no angle": lambda p, q, n: p / n,
+    "the slope, no angle": lambda p, q, n: p / q,
+}
+"""By words, from p, q and the line's length."""
+
+
+def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Each definition, of each angle that disagrees."""
+    topology = evidence.scene.mechanism.topology
+    effects = (effect for effect in EFFECTS.values() if isinstance(effect, WheelAngles))
+    angles = {angle.name: angle for effect in effects for angle in effect.angles}
+    for row in evidence.wrong:
+        angle = angles.get(row[1])
+        if kind_of(row) != "car" or angle is None:
+            continue
+        start, end = (evidence.places(point) for point in angle.ends(topology))
+        if start is None or end is None:
+            continue
+        length = np.linalg.norm(end - start, axis=-1)
+        p, q = (evidence.axes.component(end - start, side) for side in (angle.sine, angle.cosine))
+        # The line is a difference of coordinates that are each rounded; a few such roundings.
+        size = max(float(np.abs(start).max()), float(np.abs(end).max()))
+        for words, rule in DEFINITIONS.items():
+            with np.errstate(divide="ignore", invalid="ignore"):
+                value = rule(p, q, length)
+            if np.isfinite(value).all():
+                allowed = evidence.rounded(row, value) + 8.0 * EPS * size / length
+                yield Hypothesis((row, words), words, {row: (value, allowed)}, cost=1.2)

@@ -1,0 +1,270 @@
+"""What is done to numbers alone: signs, axes, units, offsets, factors, digits, others' places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import permutations, product
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.numerics.rounding import EPS
+from pointcoord.simulation import scene_mechanism
+from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
+from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+
+Array = NDArray[np.float64]
+
+
+class Unit(NamedTuple):
+    """Another unit.
+
+    Attributes:
+        words: for what it was taken.
+        of: mm, rad or s, which it stands for.
+        factor: a number in our unit times this is the number in that one; per second of a rate for s.
+        orders: of time derivatives of which it is in use.
+    """
+
+    words: str
+    of: str
+    factor: float
+    orders: tuple[int, ...] = (0, 1, 2)
+
+
+UNITS = (
+    Unit("degrees for radians", "rad", 180.0 / pi),
+    Unit("degrees taken for radians and converted once more", "rad", pi / 180.0),
+    Unit("minutes of arc for radians", "rad", 60.0 * 180.0 / pi),
+    Unit("turns for radians", "rad", 0.5 / pi),
+    Unit("turns per minute for rad/s", "rad", 30.0 / pi, (1,)),
+    Unit("m for mm", "mm", 1e-3),
+    Unit("cm for mm", "mm", 1e-1),
+    Unit("inches for mm", "mm", 1.0 / 25.4),
+    Unit("mm taken for m and converted once more", "mm", 1e3),
+    Unit("mm taken for inches and converted once more", "mm", 25.4),
+    Unit("multiples of 9.80665 m/s^2 for mm/s^2", "mm", 1.0 / 9806.65, (2,)),
+    Unit("per millisecond for per second", "s", 1e-3, (1, 2)),
+    Unit("per minute for per second", "s", 60.0, (1, 2)),
+)
+# A factor near 1 is what least squares makes of any small difference, such as that of two cars.
+NEAR_ONE = 0.01
+MOST_DIGITS = 10
+SINGLE = float(np.finfo(np.float32).eps)
+
+
+def _vectors(rows: Iterable[Row]) -> list[Row]:
+    return [row for row in rows if kind_of(row) != "car"]
+
+
+def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Of one, two or all components of vectors, or of a number of the car as a whole, as of toe in or out."""
+    vectors = _vectors(evidence.wrong)
+    for signs in product((1.0, -1.0), repeat=3):
+        flipped = [axis for axis, sign in zip("xyz", signs, strict=True) if sign < 0.0]
+        if flipped and vectors:
+            # Rows that agree as well, so that it is known whether they would under the fault.
+            rows: dict[Row, WouldBe] = {
+                row: (evidence.held[row] * np.array(signs), evidence.allowed[row])
+                for row in (*vectors, *_vectors(evidence.beside))
+            }
+            words = f"the other sign of {' and '.join(flipped)}"
+            yield Hypothesis(tuple(flipped), words, rows, cost=1.0 + 0.1 * len(flipped))
+    cars = [row for row in evidence.wrong if kind_of(row) == "car"]
+    if cars:
+        turned = {row: (-evidence.held[row], evidence.allowed[row]) for row in cars}
+        yield Hypothesis("car", "the other sign", turned)
+
+
+def _in_axes(evidence: Evidence, matrix: Array, rows: Iterable[Row]) -> dict[Row, WouldBe]:
+    """Vectors in other axes; what a body turns by keeps its sense only where the axes stay right-handed."""
+    exact = np.isin(np.abs(matrix), (0.0, 1.0)).all()
+    found: dict[Row, WouldBe] = {}
+    for row in _vectors(rows):
+        axial = np.linalg.det(matrix) if kind_of(row) == "body" else 1.0
+        allowed = evidence.allowed[row] if exact else evidence.rounded(row)
+        found[row] = (evidence.held[row] @ (np.sign(axial) * matrix).T, allowed @ np.abs(matrix).T)
+    return found
+
+
+def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Axes in another order, with or without other signs."""
+    if not _vectors(evidence.wrong):
+        return
+    for places, signs in product([*permutations(range(3))][1:], product((1.0, -1.0), repeat=3)):
+        matrix = np.zeros((3, 3))
+        matrix[range(3), places] = signs
+        named = tuple("-" * (s < 0.0) + "xyz"[p] for s, p in zip(signs, places, strict=True))
+        rows = _in_axes(evidence, matrix, (*evidence.wrong, *evidence.beside))
+        words = f"other axes: its x, y, z are our {', '.join(named)}"
+        yield Hypothesis(named, words, rows, cost=1.5 + 0.01 * sum(s < 0.0 for s in signs))
+
+
+def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Left for right: vectors are mirrored in the car's middle plane, angles that count outboard stay."""
+    right = evidence.axes.right
+    rows = _in_axes(evidence, np.eye(3) - 2.0 * np.outer(right, right), evidence.held)
+    rows |= {r: (evidence.held[r], evidence.allowed[r]) for r in evidence.held if kind_of(r) == "car"}
+    yield Hypothesis("mirror", "left for right: the car is mirrored", rows, whole=True)
+
+
+def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Each unit, of all rows that may have it."""
+    for unit in UNITS:
+        rows = {}
+        for row in evidence.wrong:
+            if order(row) in unit.orders and unit.of in ("s", length_or_angle(row)):
+                factor = unit.factor ** order(row) if unit.of == "s" else unit.factor
+                rows[row] = (factor * evidence.held[row], factor * evidence.rounded(row))
+        if rows:
+            yield Hypothesis(unit.words, unit.words, rows)
+
+
+def factors(evidence: Evidence) -> Iterator[Hypothesis]:
+    """One factor that is no known unit's, by least squares, and far enough from 1 to be meant."""
+    for some in together(evidence.wrong):
+        ours, theirs = (np.concatenate([part[row].ravel() for row in some]) for part in evidence.both)
+        square = float(ours @ ours)
+        factor = float(ours @ theirs) / square if square > 0.0 else np.nan
+        if np.isfinite(factor) and factor != 0.0 and abs(factor - 1.0) > NEAR_ONE:
+            rows = {row: (factor * evidence.held[row], abs(factor) * evidence.rounded(row)) for row in some}
+            if all(evidence.left(row, *numbers) <= 1.0 for row, numbers in rows.items()):
+                yield Hypothesis(f"{factor:.9g}", f"{factor:.7g} times ours", rows, 1, 2.0)
+
+
+def _less(evidence: Evidence, row: Row, value: Array | float) -> WouldBe:
+    return evidence.held[row] - value, evidence.rounded(row, value)
+
+
+def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
+    """What is subtracted: the chassis' motion, the first or the drawn value, another origin, a constant."""
+    if evidence.over_time:
+        yield from _relative_to_chassis(evidence)
+    placed = [row for row in evidence.wrong if order(row) == 0]
+    if not placed:
+        return
+    first = {row: _less(evidence, row, evidence.held[row][0]) for row in placed}
+    yield Hypothesis("first", "the value at the first instant is subtracted", first)
+    drawn = {row: value for row in placed if (value := _drawn(evidence, row)) is not None}
+    if drawn:
+        rows = {row: _less(evidence, row, value) for row, value in drawn.items()}
+        yield Hypothesis("static", "the static value, as drawn, is subtracted", rows, cost=1.1)
+    yield from _origin(evidence, [row for row in placed if kind_of(row) == "point"])
+    for row in placed:
+        gap = np.mean(evidence.given[row] - evidence.held[row], axis=0)
+        noise = float(evidence.rounded(row).max())
+        if np.isfinite(gap).all() and np.abs(gap).max() > 8.0 * noise and len(evidence.times) > 2:
+            gap = np.where(np.abs(gap) <= noise, 0.0, gap)
+            words, count = f"a constant offset of {evidence.in_words(row, gap)}", max(np.size(gap), 1)
+            yield Hypothesis((row, "constant"), words, {row: _less(evidence, row, -gap)}, count, 1.0 + count)
+
+
+def _drawn(evidence: Evidence, row: Row) -> Array | float | None:
+    """A row's number in the drawing; of an angle in the closed drawing."""
+    if kind_of(row) == "point":
+        return np.array(evidence.scene.mechanism.points[row[1]])
+    return evidence.solved.drawn.get(row[1])
+
+
+def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
+    """One shift for all points; of another origin only where every given point has it."""
+    if len(rows) < 2:
+        return  # one point alone tells of no other
+    shift = np.mean(np.concatenate([evidence.given[row] - evidence.held[row] for row in rows]), axis=0)
+    shift[np.abs(shift) < max(float(evidence.rounded(row).max()) for row in rows)] = 0.0
+    fitted = int(np.count_nonzero(shift))
+    if not fitted or not np.isfinite(shift).all():
+        return
+    moved = {row: _less(evidence, row, -shift) for row in rows}
+    points = [row for row in evidence.given if row[0] == rows[0][0]]
+    every = set(points) == set(rows) and all(evidence.left(row, *moved[row]) <= 1.0 for row in rows)
+    # The points that agree say where the origin is: what is off beside them is off by itself.
+    found = evidence.in_words(rows[0], shift)
+    words = f"another origin: every point is shifted by {found}" if every else f"shifted by {found}"
+    yield Hypothesis("origin", words, moved, fitted, 1.0 + 0.5 * fitted)
+
+
+def _relative_to_chassis(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Where an input displaces the chassis and none turns it."""
+    scene = evidence.scene
+    chassis = ChassisMotion.of(scene_mechanism(scene), scene.functions)
+    moved = () if chassis.turns else chassis.states(evidence.times, 2)
+    points = [row for row in evidence.wrong if kind_of(row) == "point"] if moved else []
+    if points:
+        rows = {row: _less(evidence, row, moved[order(row)]) for row in points}
+        yield Hypothesis("chassis", "relative to the chassis, whose own motion is left out", rows)
+
+
+def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Two points or angles in each other's place, in all quantities; or two quantities, such as rates."""
+
+    def would_be(pairs: Iterable[tuple[Row, Row]]) -> dict[Row, WouldBe]:
+        """Rows as others, where these are held."""
+        return {
+            row: (evidence.held[other], evidence.allowed[other])
+            for row, other in pairs
+            if other in evidence.held
+        }
+
+    names = tuple(dict.fromkeys(row[1] for row in evidence.wrong))
+    for name, other in product(names, dict.fromkeys(row[1] for row in evidence.held)):
+        if name == other or (other in names and other < name):
+            continue
+        partner = {name: other, other: name}
+        rows = would_be((row, (row[0], partner[row[1]])) for row in evidence.wrong if row[1] in partner)
+        if rows:
+            yield Hypothesis((name, other), f"{name} is swapped with {other}", rows, cost=1.5)
+    for one, two in permutations(evidence.wrong_quantities, 2):
+        if QUANTITIES[one].of == QUANTITIES[two].of and one < two:
+            partner = {one: two, two: one}
+            rows = would_be((row, (partner[row[0]], row[1])) for row in evidence.wrong if row[0] in partner)
+            words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
+            yield Hypothesis((one, two), words, rows, cost=1.1)
+
+
+def _decimal_step(numbers: Array, places: int) -> Array:
+    """The last place of numbers of so many decimals."""
+    return np.full(numbers.shape, 10.0**-places)
+
+
+def _significant_step(numbers: Array, digits: int) -> Array:
+    """The last place of numbers of so many significant digits."""
+    size = np.floor(np.log10(np.maximum(np.abs(numbers), 1e-300)))
+    return np.asarray(10.0 ** (size - digits + 1.0))
+
+
+def _are_multiples(numbers: Array, step: Array) -> bool:
+    """Whether all numbers are multiples of their steps, as nearly as a double can be."""
+    places = numbers / step
+    return bool((np.abs(places - np.rint(places)) <= 4.0 * EPS * np.abs(places)).all())
+
+
+def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
+    """The fewest decimals and significant digits that the given numbers have, and single precision.
+
+    Half of the last place is what they may be off.
+    """
+    for rows in together(evidence.wrong):
+        theirs = np.concatenate([evidence.given[row].ravel() for row in rows])
+        if not np.isfinite(theirs).all():
+            continue
+        for what, step in (("decimals", _decimal_step), ("significant digits", _significant_step)):
+            for count in range(what != "decimals", MOST_DIGITS + 1):
+                if _are_multiples(theirs, step(theirs, count)):
+                    found = {row: _looser(evidence, row, step(evidence.given[row], count)) for row in rows}
+                    said = f"{count} {what}"
+                    yield Hypothesis(said, f"printed with {said}", found, cost=1.05, looser=True)
+                    break
+        if (np.abs(theirs) < np.finfo(np.float32).max).all() and (theirs == theirs.astype(np.float32)).all():
+            found = {row: _looser(evidence, row, SINGLE * np.abs(evidence.held[row])) for row in rows}
+            yield Hypothesis("single", "printed or kept in single precision", found, looser=True)
+
+
+def _looser(evidence: Evidence, row: Row, last_place: Array) -> WouldBe:
+    """The numbers as they are held, and half of a last place more that they may be off."""
+    held = evidence.held[row]
+    return held, evidence.allowed[row] + 0.5 * last_place + EPS * np.abs(held)

@@ -1,0 +1,130 @@
+"""Rates that are made otherwise: by finite differences, or per input instead of per time.
+
+Their velocity is then what their positions change by from instant to instant. With h the time between two
+instants: forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
+accelerations also (x_{k+1} - 2 x_k + x_{k-1}) / h^2. At the ends, where the rule has no neighbour, it is
+one-sided, or the neighbour's number is repeated. Differences of numbers that disagree themselves explain
+nothing: any car's rates are nearly differences of its positions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.registry import QUANTITIES
+from pointcoord.numerics.rounding import EPS
+from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order
+from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+from validate.formulations.input_rates import rates
+
+Array = NDArray[np.float64]
+Rule = Callable[[Array, Array], Array]
+
+
+def _steps(x: Array, t: Array) -> Array:
+    return np.diff(x, axis=0) / np.diff(t).reshape(-1, *[1] * (x.ndim - 1))
+
+
+def _forward(x: Array, t: Array) -> Array:
+    steps = _steps(x, t)
+    return np.concatenate([steps, steps[-1:]])
+
+
+def _backward(x: Array, t: Array) -> Array:
+    steps = _steps(x, t)
+    return np.concatenate([steps[:1], steps])
+
+
+def _central(x: Array, t: Array) -> Array:
+    return np.asarray(np.gradient(x, t, axis=0))
+
+
+def _central_second_order(x: Array, t: Array) -> Array:
+    return np.asarray(np.gradient(x, t, axis=0, edge_order=2))
+
+
+def _repeated(x: Array, t: Array) -> Array:
+    inner = _central(x, t)[1:-1]
+    return np.concatenate([inner[:1], inner, inner[-1:]])
+
+
+def _second(x: Array, t: Array) -> Array:
+    inner = _steps(_steps(x, t), 0.5 * (t[1:] + t[:-1]))
+    return np.concatenate([inner[:1], inner, inner[-1:]])
+
+
+def _twice(rule: Rule) -> Rule:
+    return lambda x, t: rule(rule(x, t), t)
+
+
+ONCE: dict[str, Rule] = {
+    "central differences": _central,
+    "central differences, of second order at the ends too": _central_second_order,
+    "central differences, repeated at the ends": _repeated,
+    "forward differences": _forward,
+    "backward differences": _backward,
+}
+RULES: list[tuple[str, Rule, int]] = [
+    *((words, rule, 1) for words, rule in ONCE.items()),
+    *((f"{words}, taken twice", _twice(rule), 2) for words, rule in ONCE.items()),
+    ("second differences of positions", _second, 2),
+]
+"""In words, and which derivative each makes."""
+
+
+def _integral(row: Row, below: int, evidence: Evidence) -> Row | None:
+    """The row that a row is so many time derivatives of."""
+    for quantity in QUANTITIES:
+        other = (quantity, row[1])
+        alike = kind_of(other) == kind_of(row) and length_or_angle(other) == length_or_angle(row)
+        if alike and order(other) == order(row) - below and other in evidence.given:
+            return other
+    return None
+
+
+def differences(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Each rule, of all rates that disagree, by the given numbers of one or two orders below that agree."""
+    times = evidence.times
+    if len(times) < 4 or not (np.diff(times) > 0.0).all():
+        return
+    step, latest = float(np.diff(times).min()), float(np.abs(evidence.scene.instants).max())
+    for words, rule, below in RULES:
+        rows: dict[Row, WouldBe] = {}
+        for row in evidence.wrong:
+            source = _integral(row, below, evidence)
+            if source is None or source in evidence.wrong:
+                continue
+            numbers = evidence.given[source]
+            value = rule(numbers, times)
+            # What is subtracted is rounded once in the numbers, and so are the instants.
+            late = latest / step * float(np.abs(value).max(initial=0.0))
+            rounding = 16.0 * EPS * (float(np.abs(numbers).max()) / step**below + late)
+            rows[row] = value, evidence.rounded(row) + rounding
+        if rows:
+            yield Hypothesis(words, f"rates by {words}", rows)
+
+
+def rates_per_input(evidence: Evidence) -> Iterator[Hypothesis]:
+    """dx/dq = x' / q', d2x/dq2 = (x'' - dx/dq q'') / q'^2, where one input q moves and never stops."""
+    laws = {name: rates(law, evidence.times) for name, law in evidence.scene.inputs.items()}
+    moving = {name: law for name, law in laws.items() if np.abs(law[:, 1:]).max(initial=0.0) > 0.0}
+    if len(moving) != 1:
+        return  # with more, a rate has more than one part
+    ((name, law),) = moving.items()
+    speed, bend = law[:, 1, None], law[:, 2, None]
+    if np.abs(speed).min() <= 1e-6 * np.abs(speed).max():
+        return
+    rows: dict[Row, WouldBe] = {}
+    for row in evidence.wrong:
+        rate = _integral(row, 1, evidence)
+        if order(row) == 1:
+            rows[row] = (evidence.held[row] / speed, evidence.rounded(row) / np.abs(speed))
+        elif order(row) == 2 and rate is not None:
+            per = evidence.held[rate] / speed
+            width = evidence.rounded(row) + evidence.rounded(rate) * np.abs(bend / speed)
+            rows[row] = ((evidence.held[row] - per * bend) / speed**2, width / speed**2)
+    if rows:
+        yield Hypothesis(name, f"rates per {name}, not per time", rows)

@@ -1,0 +1,66 @@
+"""Parameters of another car or motion by least squares of the given numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+
+Array = NDArray[np.float64]
+
+# What a linear step from where the parameters are ours must leave of the difference, to be worth a search.
+LIKELY = 0.5
+# What the search may leave of it at most.
+PROMISING = 0.1
+MOST_STEPS = 12
+# The search ends where a step lessens the sum of squares by less than this part: of what is explained whole
+# that is at rounding, and of what is not it is soon.
+SETTLED = 1e-3
+# Of the largest difference, as which a number counts that the parameters do not give.
+FAR = 1e3
+# How near to a number of six digits a parameter is meant to be that number: it is found no better.
+MEANT = 1e-8
+
+
+def fitted(
+    read: Callable[[Array], Array], start: Sequence[float], step: float, theirs: Array
+) -> Array | None:
+    """Parameters at which `read` is nearest to given numbers; None where that leaves much of the difference.
+
+    Args:
+        read: the numbers (B, M) at sets of parameters (B, P); NaN where there are none.
+        start: where the parameters are ours. step: of differences by each.
+    """
+    begin = np.array(start)
+    (first,) = read(begin[None]) - theirs
+    if not np.isfinite(first).all():
+        return None
+    far = FAR * float(np.abs(first).max())
+    known: dict[bytes, Array] = {begin.tobytes(): first}
+
+    def gap(parameters: Array) -> Array:
+        key = parameters.tobytes()
+        if key not in known:
+            known[key] = np.nan_to_num(read(parameters[None])[0] - theirs, nan=far)
+        return known[key]
+
+    def slopes(parameters: Array) -> Array:
+        beside: Array = np.nan_to_num(read(parameters - step * np.eye(len(begin))) - theirs, nan=far)
+        return np.asarray((gap(parameters) - beside).T / step)
+
+    apart, jacobian = float(np.linalg.norm(first)), slopes(begin)
+    change = np.linalg.lstsq(jacobian, -first, rcond=None)[0]
+    if not float(np.linalg.norm(first + jacobian @ change)) <= LIKELY * apart:
+        return None
+    found = least_squares(
+        gap, begin, slopes, x_scale="jac", xtol=1e-15, ftol=SETTLED, gtol=1e-15, max_nfev=MOST_STEPS
+    )
+    return np.asarray(found.x) if float(np.linalg.norm(found.fun)) <= PROMISING * apart else None
+
+
+def meant(amount: float) -> float:
+    """A number of six digits where that is nearly it."""
+    rounded = float(f"{amount:.6g}")
+    return rounded if abs(rounded - amount) <= MEANT * abs(amount) else amount
