@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from pointcoord.effects.effect import Effect
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
-from pointcoord.solve.chord import solve_by_chord
 from pointcoord.solve.pointwise import (
     InstantSolver,
     SquareVelocityTerm,
@@ -71,7 +71,7 @@ NEWTON = Method("newton")
 NEWTON_COLD = Method("newton-cold", at_instants=solve_from_drawing)
 """The same with each instant by itself, from the drawing."""
 
-CHORD = Method("chord", at_instants=solve_by_chord)
+CHORD = Method("chord", at_instants=partial(solve_instants, chord=True))
 """The same as `newton` with one factorisation kept for many instants."""
 
 METHODS: Mapping[str, Method] = {

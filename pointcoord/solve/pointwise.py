@@ -9,9 +9,18 @@ inputs,
     u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
 
 and corrected by Newton's method, all at once; then each is proven to continue the one before it, straight
-or, of a turn by more than a radian, round (see `proven_step`). Where that is not so the path is followed in
-shorter proven steps. Or each instant is reached from the drawing (`solve_from_drawing`). The rates are solved
-for many instants at once either way. This is what the series are measured against.
+or, of a turn by more than a radian, round (see `proven_step`). By `chord` X is kept for as long as it is good
+enough,
+
+    u <- u - X C(u, w),
+
+from the end of the tangent T that X gives, one instant after the other. Where the theorem of Newton and
+Kantorovich holds all along y0 + s T, X contracts towards the end by k = z + omega r, r the radius of the
+theorem, which is k = 1 - sqrt((1 - z)^2 - 2 omega eta): after a step d, |u* - u| <= k |d| / (1 - k).
+
+Where neither leads on the path is followed in shorter proven steps. Or each instant is reached from the
+drawing (`solve_from_drawing`). The rates are solved for many instants at once in any case. This is what the
+series are measured against.
 """
 
 from __future__ import annotations
@@ -49,6 +58,11 @@ BLOCK = 512
 FIRST_AHEAD = 8
 # Where n eps cond(C_u) is larger, rounding may be more than that.
 ROUNDED = 1e-2
+# Of a kept X a slower contraction is worth a new factorisation, which costs as much as some five steps: from
+# 1e-3 to rounding, 1e-16, it takes thirteen.
+SLOW = 0.1
+# Steps from a distance of 1 to rounding at that rate, and as many again for what a bound misjudges.
+LIMIT = 32
 
 
 @dataclass(frozen=True)
@@ -106,6 +120,7 @@ def solve_instants(
     derivative: int,
     square_term: SquareVelocityTerm = square_velocity_term,
     tolerance: float = 0.0,
+    chord: bool = False,
 ) -> Solved:
     """Solve at each instant, each from the one before.
 
@@ -114,6 +129,7 @@ def solve_instants(
         times: increasing instants, shape (N,), s.
         derivative: highest time derivative to solve for, 0 to 2.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
+        chord: whether a factorisation is kept for as many instants as it serves.
     Returns:
         The states, up to the first instant that cannot be reached. What stands still is solved once.
     """
@@ -123,7 +139,8 @@ def solve_instants(
     y[:1], left[:1] = pose.y, pose.left
     part = mechanism.moving_part(functions)
     begun = starting_place(part, pose)
-    here, factors, work, done, ahead = begun.y, begun.factors, begun.work, 1, FIRST_AHEAD
+    here, factors, work, done = begun.y, begun.factors, begun.work, 1
+    lead, ahead = (_by_chord, len(times)) if chord else (_proven_ahead, FIRST_AHEAD)
     goals = part.known(here, known[:, :1])[:, 0]
     between = Between(mechanism, functions, times, part, here)
     beside = between.beside(goals)
@@ -131,12 +148,15 @@ def solve_instants(
     while done < len(times):
         targets = goals[done : done + ahead]
         strip = beside[done - 1 : done - 1 + ahead]
-        found = _proven_ahead(part.system, here, factors, targets, tolerance, strip)
+        found = lead(part.system, here, factors, targets, tolerance, strip)
         work += found.work
         count = len(found.left)
         y[done : done + count], left[done : done + count] = part.back(found.y), found.left
         done += count
-        ahead = min(2 * ahead, BLOCK) if count == len(targets) else max(count, FIRST_AHEAD)
+        if not chord:
+            ahead = min(2 * ahead, BLOCK) if count == len(targets) else max(count, FIRST_AHEAD)
+        if done == len(times):
+            break
         if count:
             here = found.y[-1]
             factors = factorise(part.system.jacobian(here))
@@ -256,6 +276,64 @@ def _proven_ahead(
         good = reached.converged & proof.holds & proof.within(apart)
     count = _first_false(np.asarray(good))
     return _Ahead(reached.y[:count], reached.left[:count], reached.work + Work(residuals=3 * len(good)))
+
+
+def _by_chord(
+    system: QuadraticMap,
+    start: Array,
+    factors: Factors,
+    targets: Array,
+    tolerance: float,
+    beside: Array | None = None,
+) -> _Ahead:
+    """The same one after the other, by the inverse at the start alone, as many as it serves."""
+    n, poses, left, residuals = system.unknowns, [np.empty((0, len(start)))], list[float](), 0
+    if not n * EPS * factors.condition <= ROUNDED or bool(hidden(system, start, factors)):
+        return _Ahead(poses[0], np.empty(0), Work())
+    inverse, here = factors.preconditioner, start
+    omega = float(system.lipschitz(inverse))
+    for i, target in enumerate(targets):
+        with np.errstate(all="ignore"):
+            way = straight_way(system, inverse, here, target, None if beside is None else beside[i])
+            eta, z = way.norms(np.ones(n))
+            rate = 1.0 - float(np.sqrt((1.0 - z) ** 2 - 2.0 * omega * eta))
+        # Not a number where nothing is proven.
+        if not (z < 1.0 and rate <= SLOW):
+            break
+        here = here + way.tangent
+        here[n:] = target
+        rest, steps = _contracted(system, inverse, here, rate, tolerance)
+        residuals += steps + 2
+        if rest is None:
+            break
+        poses.append(here[None])
+        left.append(rest)
+    return _Ahead(np.concatenate(poses), np.array(left), Work(residuals=residuals))
+
+
+def _contracted(
+    system: QuadraticMap, inverse: Array, y: Array, rate: float, tolerance: float
+) -> tuple[float | None, int]:
+    """Carry a place, which is written over, to its pose by steps that contract at a rate.
+
+    Returns:
+        What is proven to be left, rounding apart, None where steps do not shrink to that; and the steps.
+    """
+    previous = np.inf
+    for count in range(1, LIMIT + 1):
+        step = -(inverse @ system.residual(y))
+        y[: system.unknowns] += step
+        size = float(np.abs(step).max())
+        left = rate * size / (1.0 - rate)
+        if left <= tolerance:
+            return left, count
+        # Near rounding a step is noise, or no longer shrinks.
+        if size < 1e-8:
+            noise = np.abs(inverse) @ system.uncertainty(y, np.zeros_like(y))
+            if (np.abs(step) <= noise).all() or size >= 0.5 * previous:
+                return 0.0, count
+        previous = size
+    return None, LIMIT
 
 
 def _guessed(system: QuadraticMap, inverse: Array, start: Array, targets: Array) -> Array:

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.bounds.enclosed_points import _weights
+from pointcoord.bounds.enclosed_points import exact_weights
 from pointcoord.bounds.proof import _lacking
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.linkage.mechanism import Mechanism
@@ -123,7 +123,7 @@ def test_weights_of_carriers_nearly_in_line_are_within_their_radius() -> None:
         mechanism = SimpleNamespace(
             drawing=SimpleNamespace(vectors=vectors), carrier_weights={"rider": first}
         )
-        found = _weights(cast(Mechanism, mechanism), "rider", ("base", "first", "second"))
+        found = exact_weights(cast(Mechanism, mechanism), "rider", ("base", "first", "second"))
         if not np.isfinite(found.radius[0]).all():
             continue
         sound += 1

