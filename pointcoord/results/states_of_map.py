@@ -129,10 +129,6 @@ class StatesOfMap:
         parts = (sums(last - 1, last), sums(last - 3, last - 2), sums(0, last))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Number of the patch of each instant."""
-        return self._inputs(instants)[1]
-
     def unsolved(self, instants: Array) -> Array:
         """Nothing: middles of patches are solved for as finely as rounding allows."""
         return np.zeros(len(instants))
