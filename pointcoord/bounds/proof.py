@@ -136,7 +136,7 @@ def prove(
         times: instants, shape (N,), s.
         reported: the numbers, and what went into them.
         rates: bound each number by itself.
-        certain: take the values of the laws as they are computed for exact.
+        certain: take the values of the laws as they are computed for exact; of positions alone.
     """
     order = None if (times[1:] >= times[:-1]).all() else np.argsort(times, kind="stable")
     columns = np.empty((6, len(times)))
@@ -146,10 +146,9 @@ def prove(
         part = reported.part(here)
         with np.errstate(all="ignore"):  # what overflows comes out infinite, which proves nothing
             if rates:
-                poses, exact = _with_rates(mechanism, times[here], part, certain)
-                bounds.put(
-                    here, poses.groups, *bounds_of_numbers(exact, part.effects, part.together(poses.groups))
-                )
+                poses, exact = _with_rates(mechanism, times[here], part)
+                found = bounds_of_numbers(exact, part.effects, part.together(poses.groups))
+                bounds.put(here, poses.groups, *found)
             else:
                 poses, exact = _positions(mechanism, times[here], part, certain)
             columns[:, here] = _of_poses(times[here], poses, exact, part)
@@ -176,7 +175,7 @@ def _positions(
 
 
 def _with_rates(
-    mechanism: Mechanism, times: Array, reported: Reported, certain: bool
+    mechanism: Mechanism, times: Array, reported: Reported
 ) -> tuple[CertifiedPoses, EnclosedPoses]:
     """The same with the rates of the points, as many as were solved for."""
     y, *rates = reported.solved.coordinates(times, 2)

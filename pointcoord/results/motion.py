@@ -154,7 +154,7 @@ class Motion(Samples):
             UnknownName: there is no such library.
         """
         # Imported here: the solver needs no data frames.
-        from pointcoord.results.data_frame import data_frame
+        from pointcoord.results.named_columns import data_frame
 
         return data_frame(self, library)
 

@@ -1,16 +1,22 @@
-"""The numbers of samples as named columns with their units, as tables and files have them."""
+"""The numbers of samples as named columns with their units, as tables, files and data frames have them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.errors import MissingLibrary, UnknownName
 from pointcoord.results.samples import Samples
 
 Array = NDArray[np.float64]
+
+# The first that is installed is taken; each is an extra of the same name.
+LIBRARIES = ("pandas", "polars")
 
 
 def columns(samples: Samples) -> Iterator[tuple[str, Array]]:
@@ -32,3 +38,29 @@ def number_columns(samples: Samples) -> Iterator[tuple[str, Array]]:
             else:
                 for i, axis in enumerate("xyz"):
                     yield f"{quantity}.{name}.{axis} [{unit}]", array[..., i]
+
+
+def data_frame(samples: Samples, library: str | None = None) -> Any:
+    """A row for each instant, a column for each number, named as in the CSV; see `Motion.to_dataframe`."""
+    if library is not None and library not in LIBRARIES:
+        raise UnknownName("library of data frames", library, LIBRARIES)
+    module = _imported(LIBRARIES if library is None else (library,))
+    # A frame of its own: what is written into it does not change the samples.
+    return module.DataFrame({name: np.array(column) for name, column in columns(samples)})
+
+
+def _imported(libraries: tuple[str, ...]) -> Any:
+    """The first of some libraries that is installed.
+
+    Raises:
+        MissingLibrary: none is, or one that is installed does not load.
+    """
+    for name in libraries:
+        try:
+            return import_module(name)
+        except ModuleNotFoundError as error:
+            if error.name != name:
+                raise MissingLibrary("a data frame", (name,), f"does not load: {error}") from None
+        except ImportError as error:
+            raise MissingLibrary("a data frame", (name,), f"does not load: {error}") from None
+    raise MissingLibrary("a data frame", libraries)

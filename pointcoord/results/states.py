@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.solved_coordinates import SolvedCoordinates
+from pointcoord.bounds.solved_coordinates import SolvedCoordinates, Summed
 from pointcoord.errors import OutsideMotion
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.linkage.mechanism import Mechanism
@@ -26,7 +26,6 @@ from pointcoord.solve.taylor import Chain, last_magnitudes
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.solved_coordinates import Summed
     from pointcoord.solve.pointwise import Solved
 
 Array = NDArray[np.float64]
@@ -141,10 +140,6 @@ class StatesAtInstants:
         """Nothing: they were solved for."""
         return ()
 
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """There are no series."""
-        return np.zeros(len(instants), dtype=np.intp)
-
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave."""
         return self.solved.left[np.searchsorted(self.solved.times, instants)]
@@ -254,8 +249,6 @@ class StatesOfChain:
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
-        from pointcoord.bounds.solved_coordinates import Summed
-
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
         # Terms that are missing by chance tell nothing of what is left out.
         lasts = [
@@ -274,15 +267,11 @@ class StatesOfChain:
         parts = (sums(-2, None, lasts), sums(-4, -2, terms), sums(0, None, terms))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Number of the segment of each instant."""
-        starts = [segment.start for segment in self.chain.segments]
-        return np.asarray(np.searchsorted(starts, instants, side="right") - 1)
-
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave at the start of each segment."""
         left = np.array([np.max(segment.left) for segment in self.chain.segments])
-        return left[self.pieces(instants)]
+        starts = [segment.start for segment in self.chain.segments]
+        return np.asarray(left[np.searchsorted(starts, instants, side="right") - 1])
 
     @property
     def work(self) -> Work:

@@ -112,7 +112,7 @@ class StatesOfMap:
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
-        inputs, patch = self._inputs(instants), self.pieces(instants)
+        inputs, patch = self._inputs(instants), self.patches.lookup.at(self._inputs(instants)[0])
         middle, half = self.patches.boxes
         sizes = [
             np.abs(state - (middle[patch] if d == 0 else 0.0)) / half[patch] for d, state in enumerate(inputs)
@@ -130,10 +130,6 @@ class StatesOfMap:
 
         parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))
         return [Summed(*part) for part in zip(*parts, strict=True)]
-
-    def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Number of the patch of each instant."""
-        return self.patches.lookup.at(self._inputs(instants)[0])
 
     def unsolved(self, instants: Array) -> Array:
         """Nothing: middles of patches are solved for as finely as rounding allows."""

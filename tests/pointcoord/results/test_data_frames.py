@@ -13,7 +13,7 @@ import pytest
 
 from pointcoord import MissingLibrary, Scene, UnknownName, simulate
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.results.data_frame import LIBRARIES
+from pointcoord.results.named_columns import LIBRARIES
 from validate.output.motion_tables import write_csv
 
 ROOT = Path(__file__).parents[3]
@@ -107,6 +107,6 @@ def test_nothing_but_a_frame_imports_a_library_of_frames() -> None:
         "import sys\n"
         "from pointcoord import Scene, simulate\n"
         "motion = simulate(Scene.load('steer'))\n"
-        "assert not {'pandas', 'polars', 'pointcoord.results.data_frame'} & set(sys.modules)\n"
+        "assert not {'pandas', 'polars', 'pointcoord.results.named_columns'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)

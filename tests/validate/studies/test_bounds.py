@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -115,8 +116,13 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
 ) -> None:
     from pointcoord.bounds import proof
 
-    honest = proof._reported_bound
-    monkeypatch.setattr(proof, "_reported_bound", lambda *a: honest(*a) * 1e-6)
+    honest = proof._of_poses
+
+    def short(*given: Any) -> tuple[Any, ...]:
+        own, bound, *others = honest(*given)
+        return own, 1e-6 * bound, *others
+
+    monkeypatch.setattr(proof, "_of_poses", short)
     (row,) = held_pose(beside(poses[0], 1e-4))
     findings = bounds().summary([{"part": "held", "number": 0, **row}])
     assert findings.status == ExitStatus.DISAGREE
