@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         SingularConfiguration,
         SweepError,
         UnknownName,
+        WrongArgument,
     )
     from pointcoord.mapping.kinematic_map import KinematicMap, kinematic_map
     from pointcoord.poses import SolvedPoses, solve_poses
@@ -68,6 +69,7 @@ __all__ = [
     "Sweep",
     "SweepError",
     "UnknownName",
+    "WrongArgument",
     "built_in_scenes",
     "designs_of",
     "designs_of_scenes",
