@@ -1,7 +1,7 @@
 """Where a drawing stands: the inputs' drawn values, how far each can go from there, and the wheel's angles.
 
-Each input is driven alone, the others held as drawn, along a path that cannot change branch (see `assembly`,
-and `taylor` for a turn), until it meets a pose beyond which there is none.
+Each input is driven alone, the others held as drawn, along a path that cannot change branch (see `assembly`),
+until it meets a pose beyond which there is none.
 """
 
 from __future__ import annotations
@@ -20,16 +20,12 @@ from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
-from pointcoord.solve.assembly import assemble, close_drawing
-from pointcoord.solve.follower import Path, follow
-from pointcoord.solve.status import Blocked
-from pointcoord.solve.taylor import Settings, build_chain
-from pointcoord.time_functions import Polynomial
+from pointcoord.solve.assembly import close_drawing, driven_to
+from pointcoord.solve.follower import Path
 
 Array = NDArray[np.float64]
 
-# Of the mechanism's size: how exact the way to the end of a turn is. The end itself is as exact as a pose.
-TOLERANCE = 1e-9
+WHOLE = 2.0 * np.pi  # rad
 
 
 @dataclass(frozen=True)
@@ -124,36 +120,26 @@ def _angles(scene: Scene, mechanism: Mechanism, y: Array, axes: CarAxes) -> dict
 
 
 def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
-    """Both ends of one input, the lower value first."""
-    first = mechanism.map.unknowns
-    if name in mechanism.topology.turning:
-        return _end_of_turn(mechanism, closed, name, -1.0), _end_of_turn(mechanism, closed, name, 1.0)
-    drive, *others = (drive for drive in mechanism.topology.drives if drive.input == name)
+    """Both ends of one input, the lower value first; of a turn a whole one to either side at most."""
+    drawn = _drawn(mechanism, closed)
+    drive = next(drive for drive in mechanism.topology.drives if drive.input == name)
+    turns = name in mechanism.topology.turning
     place = mechanism.layout.scalar(drive.coordinate)
+    if turns:
+        farthest = [drawn[name] - WHOLE, drawn[name] + WHOLE]
+    else:
+        extremes = np.array(drive.extremes(mechanism.drawing))
+        farthest = drive.input_value(extremes, mechanism.drawing).tolist()
     found = []
-    for farthest in drive.extremes(mechanism.drawing):
-        target = closed.y[first:].copy()
-        target[place - first] = farthest
-        there = drive.input_value(farthest, mechanism.drawing)[..., None]
-        for other in others:
-            own = other.series(there, mechanism.drawing)[0]
-            target[mechanism.layout.scalar(other.coordinate) - first] = own
-        path = follow(mechanism.map, closed.y, target)
-        value = float(drive.input_value(path.y[place], mechanism.drawing))
-        stopped = float(path.done) < 1.0
+    for value in farthest:
+        wanted = {**drawn, name: value}
+        _, path = driven_to(mechanism, {one: np.array(number) for one, number in wanted.items()}, closed, 0.0)
+        done = float(path.done)
+        if turns:
+            value = drawn[name] + done * (value - drawn[name])
+        else:
+            value = float(drive.input_value(path.y[place], mechanism.drawing))
         forces = smallest_left_singular_vector(path.factors.matrix)
-        limits = mechanism.topology.strongest(forces) if stopped else ()
-        found.append(End(value, limits))
+        found.append(End(value, mechanism.topology.strongest(forces) if done < 1.0 else ()))
     low, high = sorted(found, key=lambda end: end.value)
     return low, high
-
-
-def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
-    """The end of a turn to one side, a whole one at most: a motion that turns it at 1 rad/s ends there."""
-    drawn = _drawn(mechanism, closed)
-    laws = {one: Polynomial((value, side) if one == name else (value,)) for one, value in drawn.items()}
-    start = assemble(mechanism, {one: np.array(value) for one, value in drawn.items()}, closed=closed)
-    settings = Settings(tolerance=TOLERANCE, derivative=0)
-    chain = build_chain(mechanism, laws, start, 0.0, 2.0 * np.pi, settings)
-    limits = chain.status.limits if isinstance(chain.status, Blocked) else ()
-    return End(drawn[name] + side * (chain.stop if chain.segments else 0.0), limits)

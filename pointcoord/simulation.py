@@ -34,7 +34,7 @@ from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
 from pointcoord.solve.follower import follow, stepped
 from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
-from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Chain, Settings, build_chain
+from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 from pointcoord.wording import shown
 
@@ -235,9 +235,12 @@ def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
     Args:
         hopeful: whether to go on to the most segments where the first ones tell that these will not do.
     """
-    notes = tolerance_notes(task.scene, task.readout.mechanism)
-    chain = _chain(task, hopeful)
-    states = StatesOfChain(task.readout, task.functions, chain, task.scene.time.start, notes)
+    mechanism, time = task.readout.mechanism, task.scene.time
+    settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
+    settings = replace(settings, hopeful=hopeful)
+    chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
+    notes = tolerance_notes(task.scene, mechanism)
+    states = StatesOfChain(task.readout, task.functions, chain, time.start, notes)
     return SolvedScene(task.readout, task.functions, states)
 
 
@@ -328,13 +331,6 @@ def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
             return blocked(mechanism, problem, path, target, path.done < 1.0, instant)
         y = path.y
     return NotMapped(until, inputs, way.reason)
-
-
-def _chain(task: Task, hopeful: bool = True) -> Chain:
-    mechanism, time = task.readout.mechanism, task.scene.time
-    settings = chain_settings(task.scene, mechanism, task.readout.plan.derivative)
-    settings = replace(settings, hopeful=hopeful)
-    return build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
 
 
 def _at_instants(task: Task) -> SolvedScene:

@@ -59,7 +59,6 @@ INPUTS = 2
 POWERS = 400
 # Spans of time by which the ranges of inputs are found, and how fast they go; their edges are multiples of
 # the golden ratio, which fall in step with no swing.
-FEWEST, CARRIED_ON = 8, 3
 SPANS, GOLDEN = 256, 0.5 * (5.0**0.5 - 1.0)
 # A start is taken for the middle of a range if it is no farther from it, in parts of half of it: a way there
 # costs as much as some 20 powers, and so wide a margin at most one degree more.
@@ -70,6 +69,8 @@ NARROWEST = 2.0**-20
 SMALLEST = 1e-200
 # Designs that need more degrees than this multiple of what the middle one does are followed in time.
 STANDS_OUT = 1.25
+# Degrees that a series is begun with, and how often it is carried on.
+FEWEST, CARRIED_ON = 8, 3
 # Early degrees fall faster than later ones: so many times as many are added as they tell, so that a
 # series is carried on once.
 SLOWER = 1.2
