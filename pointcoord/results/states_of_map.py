@@ -112,7 +112,8 @@ class StatesOfMap:
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""
-        inputs, patch = self._inputs(instants), self.patches.lookup.at(self._inputs(instants)[0])
+        inputs = self._inputs(instants)
+        patch = self.patches.lookup.at(inputs[0])
         middle, half = self.patches.boxes
         sizes = [
             np.abs(state - (middle[patch] if d == 0 else 0.0)) / half[patch] for d, state in enumerate(inputs)
