@@ -52,17 +52,17 @@ class Lookup:
                 return -1
             place = int((value - low) * along)
             box = box * parts + (place if place < parts else parts - 1)
-        number: int = table[box]
+        number: int = table.item(box)
         return number
 
     @cached_property
-    def _flat(self) -> tuple[list[tuple[float, float, float]], int, memoryview]:
+    def _flat(self) -> tuple[list[tuple[float, float, float]], int, Whole]:
         """Ends of each input with the smallest boxes per unit, how many of these lie along a range, and the
         table laid out flat."""
         low, high = self.domain.ends
         along = self.domain.parts / (high - low)
         ends = list(zip(low.tolist(), high.tolist(), along.tolist(), strict=True))
-        return ends, self.domain.parts, np.ascontiguousarray(self.table).ravel().data
+        return ends, self.domain.parts, self.table.ravel()
 
     def everywhere(self, low: Array, high: Array) -> NDArray[np.bool_]:
         """Whether boxes of values, (N, p), touch nothing that no patch covers, (N,)."""
