@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from absolute.description import Model
 from absolute.effects import effects_of
 from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.initial_assembly import branch_error, locked
+from absolute.initial_assembly import assemble, branch_error, locked
 from absolute.input_arrays import chassis_series, input_series
 from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.mechanism import Mechanism
@@ -28,7 +28,6 @@ def solve(
     chassis: Array | None = None,
     rates: bool = True,
     conditions: bool = False,
-    errors: bool = False,
     effects: Sequence[str] = (),
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
@@ -41,11 +40,7 @@ def solve(
             points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        errors: also an estimate of the error of each quantity at each instant (see `estimate`), of which
-            long smooth motions have some per cent more (see `sampled_estimate`). It costs several times as
-            much as the solution itself, and half of it where those are dense; nothing of that changes.
-        effects: names of EFFECTS; with `errors` also how far each may be off. One that needs derivatives
-            over time brings the rates with it.
+        effects: names of EFFECTS. One that needs derivatives over time brings the rates with it.
     Returns:
         Solution with one row per instant.
     Raises:
@@ -70,24 +65,46 @@ def solve(
     >>> bool(abs(solution.position["end"][0, 2] - 150.0) < 1e-12)
     True
     """
-    asked = effects_of(effects)
-    for effect in asked:
-        model.corner.ends(effect.role)
-    rates = rates or any(effect.derivative > 0 for effect in asked)
-    series = driven_series(model, inputs)
-    count = len(series)
-    carried = chassis_series(chassis, count)
-    mechanism = Mechanism(model)
-    turns = turnings(model, inputs, count)
-    record = Record(mechanism, series, carried, Asked(rates, conditions, errors, asked), turns)
-    try:
+    return Assembled(model).solve(inputs, chassis, rates, conditions, effects)
+
+
+class Assembled:
+    """A linkage whose drawing is put together, to be solved for any inputs.
+
+    Raises:
+        DescriptionError, AssemblyError, SingularError: as `solve`.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._mechanism = Mechanism(model)
         with np.errstate(over="ignore", invalid="ignore"):
-            tracking = Tracking(mechanism)
-        solve_instants(tracking, series, rates, record)
-    except AbsoluteError as error:
-        error.partial = record.solution() if record.written else None
-        raise
-    return record.solution()
+            self._drawn = assemble(self._mechanism)
+
+    def solve(
+        self,
+        inputs: Mapping[str, Array],
+        chassis: Array | None = None,
+        rates: bool = True,
+        conditions: bool = False,
+        effects: Sequence[str] = (),
+    ) -> Solution:
+        """The motion by inputs at N instants; arguments and errors are those of `solve`."""
+        model = self.model
+        asked = effects_of(effects)
+        for effect in asked:
+            model.corner.ends(effect.role)
+        rates = rates or any(effect.derivative > 0 for effect in asked)
+        series = driven_series(model, inputs)
+        carried = chassis_series(chassis, len(series))
+        turns = turnings(model, inputs, len(series))
+        record = Record(self._mechanism, carried, Asked(rates, conditions, asked), turns)
+        try:
+            solve_instants(Tracking(self._mechanism, *self._drawn), series, rates, record)
+        except AbsoluteError as error:
+            error.partial = record.solution() if record.written else None
+            raise
+        return record.solution()
 
 
 def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from absolute.continuation import LARGEST_CORRECTION, LONGEST_STEP
 from absolute.continue_to import continue_to
 from absolute.expansion import Expansion, between, expand, line_between, products
-from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
 from absolute.newton import Pose, correct
 from absolute.solution import Array, Counts
@@ -67,9 +66,9 @@ class Found(NamedTuple):
 class Tracking:
     """The way through all instants of a motion; begins with the assembled drawing."""
 
-    def __init__(self, mechanism: Mechanism) -> None:
+    def __init__(self, mechanism: Mechanism, drawn: Pose, spent: int) -> None:
         self.mechanism = mechanism
-        self._drawn, self._spent = assemble(mechanism)
+        self._drawn, self._spent = drawn, spent
         self._window = FIRST_WINDOW
         # Instants to step through before the next run may begin, after one that was too short, or wrong.
         self._steps, self._pause, self._caution = 1, 1, SHORTEST_RUN

@@ -41,7 +41,7 @@ def predictions(model: absolute.Model, inputs: Inputs) -> int:
     mechanism = Mechanism(model)
     targets = mechanism.target_series(np.stack([inputs[name] for name in model.inputs], -1))
     values = np.stack([inputs[name][:, 0] for name in model.inputs], -1).tolist()
-    return int(Tracking(mechanism).advance(values, targets[0]).predicted.sum())
+    return int(Tracking(mechanism, *assemble(mechanism)).advance(values, targets[0]).predicted.sum())
 
 
 def one_by_one(monkeypatch: pytest.MonkeyPatch, model: absolute.Model, inputs: Inputs) -> absolute.Solution:
@@ -104,7 +104,7 @@ def test_of_instants_the_first_of_which_has_no_pose_none_is_found(kind: Kind, mo
     beyond = {name: series.copy() for name, series in inputs.items()}
     beyond["rack"][:, 0] = 100.0 * mechanism.drawing.size
     rows = [np.stack([given[name] for name in model.inputs], -1) for given in (inputs, beyond)]
-    tracking = Tracking(mechanism)
+    tracking = Tracking(mechanism, *assemble(mechanism))
     tracking.advance(rows[0][:, 0].tolist(), mechanism.target_series(rows[0])[0])
     assert len(tracking.found.q) == 6
     with pytest.raises(absolute.AbsoluteError):
