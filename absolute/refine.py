@@ -16,9 +16,6 @@ from absolute.tracking import Found
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
 BATCH = 64
 
-# A prediction that needs no larger first correction was right: a hundredth of the distance of branches.
-SMALL = 1e-6
-
 # Corrections below this are rounding of the 30 or so unknowns themselves.
 ROUNDING = 2 * EPS
 
@@ -42,8 +39,6 @@ class Refined(NamedTuple):
         closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
         kept: (N,) whether the pose is on the branch of the drawing: signs of its groups and its joints.
         held: (N,) whether the rows that were left out hold.
-        sure: (N,) whether what was predicted was right: a small first correction, the determinant's sign.
-        q: (N, configuration) of Pinocchio.
     """
 
     rotation: Array
@@ -56,8 +51,6 @@ class Refined(NamedTuple):
     closed: NDArray[np.bool_]
     kept: NDArray[np.bool_]
     held: NDArray[np.bool_]
-    sure: NDArray[np.bool_]
-    q: Array
 
 
 def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> Refined:
@@ -80,7 +73,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     groups = mechanism.groups
     inverse, signs = inverses(groups, jacobian)
     steps = solved(groups, jacobian, inverse, stack.gap(placed, targets[0]))
-    first = previous = lengths(steps)
+    previous = lengths(steps)
     # How far a pose may move so that its inverse is off by no more than SERVES.
     reach = SERVES / magnitude(inverse)
     more = np.ones(len(q), dtype=np.bool_)
@@ -116,11 +109,9 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         drift = stack.drift(placed, moving)
         acceleration = solved(groups, jacobian, inverse, targets[2] - drift)
     residual = np.abs(stack.gap(placed, targets[0])).max(axis=1)
-    sure = ~found.predicted | (first <= SMALL)
     # Those of the inverses were found a correction before.
     changed = np.flatnonzero((signs != found.signs).any(axis=1))
     if changed.size:
-        sure[changed] &= ~found.predicted[changed]
         signs[changed] = mechanism.signs(jacobian[changed])
     kept = stack.kept(placed) & np.asarray((signs == found.signs).all(axis=1))
     held: NDArray[np.bool_] = np.ones(len(q), dtype=np.bool_)
@@ -147,8 +138,6 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         closed,
         kept,
         held,
-        sure,
-        q,
     )
 
 

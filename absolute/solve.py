@@ -136,8 +136,7 @@ def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Recor
 def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
     """Track the pose through some instants, then refine all that were reached, even if one was not.
 
-    Where a prediction was not right, the way goes on step by step. An instant that ends on another branch is
-    tried once more, from the assembled drawing.
+    An instant that ends on another branch is tried once more, from the assembled drawing.
     """
     begin, again = record.written, -1
     mechanism, targets = tracking.mechanism, tracking.mechanism.target_series(series)
@@ -146,7 +145,7 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
         failure: AbsoluteError | None = None
         done = record.written - begin
         try:
-            found = tracking.advance(values[done:], targets[0, done:])
+            found = tracking.advance(values[done:])
         except AbsoluteError as error:
             failure, found = error, tracking.found
         wrong = _store(mechanism, found, targets[:, done:], rates, record)
@@ -154,12 +153,9 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
             if failure is not None:
                 raise failure
             continue
-        refined, place, before = wrong
+        refined, place = wrong
         bad = record.written
         here = bad - begin
-        if not refined.sure[place]:
-            tracking.step_to(bad, before, values[here - 1], targets[0, here - 1])
-            continue
         if not refined.closed[place]:
             raise _stalled(mechanism, bad, values[here], refined, place)
         there = refined.rotation[place], refined.origin[place]
@@ -177,29 +173,25 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
 
 def _store(
     mechanism: Mechanism, found: Found, targets: Array, rates: bool, record: Record
-) -> tuple[Refined, int, Array | None] | None:
+) -> tuple[Refined, int] | None:
     """Refine and write down what was found, up to the first instant that is not right.
 
     Returns:
-        Where there is such an instant, the part it is in, its place there, and the configuration of the
-        instant before if that was found as well.
+        Where there is such an instant, the part it is in, and its place there.
     """
-    before: Array | None = None
     # Even parts: a small one at the end would cost as many calls as a full one.
     whole = len(found.q)
     parts = max(1, round(whole / BATCH))
     for number in range(parts if whole else 0):
         part = slice(whole * number // parts, whole * (number + 1) // parts)
         refined = refine(mechanism, found.part(part), targets[:, part], rates)
-        good = refined.closed & refined.kept & refined.held & refined.sure
+        good = refined.closed & refined.kept & refined.held
         if rates:
             good &= _in_range(mechanism, refined)
         count = len(good) if good.all() else int(np.argmin(good))
         record.store(refined, count)
-        if count:
-            before = refined.q[count - 1]
         if count < len(good):
-            return refined, count, before
+            return refined, count
     return None
 
 

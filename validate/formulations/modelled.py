@@ -69,7 +69,11 @@ class Problem:
         stated = accuracy_at(self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True)
         assert stated.blind is not None  # of a stated accuracy it is known
         if stated.blind.any():
-            raise NearFold(int(np.argmax(stated.blind)), float(self.scene.instants[np.argmax(stated.blind)]))
+            raise AccuracyError(
+                f"the pose at t = {self.scene.instants[np.argmax(stated.blind)]:.10g} s",
+                "leaves open on which side of a fold it is",
+                "poses that a model's rounding cannot bring to another assembly",
+            )
         numbers = asked_of(found.numbers, self.scene)
         accuracy = replace(stated, claims=self._per_second(stated.claims), blind=None)
         return Solution(who, self.scene.instants[:count], self._per_second(numbers), accuracy)
@@ -93,18 +97,6 @@ def asked_of(found: Numbers, scene: Scene) -> Numbers:
         for quantity, names in asked_numbers(scene).items()
         if quantity in found
     }
-
-
-class NearFold(AccuracyError):
-    """A pose that cannot be told from the one on the other side of a fold."""
-
-    def __init__(self, number: int, instant: float) -> None:
-        self.instant = instant
-        super().__init__(
-            f"the pose at t = {instant:.10g} s",
-            "leaves open on which side of a fold it is",
-            "poses that a model's rounding cannot bring to another assembly",
-        )
 
 
 def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:
