@@ -17,11 +17,12 @@ from absolute.errors import (
     UnreachableError,
 )
 from absolute.solution import Solution
-from absolute.solve import solve
+from absolute.solve import Assembled, solve
 
 __all__ = [
     "EFFECTS",
     "AbsoluteError",
+    "Assembled",
     "AssemblyError",
     "Axis",
     "BranchError",

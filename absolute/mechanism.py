@@ -114,11 +114,6 @@ class Mechanism:
             there[...] = pin.normalize(model, pin.integrate(model, one, way))
         return moved
 
-    def normalized(self, q: Array) -> Array:
-        """A configuration with unit quaternions."""
-        unit: Array = pin.normalize(self.pin_model, q)
-        return unit
-
     def named(self, values: Sequence[float]) -> dict[str, float]:
         """Values by name; of inputs that take the same one, that of the first."""
         named: dict[str, float] = {}
@@ -128,10 +123,15 @@ class Mechanism:
 
     def targets(self, values: Sequence[float], rates: Sequence[float] | None = None) -> Array:
         """(3, rows): what the rows shall equal, and its first and second rate, for inputs at steady rates."""
-        series = np.zeros((1, 3, len(self._laws)))
-        series[0, 0] = values
-        series[0, 1] = 0.0 if rates is None else rates
-        return np.asarray(self.target_series(series)[:, 0])
+        targets = np.zeros((3, self.stack.count))
+        targets[0] = self.stack.drawn
+        speeds = [0.0] * len(values) if rates is None else rates
+        for row, ((law, factor), value, speed) in enumerate(
+            zip(self._laws, values, speeds, strict=True), self.joint_rows
+        ):
+            f, f1, f2 = law(value)
+            targets[:, row] = factor * f, factor * f1 * speed, factor * f2 * speed * speed
+        return targets
 
     def target_series(self, series: Array) -> Array:
         """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""

@@ -16,11 +16,8 @@ from absolute.tracking import Found
 # Instants per batch: enough to share the cost of a call, few enough to stay in fast memory.
 BATCH = 64
 
-# A prediction that needs no larger first correction was right: a hundredth of the distance of branches.
-SMALL = 1e-6
-
 # Corrections below this are rounding of the 30 or so unknowns themselves.
-ROUNDING = 32 * EPS
+ROUNDING = 2 * EPS
 
 # A solution whose last correction is this share of it is left with SERVES of that: rounding.
 SETTLED = EPS / SERVES
@@ -37,15 +34,11 @@ class Refined(NamedTuple):
         rotation: (N, bodies, 3, 3). origin: (N, bodies, 3).
         velocity, acceleration: (N, 6 * moving bodies) [o', w] and [o'', w'], empty without rates.
         corrections: (N,) Newton corrections in all.
-        residual: (N,) largest violation of a row.
+        residual: (N,) largest violation of a row, or of the rate of one that was left out at unit speed.
         step: (N,) the last correction, not made.
         closed: (N,) whether corrections became as small as rounding and the rows closed to rounding.
         kept: (N,) whether the pose is on the branch of the drawing: signs of its groups and its joints.
-        left: (N, 3, rows) what is left of the equations of the pose and its rates as computed, zero without
-            rates.
         held: (N,) whether the rows that were left out hold.
-        sure: (N,) whether what was predicted was right: a small first correction, the determinant's sign.
-        q: (N, configuration) of Pinocchio.
     """
 
     rotation: Array
@@ -57,10 +50,7 @@ class Refined(NamedTuple):
     step: Array
     closed: NDArray[np.bool_]
     kept: NDArray[np.bool_]
-    left: Array
     held: NDArray[np.bool_]
-    sure: NDArray[np.bool_]
-    q: Array
 
 
 def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> Refined:
@@ -83,7 +73,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     groups = mechanism.groups
     inverse, signs = inverses(groups, jacobian)
     steps = solved(groups, jacobian, inverse, stack.gap(placed, targets[0]))
-    first = previous = lengths(steps)
+    previous = lengths(steps)
     # How far a pose may move so that its inverse is off by no more than SERVES.
     reach = SERVES / magnitude(inverse)
     more = np.ones(len(q), dtype=np.bool_)
@@ -118,17 +108,10 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         moving[:, 1:] = velocity.reshape(len(q), -1, 2, 3)
         drift = stack.drift(placed, moving)
         acceleration = solved(groups, jacobian, inverse, targets[2] - drift)
-    left = np.zeros((len(q), 3, stack.count))
-    left[:, 0] = stack.gap(placed, targets[0])
-    if rates:
-        left[:, 1] = targets[1] - np.matvec(jacobian, velocity)
-        left[:, 2] = targets[2] - drift - np.matvec(jacobian, acceleration)
-    residual = np.abs(left[:, 0]).max(axis=1)
-    sure = ~found.predicted | (first <= SMALL)
+    residual = np.abs(stack.gap(placed, targets[0])).max(axis=1)
     # Those of the inverses were found a correction before.
     changed = np.flatnonzero((signs != found.signs).any(axis=1))
     if changed.size:
-        sure[changed] &= ~found.predicted[changed]
         signs[changed] = mechanism.signs(jacobian[changed])
     kept = stack.kept(placed) & np.asarray((signs == found.signs).all(axis=1))
     held: NDArray[np.bool_] = np.ones(len(q), dtype=np.bool_)
@@ -136,10 +119,14 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
     if left_out is not None:
         again, strength = left_out.place(rotation, origin), magnitude(inverse)
         held = np.asarray(held_to(left_out, again, stack.count, strength).all(axis=1))
+        residual = np.maximum(residual, np.abs(left_out.gap(again, left_out.drawn)).max(axis=1))
         if rates:
             # A row that follows from the others has no rate, but for what the pose is off.
             rate = np.abs(np.matvec(left_out.jacobian(again), velocity)).max(axis=1)
-            held &= rate <= LEFT_OUT * (1.0 + np.sqrt(stack.count) * strength) * lengths(velocity)
+            speed = lengths(velocity)
+            held &= rate <= LEFT_OUT * (1.0 + np.sqrt(stack.count) * strength) * speed
+            missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
+            residual = np.maximum(residual, missed)
     return Refined(
         rotation,
         origin,
@@ -150,10 +137,7 @@ def refine(mechanism: Mechanism, found: Found, targets: Array, rates: bool) -> R
         previous,
         closed,
         kept,
-        left,
         held,
-        sure,
-        q,
     )
 
 

@@ -23,16 +23,11 @@ class Solution:
         iterations: (N,) Newton corrections spent on the way to each instant.
         residual: (N,) largest violation of any row, mm (rows of directions times the size of the
             mechanism).
-        condition: (N,) 2-norm condition number of the scaled Jacobian, or None if not asked for. Of long
-            motions with errors some per cent larger at most, and no smaller (see `sampled_estimate`).
-        position_error, velocity_error, acceleration_error: point name -> (N, 3): how far each component
-            may be from the motion of the drawing given, for rounding and for what `input_errors` say;
-            infinite where rounding alone reaches a dead point. Empty if not asked for; those of rates
-            empty without rates.
-        angular_velocity_error, angular_acceleration_error: moving body name -> (N, 3), likewise.
-        rotation_error: moving body name -> (N, 3), rad: how far each body may be turned about each axis.
+        condition: (N,) 2-norm condition number of the scaled Jacobian, or None if not asked for.
+        accuracy: (N,) mm: the rows hold for points within this of those given, so that it is what is left
+            of the rows, and what rounds coordinates as large as the mechanism. What it makes of a number
+            depends on the pose.
         effects: name -> (N,), those asked for, in their units (see `EFFECTS`).
-        effect_errors: name -> (N,) how far each may be off, likewise; empty if errors were not asked for.
     """
 
     position: Mapping[str, Array]
@@ -43,11 +38,5 @@ class Solution:
     iterations: Counts
     residual: Array
     condition: Array | None
-    position_error: Mapping[str, Array]
-    velocity_error: Mapping[str, Array]
-    acceleration_error: Mapping[str, Array]
-    rotation_error: Mapping[str, Array]
-    angular_velocity_error: Mapping[str, Array]
-    angular_acceleration_error: Mapping[str, Array]
+    accuracy: Array
     effects: Mapping[str, Array]
-    effect_errors: Mapping[str, Array]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from absolute.description import Model
 from absolute.effects import effects_of
 from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.initial_assembly import branch_error, locked
+from absolute.initial_assembly import assemble, branch_error, locked
 from absolute.input_arrays import chassis_series, input_series
 from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.mechanism import Mechanism
@@ -28,7 +28,6 @@ def solve(
     chassis: Array | None = None,
     rates: bool = True,
     conditions: bool = False,
-    errors: bool = False,
     effects: Sequence[str] = (),
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
@@ -41,11 +40,7 @@ def solve(
             points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        errors: also an estimate of the error of each quantity at each instant (see `estimate`), of which
-            long smooth motions have some per cent more (see `sampled_estimate`). It costs several times as
-            much as the solution itself, and half of it where those are dense; nothing of that changes.
-        effects: names of EFFECTS; with `errors` also how far each may be off. One that needs derivatives
-            over time brings the rates with it.
+        effects: names of EFFECTS. One that needs derivatives over time brings the rates with it.
     Returns:
         Solution with one row per instant.
     Raises:
@@ -70,24 +65,46 @@ def solve(
     >>> bool(abs(solution.position["end"][0, 2] - 150.0) < 1e-12)
     True
     """
-    asked = effects_of(effects)
-    for effect in asked:
-        model.corner.ends(effect.role)
-    rates = rates or any(effect.derivative > 0 for effect in asked)
-    series = driven_series(model, inputs)
-    count = len(series)
-    carried = chassis_series(chassis, count)
-    mechanism = Mechanism(model)
-    turns = turnings(model, inputs, count)
-    record = Record(mechanism, series, carried, Asked(rates, conditions, errors, asked), turns)
-    try:
+    return Assembled(model).solve(inputs, chassis, rates, conditions, effects)
+
+
+class Assembled:
+    """A linkage whose drawing is put together, to be solved for any inputs.
+
+    Raises:
+        DescriptionError, AssemblyError, SingularError: as `solve`.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self._mechanism = Mechanism(model)
         with np.errstate(over="ignore", invalid="ignore"):
-            tracking = Tracking(mechanism)
-        solve_instants(tracking, series, rates, record)
-    except AbsoluteError as error:
-        error.partial = record.solution() if record.written else None
-        raise
-    return record.solution()
+            self._drawn = assemble(self._mechanism)
+
+    def solve(
+        self,
+        inputs: Mapping[str, Array],
+        chassis: Array | None = None,
+        rates: bool = True,
+        conditions: bool = False,
+        effects: Sequence[str] = (),
+    ) -> Solution:
+        """The motion by inputs at N instants; arguments and errors are those of `solve`."""
+        model = self.model
+        asked = effects_of(effects)
+        for effect in asked:
+            model.corner.ends(effect.role)
+        rates = rates or any(effect.derivative > 0 for effect in asked)
+        series = driven_series(model, inputs)
+        carried = chassis_series(chassis, len(series))
+        turns = turnings(model, inputs, len(series))
+        record = Record(self._mechanism, carried, Asked(rates, conditions, asked), turns)
+        try:
+            solve_instants(Tracking(self._mechanism, *self._drawn), series, rates, record)
+        except AbsoluteError as error:
+            error.partial = record.solution() if record.written else None
+            raise
+        return record.solution()
 
 
 def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
@@ -119,8 +136,7 @@ def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Recor
 def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
     """Track the pose through some instants, then refine all that were reached, even if one was not.
 
-    Where a prediction was not right, the way goes on step by step. An instant that ends on another branch is
-    tried once more, from the assembled drawing.
+    An instant that ends on another branch is tried once more, from the assembled drawing.
     """
     begin, again = record.written, -1
     mechanism, targets = tracking.mechanism, tracking.mechanism.target_series(series)
@@ -129,7 +145,7 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
         failure: AbsoluteError | None = None
         done = record.written - begin
         try:
-            found = tracking.advance(values[done:], targets[0, done:])
+            found = tracking.advance(values[done:])
         except AbsoluteError as error:
             failure, found = error, tracking.found
         wrong = _store(mechanism, found, targets[:, done:], rates, record)
@@ -137,12 +153,9 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
             if failure is not None:
                 raise failure
             continue
-        refined, place, before = wrong
+        refined, place = wrong
         bad = record.written
         here = bad - begin
-        if not refined.sure[place]:
-            tracking.step_to(bad, before, values[here - 1], targets[0, here - 1])
-            continue
         if not refined.closed[place]:
             raise _stalled(mechanism, bad, values[here], refined, place)
         there = refined.rotation[place], refined.origin[place]
@@ -160,29 +173,25 @@ def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record)
 
 def _store(
     mechanism: Mechanism, found: Found, targets: Array, rates: bool, record: Record
-) -> tuple[Refined, int, Array | None] | None:
+) -> tuple[Refined, int] | None:
     """Refine and write down what was found, up to the first instant that is not right.
 
     Returns:
-        Where there is such an instant, the part it is in, its place there, and the configuration of the
-        instant before if that was found as well.
+        Where there is such an instant, the part it is in, and its place there.
     """
-    before: Array | None = None
     # Even parts: a small one at the end would cost as many calls as a full one.
     whole = len(found.q)
     parts = max(1, round(whole / BATCH))
     for number in range(parts if whole else 0):
         part = slice(whole * number // parts, whole * (number + 1) // parts)
         refined = refine(mechanism, found.part(part), targets[:, part], rates)
-        good = refined.closed & refined.kept & refined.held & refined.sure
+        good = refined.closed & refined.kept & refined.held
         if rates:
             good &= _in_range(mechanism, refined)
         count = len(good) if good.all() else int(np.argmin(good))
         record.store(refined, count)
-        if count:
-            before = refined.q[count - 1]
         if count < len(good):
-            return refined, count, before
+            return refined, count
     return None
 
 

@@ -57,29 +57,6 @@ class Placed(NamedTuple):
     origin: Array
 
 
-class RowMotion(NamedTuple):
-    """Vectors of every row at given rates of the bodies, each (..., rows, 3).
-
-    Attributes:
-        a, e, r1, r2: as above; r1 is zero and r2 the partner direction where the row is an angle.
-        w1, w2, s1, s2: rates of both bodies; s1 and s2 are zero where the row is an angle.
-        a1, a2, e1, e2: first and second rates of a and e when no body accelerates.
-    """
-
-    a: Array
-    e: Array
-    r1: Array
-    r2: Array
-    w1: Array
-    w2: Array
-    s1: Array
-    s2: Array
-    a1: Array
-    a2: Array
-    e1: Array
-    e2: Array
-
-
 class RowStack:
     """Index arrays built once from the rows of a mechanism."""
 
@@ -256,27 +233,6 @@ class RowStack:
         """(..., rows) what rounding alone may make of a row."""
         far = np.sqrt(np.vecdot(placed.origin, placed.origin))
         return np.asarray(ROUNDINGS * (self._spans + far @ self._between))
-
-    def motion(self, placed: Placed, rates: Array) -> RowMotion:
-        """Rows at rates [o', w] of all bodies, (..., bodies, 2, 3)."""
-        a, e, r2 = placed.parts[..., 0, :, :], placed.reach, placed.parts[..., 4, :, :]
-        r1 = placed.parts[..., 3, :, :] - e
-        first, second = rates.take(self.first, -3), rates.take(self.second, -3)
-        w1, w2 = first[..., 1, :], second[..., 1, :]
-        s1, s2 = first[..., 0, :] * self._is_offset, second[..., 0, :] * self._is_offset
-        t1, t2 = cross(w1, r1), cross(w2, r2)
-        e1, e2 = s2 + t2 - s1 - t1, cross(w2, t2) - cross(w1, t1)
-        a1 = cross(w1, a)
-        a2 = cross(w1, a1)
-        if self.distances.size:
-            b, d1, d2 = (vector[..., self.distances, :] for vector in (a, e1, e2))
-            length = placed.values[..., self.distances, None]
-            along = np.vecdot(b, d1)[..., None]
-            b1 = (d1 - along * b) / length
-            a1[..., self.distances, :] = b1
-            rest = np.vecdot(b, d2)[..., None] + np.vecdot(b1, d1)[..., None]
-            a2[..., self.distances, :] = (d2 - rest * b - 2.0 * along * b1) / length
-        return RowMotion(a, e, r1, r2, w1, w2, s1, s2, a1, a2, e1, e2)
 
     def drift(self, placed: Placed, rates: Array) -> Array:
         """Second rate of the rows when no body accelerates, at rates [o', w], (..., bodies, 2, 3)."""

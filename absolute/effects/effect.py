@@ -1,4 +1,4 @@
-"""What an effect is: a number that a solved motion has at each instant, and how far it may be off."""
+"""What an effect is: a number that a solved motion has at each instant."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,10 +22,6 @@ class Lines(Protocol):
         """(N, 3) from one point to another, mm."""
         ...
 
-    def error(self, ends: tuple[str, str]) -> Array:
-        """(N, 3) how far each component of that line may be off, mm."""
-        ...
-
 
 @dataclass(frozen=True)
 class Effect:
@@ -33,13 +29,12 @@ class Effect:
 
     Attributes:
         name: what a caller asks for.
-        unit: of the value and of its error.
+        unit: of the value.
         gives: what it is, in words.
         sign: what a positive value means, in words.
         role: what the corner must have for it.
         derivative: the derivative over time of the poses that it needs; 0 where poses are enough.
         value: (N,) at the instants of a solved motion.
-        error: (N,) how far each value may be off.
     """
 
     name: str
@@ -49,4 +44,3 @@ class Effect:
     role: str
     derivative: int
     value: Callable[[Lines], Array]
-    error: Callable[[Lines], Array]

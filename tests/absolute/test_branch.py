@@ -117,8 +117,6 @@ def test_a_jump_to_another_branch_on_the_way_is_undone_or_refused(
         calls["jumps"] += 1
         return wrong, 1
 
-    # Instant by instant: there are no runs as long as this.
-    monkeypatch.setattr(absolute.tracking, "SHORTEST_RUN", 1000)
     monkeypatch.setattr(absolute.tracking, "continue_to", jumping)
     if times == 1:
         motion = absolute.solve(strut, inputs)

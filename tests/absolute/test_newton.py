@@ -25,9 +25,7 @@ def test_the_residual_reported_is_how_far_a_row_is_off_its_target_on_either_side
     monkeypatch.setattr(absolute.refine, "MOST_CORRECTIONS", 0)
     angle, rack = mechanism.drawn_inputs.tolist()
     series = np.array([[[angle, rack], [0, 0], [0, 0]], [[angle, rack + off], [0, 0], [0, 0]]])
-    found = Found(
-        np.array([pose.q] * 2), np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.bool_), pose.signs
-    )
+    found = Found(np.array([pose.q] * 2), np.zeros(2, dtype=np.int64), pose.signs)
     refined = refine(mechanism, found, mechanism.target_series(series), False)
     residual = refined.residual * mechanism.drawing.size
     # The rows themselves are closed to a few roundings of the size.

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 import absolute
 from pointcoord import Scene, SceneError
 from validate.closed_drawing import closed_drawing
-from validate.formulations.absolute_coordinates import near_model, near_origin
 
 Array = NDArray[np.float64]
 Places = Mapping[str, Array]
@@ -69,13 +68,11 @@ def closed_by_pointcoord(scene: Scene) -> Places | None:
 
 def closed_by_absolute(scene: Scene) -> Places | None:
     """Where its points are; None where it refuses."""
-    part = scene.mechanism
-    origin = near_origin(part)
     try:
-        closed = absolute.close_drawing(near_model(part, tuple(scene.inputs), origin))
+        closed = absolute.close_drawing(absolute.compile(scene.mechanism.plain(tuple(scene.inputs))))
     except absolute.AbsoluteError:
         return None
-    return {name: place + origin for name, place in closed.position.items()}
+    return dict(closed.position)
 
 
 def outcome(drawn: BadlyDrawn) -> str:

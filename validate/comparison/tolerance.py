@@ -8,8 +8,8 @@ is explained by the claims, and a larger one shows that one of them is broken. M
 quantity in the scene: a number that is zero is solved for together with others that are not, and keeps a
 rounding of a rounding of these. The claims are those of each instant and each component: pointcoord's are
 proven from its own equations in twice the working precision, but never more than its method loses where
-nothing is wrong (`Proof.expected`); the absolute model's are estimated from what its equations are rounded
-from.
+nothing is wrong (`Proof.expected`); those of models that prove nothing are what a stated
+accuracy of their points makes of each number (`formulations.stated_accuracy`).
 
 A tolerance rests on the formulation that claims the larger part of it. Where that part is more than LOOSEST
 times what the other formulation would claim, a fault of the other one that is so many times larger than its

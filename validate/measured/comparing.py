@@ -14,7 +14,7 @@ exact.
 Digits written in full say nothing of how exact a program is: it stops where its own tolerance is met. Where a
 column is in full digits and neither the user nor a map says an accuracy, its program is taken to place every
 point to e = the scene's own tolerance, mm (1e-9 if the scene says none, what `simulate` solves to), and a is
-what that makes of the number at that pose, with the worst signs: see `validate.solvers.held`. A travel in
+what that makes of the number at that pose, with the worst signs (`formulations.stated_accuracy`). A travel in
 full digits is reached to e likewise, which goes into S. Rows where such an error may reach a singular pose
 are not tested. Where S alone is as wide as half of the whole range that the quantity
 has in the file, no number of it could tell its curve from a level line: it is not tested. Independent columns
@@ -484,7 +484,7 @@ def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found
 
 def _stated(scene: Scene, here: Found, laws: Mapping[str, Array]) -> Numbers:
     """What placing every point to the scene's tolerance makes of each number, by inputs and their rates."""
-    from validate.solvers.held import accuracy_at
+    from validate.formulations.stated_accuracy import accuracy_at
 
     rows = here.reached
     places = {name: place[rows] for name, place in here.numbers[PLACES].items()}

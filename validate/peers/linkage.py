@@ -44,6 +44,7 @@ from validate.spanning_tree.wheels import Angle, knuckles, wheel_angles
 Array = NDArray[np.float64]
 
 UNIT_ROUNDOFF = 0.5 * float(np.finfo(float).eps)
+CHAIN = 6.0  # roundings on the way from the chassis to a point
 
 
 @dataclass(frozen=True)
@@ -77,28 +78,17 @@ class Driven:
         found[..., 0] += self.start
         return found
 
-    def doubt(self, law: Array) -> Array:
-        """How far rounding may put the coordinate and its derivatives off, (..., 3)."""
-        value, rate, bend = np.abs(np.moveaxis(law, -1, 0))
-        if self.drive.kind == "angle":
-            value, rate, bend = np.ones_like(value), rate, rate * rate + bend
-        sizes = np.stack([value, rate, bend], axis=-1) * abs(self.scale)
-        sizes[..., 0] += abs(self.start)
-        # A function, a product and a sum.
-        return 3.0 * UNIT_ROUNDOFF * sizes
-
 
 @dataclass(frozen=True)
 class Inputs:
-    """What is told to a program, and how far it may be off by rounding; in the linkage's unit.
+    """What is given to a program, in the linkage's unit.
 
     Attributes:
-        driven, doubt: driven coordinates with two time derivatives, (N, 3, drives).
+        driven: driven coordinates with two time derivatives, (N, 3, drives).
         chassis: motion of the chassis, None if it rests.
     """
 
     driven: Array
-    doubt: Array
     chassis: ChassisMotion | None
 
 
@@ -135,24 +125,37 @@ class Linkage:
         drawn = [driven.coordinate(np.array([driven.drive.drawn, 0.0, 0.0]))[0] for driven in self.driven]
         return np.array(drawn)
 
+    def moved(self, places: Mapping[str, Array]) -> dict[str, float]:
+        """By how much each moving point lies off its place in the drawing, mm."""
+        drawn = self.tree.drawn
+        return {n: self.unit * float(np.linalg.norm(place - drawn[n])) for n, place in places.items()}
+
+    def accuracy(self, last_step: Array) -> Array:
+        """How exactly a program places points after such a last correction, mm.
+
+        A place at the end of a chain of joints is rounded as its coordinates from the linkage's origin are,
+        once for each joint; Newton's method leaves the square of its last correction.
+        """
+        far = max(1.0, *(float(np.abs(place).max()) for place in self.tree.drawn.values()))
+        return np.asarray((CHAIN * UNIT_ROUNDOFF * far + last_step**2) * self.unit)
+
     def inputs(self, laws: Mapping[str, Array]) -> Inputs:
-        """What is told to a program.
+        """What is given to a program.
 
         Args:
             laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
         Raises:
             PeerError: an angle is outside 0 to pi.
         """
-        told, doubts = [], []
+        found = []
         for driven in self.driven:
             drive, law = driven.drive, laws[driven.drive.input]
             near = law if drive.is_angle else law / self.unit
             outside = (law[:, 0] < 0.0) | (law[:, 0] > np.pi)
             if drive.kind == "angle" and outside.any():
                 raise PeerError(f"{drive.input} is outside 0 to pi rad", int(np.argmax(outside)))
-            told.append(driven.coordinate(near))
-            doubts.append(driven.doubt(near))
-        return Inputs(np.stack(told, axis=-1), np.stack(doubts, axis=-1), ChassisMotion.of(self.plain, laws))
+            found.append(driven.coordinate(near))
+        return Inputs(np.stack(found, axis=-1), ChassisMotion.of(self.plain, laws))
 
 
 def linkage_of(plain: Mapping[str, Any]) -> Linkage:

@@ -11,29 +11,18 @@ Lengths go in and come out in mm; inside, the car has a size between one and two
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from validate.relative.accuracy import (
-    FOLD,
-    Deviations,
-    Line,
-    angle_claims,
-    body_claims,
-    deviations,
-    line_derivatives,
-    point_claims,
-    violated,
-)
 from validate.relative.errors import HardpointsError, InputError, PoseError
 from validate.relative.follow import Blocked, Poses, at_places, closed, follow
 from validate.relative.rates import Rates, rates_of
 from validate.relative.tree import Places, Tree, U
-from validate.spanning_tree.cut import CutError, cut
+from validate.spanning_tree.cut import CutError, Place, cut
 from validate.spanning_tree.wheels import Angle, knuckles, wheel_angles
 
 Array = NDArray[np.float64]
@@ -46,18 +35,34 @@ BETWEEN = {
 }
 
 
+# Sizes of the car. What follows from other rows is missed by rounding, raised by the condition number.
+HELD = 1e-11
+# A place at the end of a chain of joints is rounded some four times; lengths of the car are up to two inside.
+ROUNDING = 4.0 * U
+
+
 @dataclass(frozen=True)
-class Motion:
-    """Rates at solved poses, counted in a unit of time of their own at each instant.
+class Line:
+    """A line through two points, of which angles are made.
 
     Attributes:
-        rates: in that unit. inputs: likewise, (N, drives, 3), rad and sizes of the car.
-        exponent: the unit is two to this power, (N,), s.
+        places: start and end, or, where one body carries both, their difference as drawn: a direction, which
+            is exact where they lie near to each other.
     """
 
-    rates: Rates
-    inputs: Array
-    exponent: NDArray[np.int64]
+    places: Places
+
+    @classmethod
+    def of(cls, tree: Tree, start: Place, end: Place) -> Line:
+        """From one point to another."""
+        if start.body == end.body:
+            return cls(tree.together([Place(end.body, end.at - start.at)], np.zeros(1)))
+        return cls(tree.together([start, end]))
+
+    def now(self, matrices: Array) -> Array:
+        """From start to end, (..., 3)."""
+        at = self.places.now(matrices)
+        return np.asarray(at[..., 0, :] if at.shape[-2] == 1 else at[..., 1, :] - at[..., 0, :])
 
 
 @dataclass(frozen=True)
@@ -120,7 +125,7 @@ class Model:
         except Blocked as end:
             raise self._refusal(end, values[end.instant]) from end
 
-    def rates(self, poses: Poses, inputs: Inputs) -> Motion:
+    def rates(self, poses: Poses, inputs: Inputs) -> Rates:
         """Rates at solved poses.
 
         Args:
@@ -135,66 +140,53 @@ class Model:
         for k, drive in enumerate(drives):
             if not drive.is_angle:
                 series[:, k] /= self.unit
-        fastest = np.maximum(np.abs(series[..., 1]), np.sqrt(np.abs(series[..., 2]))).max(axis=1)
-        exponent = np.where(fastest > 0.0, -np.frexp(fastest)[1], 0).astype(np.int64)
-        series[..., 1] = np.ldexp(series[..., 1], exponent[:, None])
-        series[..., 2] = np.ldexp(series[..., 2], 2 * exponent[:, None])
         try:
-            return Motion(rates_of(self.tree, poses, series), series, exponent)
+            return rates_of(self.tree, poses, series)
         except np.linalg.LinAlgError as error:
             raise self._singular(poses, series) from error
 
-    def deviations(self, poses: Poses, motion: Motion) -> Deviations:
-        """What the claims of accuracy are made of.
+    def accuracy(self, poses: Poses) -> Array:
+        """How exactly points are placed, mm, (N,): what is left of all rows, and what rounds lengths."""
+        left = np.concatenate([poses.residual, self._left_out(poses)], axis=1)
+        return np.asarray((np.abs(left).max(axis=1) + ROUNDING) * self.unit)
+
+    def _left_out(self, poses: Poses) -> Array:
+        rows = self.tree.left_out
+        return rows.values(poses.matrices, poses.q, rows.target)
+
+    def require_left_out(self, poses: Poses, inputs: Inputs) -> None:
+        """Hold poses to the rows that depend on others in the drawing.
 
         Raises:
-            PoseError: a pose is so near to a fold that its branch cannot be told, or violates a row that is
-                left out; `partial` has those before.
+            PoseError: one of them does not hold at a pose; `partial` has those before.
         """
-        try:
-            found = deviations(self.tree, poses, motion.rates, motion.inputs)
-        except np.linalg.LinAlgError as error:
-            raise self._singular(poses, motion.inputs) from error
-        near = ~(found.fold < FOLD)
-        if near.any():
-            raise self._near_fold(poses, motion.inputs, found, int(np.argmax(near)))
-        broken = violated(self.tree, poses, motion.rates, motion.inputs, found)
+        broken = ~(np.abs(self._left_out(poses)) <= HELD)
         if broken.any():
             k, row = (int(i) for i in np.argwhere(broken)[0])
             name = self.tree.left_out.rows[row].name
             words = f"does not hold {name}, which follows from the other rows only as drawn"
-            raise self._at_fold(words, poses, motion.inputs, k, float(found.condition[k]))
-        return found
+            raise self._at_fold(words, poses, self._values(inputs, len(poses.q)), k)
 
     def positions(self, poses: Poses) -> Arrays:
         """Every point, (N, 3), mm."""
         return self._by_point(at_places(poses, self._places) * self.unit + self.tree.cut.origin)
 
-    def velocities(self, poses: Poses, motion: Motion) -> Arrays:
+    def velocities(self, rates: Rates) -> Arrays:
         """Every point's, (N, 3), mm/s."""
-        found = self._places.now(motion.rates.matrices[1])
-        return self._by_point(self._timed(motion, 1, self.unit, found))
+        return self._by_point(self._places.now(rates.matrices[1]) * self.unit)
 
-    def accelerations(self, poses: Poses, motion: Motion) -> Arrays:
+    def accelerations(self, rates: Rates) -> Arrays:
         """Every point's, (N, 3), mm/s^2."""
-        found = self._places.now(motion.rates.matrices[2])
-        return self._by_point(self._timed(motion, 2, self.unit, found))
+        return self._by_point(self._places.now(rates.matrices[2]) * self.unit)
 
-    def angular_velocities(self, motion: Motion) -> Arrays:
+    def angular_velocities(self, rates: Rates) -> Arrays:
         """Of the bodies that are reported, (N, 3), rad/s."""
-        twists = motion.rates.twists
-        return {
-            name: self._timed(motion, 1, 1.0, twists[:, self.tree.number[body], 3:])
-            for name, body in self.bodies.items()
-        }
+        return {name: rates.twists[:, self.tree.number[body], 3:] for name, body in self.bodies.items()}
 
-    def angular_accelerations(self, motion: Motion) -> Arrays:
+    def angular_accelerations(self, rates: Rates) -> Arrays:
         """Of the bodies that are reported, (N, 3), rad/s^2."""
-        second = motion.rates.accelerations
-        return {
-            name: self._timed(motion, 2, 1.0, second[:, self.tree.number[body], 3:])
-            for name, body in self.bodies.items()
-        }
+        second = rates.accelerations
+        return {name: second[:, self.tree.number[body], 3:] for name, body in self.bodies.items()}
 
     def angles(self, poses: Poses, turn: Array | None = None) -> Arrays:
         """Angles of the wheels, (N,), rad; on a chassis that is turned, (N, 3, 3)."""
@@ -206,7 +198,7 @@ class Model:
         return vectors if turn is None else np.asarray(np.einsum("nij,n...j->n...i", turn, vectors))
 
     def numbers(
-        self, poses: Poses, motion: Motion | None = None, turn: Array | None = None
+        self, poses: Poses, rates: Rates | None = None, turn: Array | None = None
     ) -> dict[str, Arrays]:
         """By quantity and point, body or angle: all, or positions and angles where no rates are given.
 
@@ -214,69 +206,18 @@ class Model:
             turn: of the chassis, which only angles are given with, (N, 3, 3).
         """
         found = {"position": self.positions(poses), "wheel": self.angles(poses, turn)}
-        if motion is None:
+        if rates is None:
             return found
         return found | {
-            "velocity": self.velocities(poses, motion),
-            "acceleration": self.accelerations(poses, motion),
-            "angular_velocity": self.angular_velocities(motion),
-            "angular_acceleration": self.angular_accelerations(motion),
-        }
-
-    def claims(
-        self, poses: Poses, motion: Motion, known: Deviations, turn: Array | None = None
-    ) -> dict[str, Arrays]:
-        """How far each number of `numbers` may be off."""
-        position, velocity, acceleration = self.point_claims(poses, motion, known)
-        angular_velocity, angular_acceleration = self.body_claims(poses, motion, known)
-        return {
-            "position": position,
-            "velocity": velocity,
-            "acceleration": acceleration,
-            "angular_velocity": angular_velocity,
-            "angular_acceleration": angular_acceleration,
-            "wheel": self.angle_claims(poses, known, turn),
-        }
-
-    def point_claims(self, poses: Poses, motion: Motion, known: Deviations) -> tuple[Arrays, Arrays, Arrays]:
-        """How far places, velocities and accelerations may be off, by point, (N, 3), mm and s."""
-        claims = point_claims(self.tree, poses, motion.rates, known, self._places)
-        place, velocity, acceleration = (
-            self._timed(motion, order, self.unit, claim) for order, claim in enumerate(claims)
-        )
-        place += U * np.abs(at_places(poses, self._places) * self.unit + self.tree.cut.origin)
-        return self._by_point(place), self._by_point(velocity), self._by_point(acceleration)
-
-    def body_claims(self, poses: Poses, motion: Motion, known: Deviations) -> tuple[Arrays, Arrays]:
-        """How far angular velocities and accelerations may be off, by body, (N, 3), rad and s."""
-        found: tuple[Arrays, Arrays] = ({}, {})
-        for name, body in self.bodies.items():
-            claims = body_claims(self.tree, poses, motion.rates, known, body)
-            for order, (arrays, claim) in enumerate(zip(found, claims, strict=True), 1):
-                arrays[name] = self._timed(motion, order, 1.0, claim)
-        return found
-
-    def angle_claims(self, poses: Poses, known: Deviations, turn: Array | None = None) -> Arrays:
-        """How far the angles may be off, (N,), rad."""
-        moved = {}
-        for ends, line in self._lines.items():
-            found = line_derivatives(self.tree, poses, known, line)
-            vector, by = self._turned(found.vector, turn), self._turned(found.by, turn)
-            moved[ends] = replace(found, vector=vector, by=by)
-        return {
-            name: angle_claims(known, moved[angle.start, angle.end], angle.sine, angle.cosine)
-            for name, angle in self.wheel.items()
+            "velocity": self.velocities(rates),
+            "acceleration": self.accelerations(rates),
+            "angular_velocity": self.angular_velocities(rates),
+            "angular_acceleration": self.angular_accelerations(rates),
         }
 
     def _by_point(self, array: Array) -> Arrays:
         """Of all points, (N, P, 3), by name."""
         return {name: array[:, k] for k, name in enumerate(self.tree.cut.points)}
-
-    def _timed(self, motion: Motion, order: int, unit: float, array: Array) -> Array:
-        """In mm and s."""
-        exponent = (-order * motion.exponent).reshape(-1, *[1] * (array.ndim - 1))
-        with np.errstate(over="ignore", under="ignore"):
-            return np.ldexp(array, exponent) * unit if order else np.asarray(array * unit)
 
     def _series(self, name: str, inputs: Inputs, count: int, columns: int) -> Array:
         if name not in inputs:
@@ -317,22 +258,18 @@ class Model:
 
     def _singular(self, poses: Poses, series: Array) -> PoseError:
         """Which pose is singular."""
-        for k in range(len(poses.q)):
-            one = poses.first(k + 1)
+        for k in range(len(poses.q) - 1):
             try:
-                rates_of(self.tree, one, series[: k + 1])
+                rates_of(self.tree, poses.first(k + 1), series[: k + 1])
             except np.linalg.LinAlgError:
-                return self._at_fold("is singular", poses, series, k, float("inf"))
-        return self._at_fold("is singular", poses, series, len(poses.q) - 1, float("inf"))
+                return self._at_fold("is singular", poses, series[..., 0], k)
+        return self._at_fold("is singular", poses, series[..., 0], len(poses.q) - 1)
 
-    def _near_fold(self, poses: Poses, series: Array, found: Deviations, k: int) -> PoseError:
-        words = "is so near to a fold that the pose cannot be told from that on its other side"
-        return self._at_fold(words, poses, series, k, float(found.condition[k]))
-
-    def _at_fold(self, words: str, poses: Poses, series: Array, k: int, condition: float) -> PoseError:
-        there = self.tree.cut.told(series[k, :, 0])
-        links = self.tree.holding(poses.jacobian[k])
-        error = PoseError(words, k, there, there, condition, links)
+    def _at_fold(self, words: str, poses: Poses, values: Array, k: int) -> PoseError:
+        there = self.tree.cut.told(values[k])
+        jacobian = poses.jacobian[k]
+        condition = float(np.linalg.cond(jacobian))
+        error = PoseError(words, k, there, there, condition, self.tree.holding(jacobian))
         error.partial = poses.first(k) if k else None
         return error
 

@@ -204,11 +204,11 @@ class Rows:
             rows[..., self.coordinates[0]] = q[..., self.coordinates[1]]
         return np.asarray(rows - targets)
 
-    def slopes(self, x: Array, y: Array) -> list[Array]:
-        """First three derivatives of the tails by s, (..., tails) each."""
+    def slopes(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """First two derivatives of the tails by s, (..., tails) each."""
         s = product_rates([x[..., self.count :, :]], [y[..., self.count :, :]], 0)
         c = np.sqrt((1.0 - s) * (1.0 + s))
-        return [self.radii * s / c, self.radii / c**3, 3.0 * self.radii * s / c**5]
+        return self.radii * s / c, self.radii / c**3
 
     def jacobian(self, matrices: Array, moved: Array) -> Array:
         """Of the rows by the joint coordinates, (..., rows, size).
@@ -235,35 +235,9 @@ class Rows:
         forms = [product_rates(x, y, order) for order in (0, 1, 2)]
         rows = forms[2][..., : self.count]
         if len(self.tails):
-            first, second, _ = self.slopes(x[0], y[0])
+            first, second = self.slopes(x[0], y[0])
             s1, s2 = (form[..., self.count :] for form in forms[1:])
             rows[..., self.tails] += first * s2 + second * s1 * s1
-        rows[..., self.coordinates[0]] = 0.0
-        return np.asarray(rows)
-
-    def changes(self, m: Sequence[Array], d: Sequence[Array], order: int) -> Array:
-        """How the rows' rates of an order, 1 or 2, change with the pose, (..., rows).
-
-        Args:
-            m, d: the matrices with their rates, and how these change, (..., 12 B).
-        """
-        x, y = zip(*(self.pairs(part) for part in m[: order + 1]), strict=True)
-        dx, dy = zip(*(self.pairs(part) for part in d[: order + 1]), strict=True)
-        forms = product_rates(dx, y, order) + product_rates(x, dy, order)
-        rows = forms[..., : self.count]
-        if len(self.tails):
-            first, second, third = self.slopes(x[0], y[0])
-            t = slice(self.count, None)
-            s1 = product_rates(x, y, 1)[..., t]
-            ds = product_rates(dx, y, 0)[..., t] + product_rates(x, dy, 0)[..., t]
-            ds1 = product_rates(dx, y, 1)[..., t] + product_rates(x, dy, 1)[..., t]
-            if order == 1:
-                rows[..., self.tails] += first * ds1 + second * s1 * ds
-            else:
-                s2 = product_rates(x, y, 2)[..., t]
-                rows[..., self.tails] += (
-                    first * forms[..., t] + second * (ds * s2 + 2.0 * s1 * ds1) + third * s1 * s1 * ds
-                )
         rows[..., self.coordinates[0]] = 0.0
         return np.asarray(rows)
 

@@ -147,7 +147,7 @@ class PlainSolver:
         name: in tables and messages.
         function: see the top of this file.
         accuracy: how exactly it says it places every point, mm; what that makes of each number is derived in
-            `held`.
+            `formulations.stated_accuracy`.
     """
 
     name: str
@@ -178,8 +178,8 @@ class PlainSolver:
 
     def _accuracy(self, scene: Scene) -> tuple[Accuracy, tuple[str, ...]]:
         """What is claimed at the scene's instants; nothing, and why, of a scene without a reference."""
+        from validate.formulations.stated_accuracy import accuracy_for
         from validate.reference import NoReferenceError
-        from validate.solvers.held import accuracy_for
 
         try:
             return replace(accuracy_for(scene, self.accuracy), stated=self.accuracy), ()

@@ -4,7 +4,7 @@ With R(t) and d(t) the chassis' turn and shift, made of all its inputs one after
 
     p = R x + d,    p' = R x' + R' x + d',    p'' = R x'' + 2 R' x' + R'' x + d'',
 
-and with W the angular velocity of R, w + W and so on. Rounding in these sums is added to error bounds.
+and with W the angular velocity of R, w + W and so on.
 """
 
 from __future__ import annotations
@@ -21,7 +21,6 @@ from validate.spanning_tree.cut import car_directions
 Array = NDArray[np.float64]
 
 Numbers = Mapping[str, Mapping[str, Array]]
-EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -76,26 +75,6 @@ class ChassisMotion:
             found["angular_acceleration"][name] = rate + np.cross(own, turned) + faster
         return found
 
-    def bounds(self, numbers: Numbers, bounds: Numbers) -> dict[str, dict[str, Array]]:
-        """Error bounds of what `moved` gives, from those of what it takes."""
-        found, rates = {q: dict(arrays) for q, arrays in bounds.items()}, _point_rates(bounds)
-        size = np.abs(self.turn)
-        for name in bounds["position"]:
-            x, claims = [np.abs(numbers[q][name]) for q in rates], [bounds[q][name] for q in rates]
-            for k, q in enumerate(rates):
-                rounded = _rate(size, x, k, vectors=True) + np.abs(self.shift[k])
-                found[q][name] = _rate(size, claims, k, vectors=True) + EPS * rounded
-        if not (self.turn[0] == np.eye(3)).all():
-            own, faster = (_length(part) for part in self._own())
-            for name, spin in numbers.get("angular_velocity", {}).items():
-                first = _matrix_vector(size[0], bounds["angular_velocity"][name])
-                second = _matrix_vector(size[0], bounds["angular_acceleration"][name])
-                rate = _length(numbers["angular_acceleration"][name])
-                found["angular_velocity"][name] = first + EPS * (own + _length(spin))
-                rounded = EPS * (rate + faster + own * (own + _length(spin)))
-                found["angular_acceleration"][name] = second + own * _length(first) + rounded
-        return found
-
     def directions(self, vector: Array) -> Array:
         """A direction of a body, (N, 3)."""
         return _matrix_vector(self.turn[0], vector)
@@ -128,10 +107,6 @@ def _rate(turns: Array, rates: Any, order: int, vectors: bool = False) -> Array:
 
 def _point_rates(numbers: Numbers) -> list[str]:
     return [q for q in ("position", "velocity", "acceleration") if q in numbers]
-
-
-def _length(vector: Array) -> Array:
-    return np.asarray(np.linalg.norm(vector, axis=-1, keepdims=True))
 
 
 def _matrix_vector(matrix: Array, vector: Array) -> Array:

@@ -1,4 +1,4 @@
-"""An effect that nobody has heard of goes through everything once the two models' registries know it.
+"""An effect that nobody has heard of goes through everything once the models' registries know it.
 
 Nothing in `validate` names an effect, a quantity or an angle: two made-up ones are planted in the registries,
 a length with a quantity of its own and an angle that jumps by a whole turn.
@@ -30,9 +30,12 @@ from validate.cli import main
 from validate.comparison.compare import Outcome, compare
 from validate.output.document import schema_text
 from validate.output.report import outcome_text
+from validate.reference.effects import registry as reference_registry
+from validate.reference.effects.effect import WHEEL, angle
+from validate.reference.effects.effect import Effect as ReferenceEffect
+from validate.reference.vectors import dot
 
 STUB = Quantity("stub", "stub length", "mm", "car")
-EPS = float(np.finfo(float).eps)
 
 
 class Stub(Effect):
@@ -76,13 +79,8 @@ def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
     def value(lines: Lines) -> np.ndarray:
         return scale * outboard(lines, lines.line(lines.corner.ends("wheel_axis")))
 
-    def error(lines: Lines) -> np.ndarray:
-        ends = lines.corner.ends("wheel_axis")
-        size = lines.error(ends) + 3.0 * EPS * np.abs(lines.line(ends))
-        return np.asarray(size @ np.abs(lines.corner.outboard))
-
     words = ("length of the stub axle", "+ outboard")
-    return AbsoluteEffect("stub_axle", "mm", *words, "wheel_axis", 0, value, error)
+    return AbsoluteEffect("stub_axle", "mm", *words, "wheel_axis", 0, value)
 
 
 FLIP = projected_angle(
@@ -94,15 +92,29 @@ FLIP = projected_angle(
     run=lambda corner: corner.inboard,
 )
 
+# In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
+REFERENCES = (
+    ReferenceEffect("stub_axle", "mm", "outboard", WHEEL, lambda axes: dot(axes.wheel, axes.outboard)),
+    ReferenceEffect(
+        "flip",
+        "rad",
+        "the wheel leans in",
+        WHEEL,
+        lambda axes: angle(dot(axes.wheel, axes.up), -dot(axes.wheel, axes.outboard)),
+    ),
+)
+
 Plant = Callable[..., None]
 
 
 @pytest.fixture
 def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
-    """Registers the effects in pointcoord, and in the absolute model those that it is to know."""
+    """Registers the effects in pointcoord and the reference, and in absolute those that it is to know."""
     for effect in OURS:
         monkeypatch.setitem(registry.EFFECTS, effect.name, effect)
     monkeypatch.setitem(registry.QUANTITIES, STUB.name, STUB)
+    for one in REFERENCES:
+        monkeypatch.setitem(reference_registry.EFFECTS, one.name, one)
 
     def in_absolute(*effects: AbsoluteEffect) -> None:
         known = {**absolute.EFFECTS, **{effect.name: effect for effect in effects}}

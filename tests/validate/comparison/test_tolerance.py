@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import absolute
 from pointcoord import Scene
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
@@ -95,20 +94,13 @@ def test_a_wrong_number_does_not_widen_its_own_tolerance(solved: Solution) -> No
     assert row(solved, changed(solved, "velocity", spoilt), "velocity", "strut_top").verdict == "disagrees"
 
 
-def test_the_absolute_model_claims_what_the_chassis_rounds_and_twice_its_estimates() -> None:
+def test_the_absolute_model_claims_what_the_chassis_rounds_and_no_more_of_a_point_at_rest_on_it() -> None:
     scene = Scene.load("bounce-on-a-heaving-chassis")
     claims = formulation("absolute").solve(scene).accuracy.claims
-    part, times = scene.mechanism, scene.instants
-    laws = {name: rates(law, times) for name, law in scene.inputs.items()}
-    lift = laws.pop("heave")[:, 0, None] * np.array(part.up)
-    model = absolute.compile(part.plain(tuple(laws)))
-    still = absolute.solve(model, laws, errors=True)
-    # Of a point that does not move in the chassis' frame only the sums with the lift and the origin round.
-    rounded = EPS * np.abs(lift) + EPS * np.abs(np.array(part.points["strut_top"]) + lift)
-    assert (claims["position"]["strut_top"] >= rounded).all()
-    assert (claims["position"]["strut_top"] <= rounded + 4.0 * EPS * 500.0).all()
-    for point in ("tie_rod_outer", "wheel_centre"):
-        assert (claims["velocity"][point] >= 1.9 * still.velocity_error[point]).all()
+    lift = rates(scene.inputs["heave"], scene.instants)[:, 0, None] * np.array(scene.mechanism.up)
+    place = np.array(scene.mechanism.points["strut_top"]) + lift
+    assert (claims["position"]["strut_top"] >= 0.5 * EPS * np.abs(place)).all()
+    assert (claims["position"]["strut_top"] <= EPS * np.abs(place) + 4.0 * EPS * 500.0).all()
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ import pointcoord.patches.patches
 import pointcoord.results.readout
 import pointcoord.solve.dense_output
 import pointcoord.solve.taylor
-import validate.formulations.absolute_coordinates
+import validate.formulations.modelled
 import validate.formulations.relative_coordinates
 import validate.relative.model
 import validate.relative.rates
@@ -120,13 +120,12 @@ def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
     patch.setitem(EFFECTS, right.name, wrong)
 
 
-def _in_absolute_inputs(change: Callable[[np.ndarray], np.ndarray]) -> Plant:
-    rates = validate.formulations.absolute_coordinates.rates
+def _in_inputs(change: Callable[[np.ndarray], np.ndarray], late: float = 0.0) -> Plant:
+    """What a model that states its accuracy gets of its inputs: pointcoord has laws of its own."""
+    rates = validate.formulations.modelled.rates
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(
-            validate.formulations.absolute_coordinates, "rates", lambda part, t: change(rates(part, t))
-        )
+        patch.setattr(validate.formulations.modelled, "rates", lambda part, t: change(rates(part, t - late)))
 
     return plant
 
@@ -174,18 +173,6 @@ def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
     return lambda rates: rates * [0.0 if order in orders else 1.0 for order in range(3)]
 
 
-def _shifted(by: float) -> Plant:
-    """The absolute model sees its inputs a little late."""
-    rates = validate.formulations.absolute_coordinates.rates
-
-    def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(
-            validate.formulations.absolute_coordinates, "rates", lambda part, t: rates(part, t - by)
-        )
-
-    return plant
-
-
 def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
     """The heaving chassis moves the absolute model, but its velocity and acceleration are forgotten."""
     solve = absolute.solve
@@ -194,17 +181,6 @@ def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
         return solve(model, inputs, chassis=chassis * np.array([1.0, 0.0, 0.0])[None, :, None], **options)
 
     patch.setattr(absolute, "solve", wrong)
-
-
-def _in_relative_inputs(change: Callable[[np.ndarray], np.ndarray], late: float = 0.0) -> Plant:
-    rates = validate.formulations.relative_coordinates.rates
-
-    def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(
-            validate.formulations.relative_coordinates, "rates", lambda part, t: change(rates(part, t - late))
-        )
-
-    return plant
 
 
 def _in_relative_model(change: Callable[[dict], dict], **axes: tuple[float, float, float]) -> Plant:
@@ -293,11 +269,11 @@ FAULTS = {
     ),
     "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
     "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
-    "theta'' forgotten": Fault(_in_absolute_inputs(_without(2)), "bounce", "acceleration"),
-    "theta' and S' forgotten": Fault(_in_absolute_inputs(_without(1)), "steer", "velocity"),
-    "inputs late by 1e-10 s": Fault(_shifted(1e-10), "bounce", "position"),
+    "theta'' forgotten": Fault(_in_inputs(_without(2)), "bounce", "acceleration"),
+    "theta' and S' forgotten": Fault(_in_inputs(_without(1)), "steer", "velocity"),
+    "inputs late by 1e-10 s": Fault(_in_inputs(_without(), 1e-10), "bounce", "position"),
     "an input rounded to single precision": Fault(
-        _in_absolute_inputs(lambda r: r.astype(np.float32).astype(float)), "bounce", "position"
+        _in_inputs(lambda r: r.astype(np.float32).astype(float)), "bounce", "position"
     ),
     "the rack's direction reversed": Fault(
         _in_absolute_model(lambda p: p, right=(0.0, -1.0, 0.0)), "steer", "position"
@@ -320,9 +296,9 @@ FAULTS = {
     **{
         f"{name}, in the tree": Fault(plant, scene, spoils, second="relative")
         for name, plant, scene, spoils in (
-            ("theta'' forgotten", _in_relative_inputs(_without(2)), "bounce", "acceleration"),
-            ("theta' and S' forgotten", _in_relative_inputs(_without(1)), "steer", "velocity"),
-            ("inputs late by 1e-10 s", _in_relative_inputs(_without(), 1e-10), "bounce", "position"),
+            ("theta'' forgotten", _in_inputs(_without(2)), "bounce", "acceleration"),
+            ("theta' and S' forgotten", _in_inputs(_without(1)), "steer", "velocity"),
+            ("inputs late by 1e-10 s", _in_inputs(_without(), 1e-10), "bounce", "position"),
             (
                 "the rack's direction reversed",
                 _in_relative_model(lambda p: p, right=(0.0, -1.0, 0.0)),

@@ -15,7 +15,8 @@ from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way
 from validate.cost.ways.inputs import laws_at
-from validate.formulations.outside_programs import asked_of, linkage_in, require_the_drawn_car
+from validate.formulations.modelled import asked_of, require_the_drawn_car
+from validate.formulations.outside_programs import linkage_in
 from validate.formulations.registry import OUTSIDE, WORDS, engine_of
 from validate.peers.errors import PeerError
 from validate.peers.motion import numbers
@@ -28,7 +29,7 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
     linkage = linkage_in(scene)
     engine = engine_of(name)(linkage)
     closed = engine.closed(tolerance)
-    require_the_drawn_car(scene, linkage, closed)
+    require_the_drawn_car(scene, linkage.moved(closed.places))
     first = linkage.inputs(laws_at(scene, np.array([scene.time.start]))).driven[:, 0]
     start = engine.poses(first, tolerance, closed)
     moves = plan_effects(scene.effects).derivative > 0

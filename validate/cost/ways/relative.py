@@ -12,7 +12,7 @@ from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way
 from validate.cost.ways.inputs import laws_at
-from validate.formulations.outside_programs import asked_of
+from validate.formulations.modelled import asked_of
 from validate.formulations.protocol import Numbers
 from validate.spanning_tree.chassis import ChassisMotion
 
@@ -34,8 +34,8 @@ def in_joints(scene: Scene, tolerance: float) -> Solve:
             motion = model.rates(poses, laws)
             found = {
                 **found,
-                "velocity": model.velocities(poses, motion),
-                "acceleration": model.accelerations(poses, motion),
+                "velocity": model.velocities(motion),
+                "acceleration": model.accelerations(motion),
                 "angular_velocity": model.angular_velocities(motion),
                 "angular_acceleration": model.angular_accelerations(motion),
             }

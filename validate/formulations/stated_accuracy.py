@@ -1,4 +1,7 @@
-r"""What an accuracy that a solver states, in mm, makes of each number that it gives.
+r"""What an accuracy that a model or a solver states, in mm, makes of each number that it gives.
+
+The one way in which what proves nothing gets error bounds: the model in Pinocchio, the trees of joints, other
+people's programs and users' solvers each state how exactly they place points, and all else follows.
 
 A solver of accuracy e answers for a pose whose points are off by up to e in every coordinate. At such a pose
 y + dy the equations of the many-digit reference, C(y, t) = 0, are missed by up to
@@ -33,7 +36,10 @@ without turning; what the chassis adds to every point alike turns nothing):
     turning of a body       2 e_1 / h and 2 e_2 / h, h the least height of the triangle of its three points
     an angle                both ends of its line off by e, through the line's length
 
-and each is rounded once where it is handed over.
+Of a model that is known to solve equations for its rates, these equations are missed by as much: of the rates
+of its points the e here is e + |dp|, with dp what missing the equations makes of the place.
+
+and each is rounded once where it is handed over, and once where the chassis' part of it is added.
 
 The derivatives are those of the pose itself. Within the reach of delta the Jacobian changes; with
 r = |sum_i |C'^-1 dC'_i||, the largest relative change (maximum norm), it may lose so much that a first order
@@ -88,7 +94,8 @@ Array = NDArray[np.float64]
 
 LIMIT = 0.45  # of r: beyond it a first order says nothing of the pose
 FLATTEST = 1e-3  # of the size: beside a triangle that is flatter a solver takes other points of the body
-OFF_THE_POSE = 1e-6  # of the size: a pose that the reference's equations move by more is not the one meant
+OFF_THE_POSE = 1e-6  # of the size: a pose that the reference's equations move by more is none of theirs
+MOST_STEPS = 8  # of Newton's method, which doubles its digits
 AT_ONCE = 1024  # instants: a matrix of each row's change of the Jacobian is held for each
 NOTHING = 1e150  # claimed where nothing can be said: wider than any number, and its square is finite
 ROOT_3 = sqrt(3.0)
@@ -104,7 +111,7 @@ def claims_for(scene: Scene, accuracy: float) -> Numbers:
 
 
 def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
-    """What a solver of an accuracy, mm, may be off by in a scene: see the top of this file.
+    """What a solver of an accuracy, mm, may be off by in a scene, at pointcoord's poses of it.
 
     Raises:
         FormulationError: the scene cannot be solved.
@@ -117,42 +124,50 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
 
 
 def accuracy_at(
-    scene: Scene, accuracy: float, places: Mapping[str, Array], laws: Mapping[str, Array]
+    scene: Scene,
+    accuracy: float | Array,
+    places: Mapping[str, Array],
+    laws: Mapping[str, Array],
+    solves_rates: bool = False,
 ) -> Accuracy:
     """The same at poses that are solved already.
 
     Args:
+        accuracy: mm; of each instant, (N,), or of all.
         places: where every point is, (N, 3), mm.
         laws: every input with its two time derivatives, (N, 3); of poses alone these are 0.
+        solves_rates: whether rates are known to be solved from equations, which are missed as those of the
+            pose are.
     """
     design = Design.from_plain(scene.mechanism.plain(tuple(scene.inputs)))
-    held = _Held(scene, design, accuracy)
+    held = _Held(scene, design, solves_rates)
+    count = len(next(iter(places.values())))
+    off = np.broadcast_to(accuracy, count)
     parts = []
-    for low in range(0, len(next(iter(places.values()))), AT_ONCE):
+    for low in range(0, count, AT_ONCE):
         some = slice(low, low + AT_ONCE)
         at = {name: place[some] for name, place in places.items()}
-        parts.append(held.at(at, {name: law[some] for name, law in laws.items()}))
+        parts.append(held.at(off[some], at, {name: law[some] for name, law in laws.items()}))
     claims = {
-        q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in names}
-        for q, names in asked_numbers(scene).items()
+        q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in of}
+        for q, of in parts[0].claims.items()
     }
     blind = np.concatenate([one.blind for one in parts if one.blind is not None])
     return Accuracy(np.concatenate([one.condition for one in parts]), claims, blind=blind)
 
 
 class _Held:
-    """A car and an accuracy.
+    """A car whose points are off by a little.
 
     Attributes:
-        off: the accuracy in units of the design. heights: of the bodies' points, likewise.
+        size: of the car in units of the design. heights: of the bodies' points, likewise.
     """
 
-    def __init__(self, scene: Scene, design: Design, accuracy: float) -> None:
+    def __init__(self, scene: Scene, design: Design, solves_rates: bool) -> None:
+        self.solves = solves_rates
         self.design = design
-        self.accuracy = accuracy
         self.unit = float(design.unit)
         self.origin = np.array([float(x) for x in design.origin])
-        self.off = accuracy / self.unit
         self.asked = asked_numbers(scene)
         drawn = {name: np.array([float(x) for x in place]) for name, place in design.table.items()}
         self.size = float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
@@ -165,19 +180,20 @@ class _Held:
             for body, points in bodies.items()
         }
 
-    def at(self, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
+    def at(self, accuracy: Array, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
         """The claims at some instants, from where every point is, (N, 3), mm, and the inputs, (N, 3)."""
+        off = accuracy / self.unit
         known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
         values, inverse, matrix, blind = self._pose(places, values_only(known))
         jets = unknown_jets_of(values, inverse, known)
-        missed = self.off * self._missed(places, matrix, values_only(known))
+        missed = off[:, None] * self._missed(places, matrix, values_only(known))
         # Missing a row by delta moves the unknowns by a column of the inverse.
         first = np.einsum("nij,nj->ijn", inverse, missed)
         slopes = changes_of(jets, inverse, known, len(jets), first)
         change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
-        claims = self._claims(with_slopes(jets, slopes), known, growth)
+        claims = self._claims(off, with_slopes(jets, slopes), known, growth)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
             q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
@@ -188,16 +204,25 @@ class _Held:
     def _pose(
         self, places: Mapping[str, Array], known: Known
     ) -> tuple[list[Array], Array, Array, NDArray[np.bool_]]:
-        """The unknowns, the inverse of their Jacobian, it, and where the pose is not the equations' own."""
+        """The unknowns, the inverse of their Jacobian, it, and where the equations have no pose nearby.
+
+        A model at fault has its points elsewhere, and is held to the right pose, a few Newton steps away.
+        """
         local = local_places(self.design, places, known)
         count = len(next(iter(places.values())))
         read = self.design.mechanism.unknown_of(local, float)
-        values = np.array([np.broadcast_to(x, count) for x in read], dtype=float)
+        values = drawn = np.array([np.broadcast_to(x, count) for x in read], dtype=float)
         matrix = jacobian_of(list(values), known.numbers, known.equations)
-        step = newton_step(values, inverse_of(matrix), known)
-        blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
-        values = np.where(blind, values, values - step)
-        matrix = jacobian_of(list(values), known.numbers, known.equations)
+        for _ in range(MOST_STEPS):
+            step = newton_step(values, inverse_of(matrix), known)
+            blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
+            values = values - step
+            matrix = jacobian_of(list(values), known.numbers, known.equations)
+            if not blind.any():
+                break
+        else:
+            values = np.where(blind, drawn, values)
+            matrix = jacobian_of(list(values), known.numbers, known.equations)
         return list(values), inverse_of(matrix), matrix, blind
 
     def _missed(self, places: Mapping[str, Array], matrix: Array, known: Known) -> Array:
@@ -217,7 +242,7 @@ class _Held:
         return np.asarray(np.abs(np.einsum("nij,jkn->nik", matrix, slopes)).sum(axis=-1))
 
     def _claims(
-        self, solved: Sequence[Jet], known: Known, growth: Sequence[Array]
+        self, off: Array, solved: Sequence[Jet], known: Known, growth: Sequence[Array]
     ) -> dict[str, dict[str, Array]]:
         points = known.points_of(solved)
         turns = body_turns(solved, known)
@@ -230,51 +255,59 @@ class _Held:
         fastest, hardest = (
             np.max([_lengths(state[d] - chassis[d]) for state in states.values()], axis=0) for d in (1, 2)
         )
-        own = (
-            np.full(count, self.off),
-            ROOT_3 * self.off * (turning + fastest / self.size),
-            ROOT_3 * self.off * (bending + turning**2 + hardest / self.size),
+        per_length = (
+            np.zeros(count),
+            ROOT_3 * (turning + fastest / self.size),
+            ROOT_3 * (bending + turning**2 + hardest / self.size),
         )
-        rounded = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
-        angles = self._angles(points, growth[0])
+        moved = {name: _off(order_of(p, 0), count) * growth[0][:, None] for name, p in points.items()}
+        missed = {name: off[:, None] + (move if self.solves else 0.0) for name, move in moved.items()}
+        far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
+        angles = self._angles(off, points, growth[0])
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
             d, of = per_second(quantity), QUANTITIES[quantity].of
-            if of == "point":
+            if of == "point" and d == 0:
+                claims[quantity] = {
+                    n: self.unit * (moved[n] + off[:, None] + UNIT_ROUNDOFF * np.abs(states[n][0]) + far)
+                    for n in names
+                }
+            elif of == "point":
                 claims[quantity] = {
                     n: self.unit
                     * (
                         _off(order_of(points[n], d), count) * growth[d][:, None]
-                        + own[d][:, None]
+                        + missed[n] * per_length[d][:, None]
                         + UNIT_ROUNDOFF * np.abs(states[n][d])
-                        + (rounded if d == 0 else 0.0)
+                        + UNIT_ROUNDOFF * np.abs(chassis[d])
                     )
                     for n in names
                 }
             elif of == "body":
                 claims[quantity] = {
                     n: _off(turns[n][d - 1], count) * growth[d][:, None]
-                    + 2.0 * own[d][:, None] / self.heights[n]
+                    + 2.0 * (off * per_length[d])[:, None] / self.heights[n]
                     + UNIT_ROUNDOFF * np.abs(values_of(turns[n][d - 1], count))
                     for n in names
                 }
             else:
-                claims[quantity] = {n: angles[n] for n in names}
+                claims[quantity] = {n: angles[n] for n in names if n in angles}
         return claims
 
-    def _angles(self, points: Mapping[str, Vector], growth: Array) -> dict[str, Array]:
+    def _angles(self, off: Array, points: Mapping[str, Vector], growth: Array) -> dict[str, Array]:
         """Of every angle: what the pose makes of it, and the ends of its line, which are off themselves."""
         places = {name: order_of(p, 0) for name, p in points.items()}
         axes = Axes.of(places, self.design, floats_of)
         lines = {
-            name: _with_own(line, 2.0 * self.off, first, growth)
+            name: _with_own(line, 2.0 * off, first, growth)
             for first, (name, line) in enumerate(axes.lines.items())
         }
         found = {}
         for name, effect in effects_of(axes).items():
             angle = effect.evaluate(replace(axes, lines=lines))
             claim = np.abs(slope_of(angle)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(angle))
-            found[name] = np.where(np.isfinite(claim), claim, 0.0)
+            unit = self.unit if effect.unit == "mm" else 1.0
+            found[name] = unit * np.where(np.isfinite(claim), claim, 0.0)
         return found
 
 
@@ -290,7 +323,7 @@ def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
     return np.asarray(np.abs(inverse @ slopes).sum(axis=(0, -1)).max(axis=-1))
 
 
-def _with_own(line: Vector, off: float, first: int, growth: Array) -> Vector:
+def _with_own(line: Vector, off: Array, first: int, growth: Array) -> Vector:
     """A line with further slopes: each component of it off by so much, beside those of the other line."""
     components = []
     for axis, component in enumerate(line):

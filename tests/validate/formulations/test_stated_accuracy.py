@@ -1,5 +1,7 @@
 """What a stated accuracy makes of every number: wide enough for who keeps it, and for nobody else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cars_in_closed_form import VARIANTS, Linkage
@@ -8,9 +10,14 @@ from plain_solvers import closed_form, less_exact
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate import check
-from validate.comparison.compare import Outcome
+from validate.comparison.compare import Outcome, compare
+from validate.formulations.modelled import Found, Problem
+from validate.formulations.protocol import Solution
+from validate.formulations.relative_coordinates import model_of
+from validate.formulations.stated_accuracy import claims_for
 from validate.hard.cars import scene_content
-from validate.solvers.held import claims_for
+from validate.studies.claims import scene_rows
+from validate.studies.study import Task
 
 # Every closure of each: the closed form has a collinear strut's axis through the ball joint.
 CARS = [variant.base for variant in VARIANTS]
@@ -103,3 +110,49 @@ def test_nearer_a_fold_than_the_accuracy_nothing_is_tested(car) -> None:
     outcome = check(closed_form, near_the_end(car, 1e-7), 1e-2)
     assert {row.verdict for row in outcome.rows if row.difference > 1e-300} == {"not tested"}
     assert not outcome.disagreements
+
+
+MODELS = ("absolute", "relative", "mujoco", "exudyn")
+# Numbers of random cars, among them such that are driven up to a fold.
+CARS_AT_RANDOM = (0, 3, 18, 29, 39, 48, 51, 59)
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_what_a_model_states_of_itself_covers_its_errors_and_is_near_to_them(name: str) -> None:
+    rows = [
+        row
+        for number in CARS_AT_RANDOM
+        for row in scene_rows(Task("scenes", number), name)
+        if row.get("quantity") is not None
+    ]
+    error, claim = np.array([(row["error"], row["claim"]) for row in rows]).T
+    assert (error <= claim).all()
+    # Rates of the two programs, whose joints form the longest chains, are held most widely.
+    off = error > 0.0
+    assert np.median(claim[off] / error[off]) < 600.0
+
+
+@pytest.mark.parametrize("name", ["bounce-and-steer", "off-axis-strut", "double-wishbone"])
+def test_it_covers_what_an_early_end_of_newtons_method_leaves(name: str) -> None:
+    scene = Scene.load(name)
+    model, problem = model_of(scene), Problem.of(scene)
+    best, coarse = (model.poses(problem.laws, scene.instants, tolerance) for tolerance in (0.0, 1e-4))
+    exact, found = (model.numbers(poses, model.rates(poses, problem.laws)) for poses in (best, coarse))
+    solution = problem.solution("relative", Found(found, model.accuracy(coarse)))
+    for quantity, arrays in solution.numbers.items():
+        for point, array in arrays.items():
+            gap = np.abs(array - exact[quantity][point])
+            assert (gap <= solution.accuracy.claims[quantity][point]).all(), (quantity, point)
+    assert max(np.abs(found["position"][n] - exact["position"][n]).max() for n in found["position"]) > 1e-7
+
+
+def test_an_accuracy_that_is_a_lie_is_seen_to_be_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A check of the check: a model that says it is far more exact than it is goes beyond its claims."""
+    right = Problem.solution
+
+    def boasting(problem: Problem, who: str, found: Found) -> Solution:
+        return right(problem, who, replace(found, accuracy=found.accuracy * 1e-3))
+
+    monkeypatch.setattr(Problem, "solution", boasting)
+    outcome = compare(Scene.load("bounce-and-steer"), "pointcoord", "relative")
+    assert {"position", "velocity", "wheel"} <= {row.quantity for row in outcome.disagreements}

@@ -1,0 +1,136 @@
+"""Models that prove nothing: what they get of a scene, and bounds of their numbers by a stated accuracy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.errors import SceneError
+from pointcoord.results.closing import ALLOWED
+from pointcoord.scene.scene_file import Scene
+from validate.formulations.asked_numbers import asked_numbers, per_second
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import AccuracyError, Numbers, Solution
+from validate.formulations.stated_accuracy import accuracy_at
+
+Array = NDArray[np.float64]
+
+SLOW = 2.0**-200  # rad/s and mm/s
+LONGEST = 500  # s, as a power of two whose square is still a number
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a model found at the first of a scene's instants.
+
+    Attributes:
+        numbers: of every point, and of the bodies and angles that it has.
+        accuracy: how exactly it says that it places points, mm, (N,): what is left of its equations, and what
+            rounds lengths of the car's size. What that makes of each number is not its affair.
+    """
+
+    numbers: Numbers
+    accuracy: Array
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A scene and its inputs.
+
+    Attributes:
+        laws: value and two derivatives of every input, (N, 3), rad or mm, and in the unit of time.
+        unit: of time at each instant, (N,), s.
+    """
+
+    scene: Scene
+    laws: Mapping[str, Array]
+    unit: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> Problem:
+        """The inputs per second; where all are so slow that squares of their rates are lost, per more."""
+        laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
+        unit = _slow_unit(laws, len(scene.instants))
+        scale = np.stack([np.ones_like(unit), unit, unit * unit], axis=-1)
+        return cls(scene, {name: law * scale for name, law in laws.items()}, unit)
+
+    def solution(self, who: str, found: Found) -> Solution:
+        """What the scene asks for, of all that was found.
+
+        Raises:
+            AccuracyError: a pose is so near to a fold that the stated accuracy says nothing of it.
+        """
+        count = len(found.accuracy)
+        laws = {name: law[:count] for name, law in self.laws.items()}
+        stated = accuracy_at(self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True)
+        assert stated.blind is not None  # of a stated accuracy it is known
+        if stated.blind.any():
+            raise AccuracyError(
+                f"the pose at t = {self.scene.instants[np.argmax(stated.blind)]:.10g} s",
+                "leaves open on which side of a fold it is",
+                "poses that a model's rounding cannot bring to another assembly",
+            )
+        numbers = asked_of(found.numbers, self.scene)
+        accuracy = replace(stated, claims=self._per_second(stated.claims), blind=None)
+        return Solution(who, self.scene.instants[:count], self._per_second(numbers), accuracy)
+
+    def _per_second(self, numbers: Numbers) -> Numbers:
+        if (self.unit == 1.0).all():
+            return numbers
+        found: dict[str, dict[str, Array]] = {}
+        for quantity, arrays in numbers.items():
+            found[quantity] = {}
+            for name, array in arrays.items():
+                divisor = self.unit[: len(array)] ** per_second(quantity)
+                found[quantity][name] = array / divisor.reshape(-1, *(1,) * (array.ndim - 1))
+        return found
+
+
+def asked_of(found: Numbers, scene: Scene) -> Numbers:
+    """What a scene asks for, of all that was found."""
+    return {
+        quantity: {name: found[quantity][name] for name in names if name in found[quantity]}
+        for quantity, names in asked_numbers(scene).items()
+        if quantity in found
+    }
+
+
+def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:
+    """Refuse a drawing that a model's own closing makes another car of, as pointcoord does with its own.
+
+    Args:
+        movement: by how much closing moves each point, mm.
+    Raises:
+        SceneError: a point moves by more than is allowed.
+    """
+    if scene.mechanism.closure != "drawn" or not movement:
+        return
+    point = max(movement, key=lambda name: movement[name])
+    limit = ALLOWED * extent(scene)
+    if movement[point] > limit:
+        raise SceneError(
+            scene.title or "scene",
+            "mechanism.points",
+            f"closing the drawing moves {point} by {movement[point]:.3g} mm: that is another car",
+            f"at most {ALLOWED:.0%} of the car's size, {limit:.3g} mm; draw the points that miss where they "
+            "belong",
+        )
+
+
+def extent(scene: Scene) -> float:
+    """Size of the car: the longest side of the box around its points, mm."""
+    with np.errstate(over="ignore"):
+        return float(np.max(np.ptp(np.array(list(scene.mechanism.points.values())), axis=0)))
+
+
+def _slow_unit(laws: Mapping[str, Array], count: int) -> Array:
+    """A power of two at each instant, (N,), s: 1 unless all inputs are slower than SLOW."""
+    fastest = np.zeros(count)
+    for law in laws.values():
+        fastest = np.maximum(fastest, np.maximum(np.abs(law[:, 1]), np.sqrt(np.abs(law[:, 2]))))
+    slow = (fastest > 0.0) & (fastest < SLOW)
+    exponent = np.minimum(-np.frexp(np.where(slow, fastest, 1.0))[1], LONGEST)
+    return np.asarray(np.where(slow, np.ldexp(1.0, exponent), 1.0))
