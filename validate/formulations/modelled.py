@@ -13,8 +13,8 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
-from validate.formulations.protocol import AccuracyError, Numbers, Solution
-from validate.formulations.stated_accuracy import accuracy_at
+from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
+from validate.formulations.stated_accuracy import accuracy_at, places_in
 
 Array = NDArray[np.float64]
 
@@ -66,6 +66,11 @@ class Problem:
         count = len(found.accuracy)
         laws = {name: law[:count] for name, law in self.laws.items()}
         stated = accuracy_at(self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True)
+        if stated.blind is not None and stated.blind.any():
+            # A model at fault may place points where there is no pose: it is held to that of the others.
+            places = {name: place[:count] for name, place in self._places().items()}
+            if places:
+                stated = accuracy_at(self.scene, found.accuracy, places, laws, solves_rates=True)
         assert stated.blind is not None  # of a stated accuracy it is known
         if stated.blind.any():
             raise AccuracyError(
@@ -76,6 +81,13 @@ class Problem:
         numbers = asked_of(found.numbers, self.scene)
         accuracy = replace(stated, claims=self._per_second(stated.claims), blind=None)
         return Solution(who, self.scene.instants[:count], self._per_second(numbers), accuracy)
+
+    def _places(self) -> Mapping[str, Array]:
+        """Where pointcoord places every point; nothing of a scene that it refuses."""
+        try:
+            return places_in(self.scene)
+        except (FormulationError, SceneError):
+            return {}
 
     def _per_second(self, numbers: Numbers) -> Numbers:
         if (self.unit == 1.0).all():

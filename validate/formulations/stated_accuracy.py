@@ -116,11 +116,19 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
     Raises:
         FormulationError: the scene cannot be solved.
     """
+    laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
+    return accuracy_at(scene, accuracy, places_in(scene), laws)
+
+
+def places_in(scene: Scene) -> Mapping[str, Array]:
+    """Where pointcoord places every point of a scene, (N, 3), mm.
+
+    Raises:
+        FormulationError: the scene cannot be solved.
+    """
     every = scene.model_copy(update={"effects": (), "points": None})
     poses = PointCoordinates("pointcoord", AUTO).solve(every).numbers
-    places = next(arrays for q, arrays in poses.items() if QUANTITIES[q].of == "point" and not per_second(q))
-    laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
-    return accuracy_at(scene, accuracy, places, laws)
+    return next(arrays for q, arrays in poses.items() if QUANTITIES[q].of == "point" and not per_second(q))
 
 
 def accuracy_at(
@@ -147,7 +155,9 @@ def accuracy_at(
     for low in range(0, count, AT_ONCE):
         some = slice(low, low + AT_ONCE)
         at = {name: place[some] for name, place in places.items()}
-        parts.append(held.at(off[some], at, {name: law[some] for name, law in laws.items()}))
+        # At a pose that is none, numbers of which nothing is said may divide by nothing.
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            parts.append(held.at(off[some], at, {name: law[some] for name, law in laws.items()}))
     claims = {
         q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in of}
         for q, of in parts[0].claims.items()
