@@ -21,7 +21,7 @@ from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
 from pointcoord.solve.assembly import close_drawing, driven_to
-from pointcoord.solve.follower import Path
+from pointcoord.solve.follower import Path, follow
 
 Array = NDArray[np.float64]
 
@@ -120,26 +120,39 @@ def _angles(scene: Scene, mechanism: Mechanism, y: Array, axes: CarAxes) -> dict
 
 
 def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
-    """Both ends of one input, the lower value first; of a turn a whole one to either side at most."""
-    drawn = _drawn(mechanism, closed)
-    drive = next(drive for drive in mechanism.topology.drives if drive.input == name)
-    turns = name in mechanism.topology.turning
+    """Both ends of one input, the lower value first."""
+    if name in mechanism.topology.turning:
+        return _end_of_turn(mechanism, closed, name, -1.0), _end_of_turn(mechanism, closed, name, 1.0)
+    first = mechanism.map.unknowns
+    drive, *others = (drive for drive in mechanism.topology.drives if drive.input == name)
     place = mechanism.layout.scalar(drive.coordinate)
-    if turns:
-        farthest = [drawn[name] - WHOLE, drawn[name] + WHOLE]
-    else:
-        extremes = np.array(drive.extremes(mechanism.drawing))
-        farthest = drive.input_value(extremes, mechanism.drawing).tolist()
     found = []
-    for value in farthest:
-        wanted = {**drawn, name: value}
-        _, path = driven_to(mechanism, {one: np.array(number) for one, number in wanted.items()}, closed, 0.0)
-        done = float(path.done)
-        if turns:
-            value = drawn[name] + done * (value - drawn[name])
-        else:
-            value = float(drive.input_value(path.y[place], mechanism.drawing))
-        forces = smallest_left_singular_vector(path.factors.matrix)
-        found.append(End(value, mechanism.topology.strongest(forces) if done < 1.0 else ()))
+    for farthest in drive.extremes(mechanism.drawing):
+        # Straight in the driven coordinate: at an extreme an input may have no value that it could be given.
+        target = closed.y[first:].copy()
+        target[place - first] = farthest
+        there = drive.input_value(farthest, mechanism.drawing)[..., None]
+        for other in others:
+            own = other.series(there, mechanism.drawing)[0]
+            target[mechanism.layout.scalar(other.coordinate) - first] = own
+        path = follow(mechanism.map, closed.y, target)
+        value = float(drive.input_value(path.y[place], mechanism.drawing))
+        found.append(End(value, _limits(mechanism, path)))
     low, high = sorted(found, key=lambda end: end.value)
     return low, high
+
+
+def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
+    """The end of a turn to one side, a whole one at most."""
+    drawn = _drawn(mechanism, closed)
+    wanted = {one: np.array(value) for one, value in drawn.items()}
+    wanted[name] += side * WHOLE
+    _, path = driven_to(mechanism, wanted, closed, 0.0)
+    return End(drawn[name] + side * WHOLE * float(path.done), _limits(mechanism, path))
+
+
+def _limits(mechanism: Mechanism, path: Path) -> tuple[str, ...]:
+    """The links and joints that hold each other where a path stops; none where it does not."""
+    if float(path.done) == 1.0:
+        return ()
+    return mechanism.topology.strongest(smallest_left_singular_vector(path.factors.matrix))
