@@ -117,7 +117,9 @@ def within(found: Array, off: float, exact: list[Any]) -> None:
 @pytest.mark.parametrize("order", [("roll", "pitch"), ("pitch", "roll")])
 def test_every_point_and_body_moves_as_the_turned_car_written_out(order: tuple[str, ...]) -> None:
     motion, exact = solved(order), Exact(order)
-    # A turn the wrong way, no Coriolis term or another point would be off by millimetres.
+    # A place below 512 mm has some ten roundings of 2^-53 of that in three turns, 6e-13 mm; the three turn by
+    # less than 7 rad/s together, so that a rate loses less than ten times as much, and an acceleration ten
+    # times that. A turn the wrong way, no Coriolis term or another point would be off by millimetres.
     points = {"position": 1e-12, "velocity": 1e-11, "acceleration": 1e-10}
     with mp.workdps(60):
         for i, t in enumerate(map(mpf, TIMES)):
@@ -174,9 +176,12 @@ def test_a_motion_that_ends_on_its_way_is_turned_as_far_as_it_goes() -> None:
     partial = refused.value.partial
     assert partial is not None
     count = len(partial.residual)
-    whole = absolute.solve(model, {name: law[:count] for name, law in inputs.items()})
+    whole = absolute.solve(model, {name: law[:count] for name, law in inputs.items()}, conditions=True)
+    # Two ways to the same pose differ by what its condition makes of rounding.
+    assert whole.condition is not None
+    off = 16 * EPS * whole.condition[:, None]
     for name, speed in whole.velocity.items():
-        assert np.abs(partial.velocity[name] - speed).max() <= 1e-9 * np.abs(speed).max()
+        assert (np.abs(partial.velocity[name] - speed) <= off * np.abs(speed).max()).all()
 
 
 @pytest.mark.parametrize(
