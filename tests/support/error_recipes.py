@@ -294,7 +294,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "pointcoord.errors.WrongArgument: of a map": Recipe(
         lambda *_: pointcoord.kinematic_map(BOUNCE, {"arm_angle": (1.0, 0.9), "rack": (0.0, 1.0)}),
-        ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers, the lower first"),
+        ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers within 1e+12, the lower first"),
         {"what": "ranges['arm_angle']", "problem": "is (1.0, 0.9)", "allowed": bool},
     ),
     "pointcoord.errors.WrongArgument: of a sweep": Recipe(

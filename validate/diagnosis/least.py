@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 Array = NDArray[np.float64]
 
@@ -54,6 +53,9 @@ def fitted(
     change = np.linalg.lstsq(jacobian, -first, rcond=None)[0]
     if not float(np.linalg.norm(first + jacobian @ change)) <= LIKELY * apart:
         return None
+    # Imported here: most comparisons have nothing to explain.
+    from scipy.optimize import least_squares
+
     found = least_squares(
         gap, begin, slopes, x_scale="jac", xtol=1e-15, ftol=SETTLED, gtol=1e-15, max_nfev=MOST_STEPS
     )
