@@ -15,6 +15,7 @@ from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
+from validate.reference import NoReferenceError
 
 Array = NDArray[np.float64]
 
@@ -65,7 +66,14 @@ class Problem:
         """
         count = len(found.accuracy)
         laws = {name: law[:count] for name, law in self.laws.items()}
-        stated = accuracy_at(self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True)
+        try:
+            stated = accuracy_at(
+                self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True
+            )
+        except NoReferenceError as error:
+            raise AccuracyError(
+                "the car", f"has no equations to bound it by: {error}", "another car"
+            ) from None
         if stated.blind is not None and stated.blind.any():
             # A model at fault may place points where there is no pose: it is held to that of the others.
             places = {name: place[:count] for name, place in self._places().items()}

@@ -224,10 +224,13 @@ class _Held:
         values = drawn = np.array([np.broadcast_to(x, count) for x in read], dtype=float)
         matrix = jacobian_of(list(values), known.numbers, known.equations)
         for _ in range(MOST_STEPS):
-            step = newton_step(values, inverse_of(matrix), known)
+            before, inverse = matrix, inverse_of(matrix)
+            step = newton_step(values, inverse, known)
             blind = ~(np.abs(step).max(axis=0) < OFF_THE_POSE * self.size)
             values = values - step
             matrix = jacobian_of(list(values), known.numbers, known.equations)
+            # Where a last step changes the Jacobian so much, doubles cannot tell the pose.
+            blind |= ~(np.abs(inverse @ (matrix - before)).sum(axis=-1).max(axis=-1) < LIMIT)
             if not blind.any():
                 break
         else:
