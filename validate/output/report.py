@@ -160,7 +160,7 @@ def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
     if not given:
         return name, "-", "-", "-", "-", "-", verdict
     # The unit is that of the difference beside it.
-    tolerance, share = with_unit(largest.tolerance, ""), with_unit(max(row.share for row in given), "")
+    tolerance, share = with_unit(largest.tolerance, ""), share_of(max(row.share for row in given))
     difference = with_unit(largest.difference, largest.unit)
     return name, difference, tolerance, when(largest, 4), share, largest.rests_on, verdict
 
