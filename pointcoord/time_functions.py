@@ -420,19 +420,15 @@ def _doubled_horner(highs: list[float], lows: list[float], t: Array) -> Array:
     return high + low
 
 
-def cosine(angle: Array) -> Array:
-    r"""Series of cos(a) from the series of a, both of shape (..., order + 1).
+def cosine_and_sine(angle: Array) -> tuple[Array, Array]:
+    r"""Series of cos(a) and sin(a) from the series of a, all of shape (..., order + 1).
 
-    c' = -s a' and s' = c a' give, term by term,
-    c_k = -(1/k) sum_{i=1..k} i a_i s_{k-i}  and  s_k = (1/k) sum_{i=1..k} i a_i c_{k-i}.
+    Both are parts of e = exp(i a), and e' = i a' e gives, term by term,
+    e_k = (i/k) sum_{j=1..k} j a_j e_{k-j}.
     """
-    orders = angle.shape[-1]
-    c = np.zeros_like(angle)
-    s = np.zeros_like(angle)
-    c[..., 0], s[..., 0] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
-    weighted = angle * np.arange(orders)
-    for k in range(1, orders):
-        head = weighted[..., 1 : k + 1]
-        c[..., k] = -np.sum(head * s[..., k - 1 :: -1][..., :k], axis=-1) / k
-        s[..., k] = np.sum(head * c[..., k - 1 :: -1][..., :k], axis=-1) / k
-    return c
+    terms = np.zeros(angle.shape, dtype=complex)
+    terms.real[..., 0], terms.imag[..., 0] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
+    turned = 1j * np.arange(angle.shape[-1]) * angle
+    for k in range(1, angle.shape[-1]):
+        terms[..., k] = (turned[..., 1 : k + 1] * terms[..., k - 1 :: -1][..., :k]).sum(axis=-1) / k
+    return terms.real, terms.imag

@@ -19,7 +19,7 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.double_double import Pair, exact_square, pair_quotient, two_product
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.time_functions import cosine
+from pointcoord.time_functions import cosine_and_sine
 
 Array = NDArray[np.float64]
 
@@ -113,16 +113,9 @@ class Circle(Function):
     rounded = 2.0  # 1 unit in the last place, at worst
 
     def series(self, value: Array) -> Array:
-        """The cosine's; the sine's from it by k s_k = sum_i i x_i c_(k-i)."""
+        """The cosine's or the sine's."""
         with np.errstate(over="ignore", invalid="ignore"):
-            cosine_terms = cosine(value)
-            if not self.quarter:
-                return cosine_terms
-            sine = np.zeros_like(value)
-            sine[..., 0] = np.sin(value[..., 0])
-            weighted = value * np.arange(value.shape[-1])
-            sine[..., 1:] = _product(weighted, cosine_terms)[..., 1:] / np.arange(1, value.shape[-1])
-        return sine
+            return cosine_and_sine(value)[self.quarter]
 
     def over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Sequence[Array]]:
         """Terms half^k / k! cos(middle + k pi / 2 - quarter pi / 2), |half| <= order, order 3 or more.
