@@ -171,7 +171,6 @@ class AssemblyError(PointcoordError):
         reduce: the input with the most still to go, measured as its driven coordinate; empty if none has
             any way left, so that the drawing itself does not close.
         limits: the links and joints that hold each other there, the strongest first.
-        partial: the motion up to the last assembled instant, if any.
     """
 
     def __init__(
@@ -184,7 +183,6 @@ class AssemblyError(PointcoordError):
         reduce: str,
         limits: tuple[str, ...] = (),
         instant: float | None = None,
-        partial: Any = None,
     ) -> None:
         self.problem = problem
         self.reached = reached
@@ -193,7 +191,6 @@ class AssemblyError(PointcoordError):
         self.reduce = reduce
         self.limits = limits
         self.instant = instant
-        self.partial = partial
         when = "" if instant is None else f" at t = {instant:.6g} s"
         goals = ", ".join(f"{name} = {value:.10g}" for name, value in wanted.items())
         stops = ", ".join(f"{name} = {value:.10g}" for name, value in reached.items())
@@ -212,18 +209,19 @@ class MotionTooLong(PointcoordError):
 
     Args:
         limit: most segments. instant: how far they reached, s. start, stop: of the motion, s.
-        partial: the motion up to the instant.
+
+    Attributes:
+        expected: about how many the whole motion takes.
     """
 
-    def __init__(self, limit: int, instant: float, start: float, stop: float, partial: Any) -> None:
+    def __init__(self, limit: int, instant: float, start: float, stop: float) -> None:
         self.limit = limit
         self.instant = instant
         self.start = start
         self.stop = stop
-        self.partial = partial
-        expected = limit * (stop - start) / (instant - start)
+        self.expected = limit * (stop - start) / (instant - start)
         super().__init__(
-            f"the motion from {start:.6g} to {stop:.6g} s takes about {expected:.2g} segments; allowed: "
+            f"the motion from {start:.6g} to {stop:.6g} s takes about {self.expected:.2g} segments; allowed: "
             f"{limit}, which reach t = {instant:.6g} s; shorten the time, slow the inputs down, or use the "
             "method 'newton', which solves at the scene's instants only"
         )
@@ -234,14 +232,12 @@ class MotionTooRough(PointcoordError):
 
     Args:
         name: the input. instant: how far the motion came, s.
-        partial: the motion up to the instant, if any.
         coarsest: whether no larger tolerance is left to try.
     """
 
-    def __init__(self, name: str, instant: float, partial: Any, *, coarsest: bool = False) -> None:
+    def __init__(self, name: str, instant: float, *, coarsest: bool = False) -> None:
         self.name = name
         self.instant = instant
-        self.partial = partial
         looser = "" if coarsest else "allow a larger tolerance, "
         super().__init__(
             f"input {name!r} changes too fast or too unevenly after t = {instant:.10g} s: no step that time "
@@ -257,14 +253,12 @@ class MotionNotMapped(PointcoordError):
         instant: up to when the way of the inputs is covered, s; the start if nothing is.
         inputs: value of each input there.
         reason: why not further.
-        partial: the motion up to the instant, if any.
     """
 
-    def __init__(self, instant: float, inputs: Mapping[str, float], reason: str, partial: Any) -> None:
+    def __init__(self, instant: float, inputs: Mapping[str, float], reason: str) -> None:
         self.instant = instant
         self.inputs = dict(inputs)
         self.reason = reason
-        self.partial = partial
         place = ", ".join(f"{name} = {value:.10g}" for name, value in inputs.items())
         super().__init__(
             f"the map of the inputs does not cover their way after t = {instant:.10g} s, {place}: {reason}; "

@@ -209,10 +209,8 @@ def _by_paths(
     """Put poses into their places that paths of their own lead to; what stops the others, by number."""
     topology, unit = mechanism.topology, float(mechanism.unit)
     wanted = {name: values[some] for name, values in inputs.items()}
-    pose, statuses = assembled(mechanism, wanted, closed, None, 0.0)
-    stopped: dict[int, PointcoordError] = {
-        place: error for place, status in statuses.items() if (error := status.error()) is not None
-    }
+    pose, blocked = assembled(mechanism, wanted, closed, None, 0.0)
+    stopped: dict[int, PointcoordError] = {**blocked}
     whole = np.array([place for place in range(len(some)) if place not in stopped], dtype=np.intp)
     violated = locked(mechanism, pose.y[whole], pose.bound[whole] / unit)
     stopped |= {int(whole[place]): error for place, error in violated.items()}

@@ -14,6 +14,10 @@ from pointcoord.errors import (
     InputNotKnown,
     InputOutOfRange,
     MechanismError,
+    MotionNotMapped,
+    MotionTooLong,
+    MotionTooRough,
+    PointcoordError,
     SceneError,
 )
 from pointcoord.linkage.car_axes import CarAxes
@@ -33,7 +37,7 @@ from pointcoord.results.states import StatesAtInstants, StatesOfChain
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
 from pointcoord.solve.follower import follow, stepped
-from pointcoord.solve.status import COMPLETE, NotMapped, Status, TooLong, TooRough
+from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 from pointcoord.wording import shown
@@ -262,7 +266,7 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
     states = StatesOfMap(readout, task.functions, way, time.start, COMPLETE, notes)
     if way.reason:
-        states = replace(states, status=_stop_of_map(task, states))
+        states = replace(states, status=Status(_stop_of_map(task, states)))
     return SolvedScene(readout, task.functions, states)
 
 
@@ -272,12 +276,12 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
     Returns:
         The task with the method that was used, and the motion; that of the series if neither is whole.
     """
-    status = foreseen(task)
-    if status is None:
+    stopped: PointcoordError | None = foreseen(task)
+    if stopped is None:
         solved = solve_by_series(task, hopeful=False)
-        status = solved.states.status
-    if isinstance(status, TooLong | TooRough):
-        mapped = solve_by_map(task, why_map(status))
+        stopped = solved.states.status.stopped
+    if isinstance(stopped, MotionTooLong | MotionTooRough):
+        mapped = solve_by_map(task, why_map(stopped))
         if mapped.states.status.complete:
             return replace(task, method=MAP), mapped
         # As far as they come, then.
@@ -285,27 +289,26 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
     return replace(task, method=SERIES), solved
 
 
-def foreseen(task: Task) -> Status | None:
+def foreseen(task: Task) -> MotionTooLong | None:
     """Whether a chain is too long for certain, before it is built: a segment ends at every break."""
     time = task.scene.time
     breaks = np.concatenate([np.array(law.breaks) for law in task.functions.values()])
     inner = np.unique(breaks[(breaks > time.start) & (breaks < time.stop)])
     if len(inner) < MOST_SEGMENTS:
         return None
-    return TooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
+    return MotionTooLong(MOST_SEGMENTS, float(inner[MOST_SEGMENTS - 1]), time.start, time.stop)
 
 
-def why_map(status: TooLong | TooRough) -> str:
+def why_map(stopped: MotionTooLong | MotionTooRough) -> str:
     """Why a map was used instead of series, as a note."""
-    if isinstance(status, TooRough):
-        reason = f"no series in time follows {status.name!r} after t = {status.instant:.10g} s"
+    if isinstance(stopped, MotionTooRough):
+        reason = f"no series in time follows {stopped.name!r} after t = {stopped.instant:.10g} s"
     else:
-        count = status.limit * (status.stop - status.start) / (status.instant - status.start)
-        reason = f"series in time would be about {count:.2g}, and {status.limit} are allowed"
+        reason = f"series in time would be about {stopped.expected:.2g}, and {stopped.limit} are allowed"
     return f"solved by a map of the inputs: {reason}"
 
 
-def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
+def _stop_of_map(task: Task, states: StatesOfMap) -> PointcoordError:
     """Why a map does not cover the way of the inputs.
 
     The way is tried a little further from the last pose that is covered. Where a place on it is not found
@@ -330,7 +333,7 @@ def _stop_of_map(task: Task, states: StatesOfMap) -> Status:
             problem = "the mechanism cannot be assembled"
             return blocked(mechanism, problem, path, target, path.done < 1.0, instant)
         y = path.y
-    return NotMapped(until, inputs, way.reason)
+    return MotionNotMapped(until, inputs, way.reason)
 
 
 def _at_instants(task: Task) -> SolvedScene:

@@ -14,12 +14,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.errors import AssemblyError
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
 from pointcoord.solve.follower import Path, follow, led
-from pointcoord.solve.status import Blocked
 
 Array = NDArray[np.float64]
 
@@ -90,14 +90,14 @@ def close_drawing(mechanism: Mechanism, instant: float | None = None, tolerance:
         AssemblyError: it cannot be, or two pieces of a line turn over against each other on the way.
     """
     path, stopped = closed_drawings(mechanism, instant, tolerance)
-    for status in stopped.values():
-        raise status.error()
+    for error in stopped.values():
+        raise error
     return path
 
 
 def closed_drawings(
     mechanism: Mechanism, instant: float | None = None, tolerance: float = 0.0
-) -> tuple[Path, dict[int, Blocked]]:
+) -> tuple[Path, dict[int, AssemblyError]]:
     """The drawings of a batch assembled at their own inputs, and what stops those that are not, by number."""
     own = mechanism.drawn[..., mechanism.map.unknowns :]
     factors = mechanism.drawn_factors if mechanism.drawn.ndim == 1 else None
@@ -133,14 +133,14 @@ def assemble(
     """
     drawing = close_drawing(mechanism, instant) if closed is None else closed
     pose, stopped = assembled(mechanism, inputs, drawing, instant, tolerance)
-    for status in stopped.values():
-        raise status.error()
+    for error in stopped.values():
+        raise error
     return pose
 
 
 def assembled(
     mechanism: Mechanism, inputs: Mapping[str, Array], drawing: Path, instant: float | None, tolerance: float
-) -> tuple[Pose, dict[int, Blocked]]:
+) -> tuple[Pose, dict[int, AssemblyError]]:
     """The poses of a batch for given inputs, and what stops those that have none, by number."""
     target, path = driven_to(mechanism, inputs, drawing, tolerance)
     stopped = _stopped(mechanism, path, target, path.done < 1.0, "the mechanism cannot be assembled", instant)
@@ -201,9 +201,9 @@ def _stopped(
     which: NDArray[np.bool_],
     problem: str,
     instant: float | None,
-) -> dict[int, Blocked]:
+) -> dict[int, AssemblyError]:
     """What stops members of a batch, by number."""
-    found: dict[int, Blocked] = {}
+    found: dict[int, AssemblyError] = {}
     for number in np.flatnonzero(which).tolist():
         one = (np.arange(which.size) == number).reshape(which.shape)
         found[number] = blocked(mechanism, problem, path, target, one, instant)
@@ -232,7 +232,7 @@ def blocked(
     unfinished: NDArray[np.bool_],
     instant: float | None,
     change: Array | None = None,
-) -> Blocked:
+) -> AssemblyError:
     """What stops paths that end at a place on their way to `goal`, told for the first unfinished one.
 
     Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
@@ -256,7 +256,7 @@ def blocked(
     balance = smallest_left_singular_vector(factors.matrix[member])
     left = np.broadcast_to(goal - known if change is None else change, known.shape)[member]
     pushes = _pushes(mechanism, y[member], balance * factors.row_scale[member], left)
-    return Blocked(
+    return AssemblyError(
         problem,
         reached=told(known),
         wanted=told(goal),

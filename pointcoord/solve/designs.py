@@ -3,7 +3,7 @@
 Drawings are closed and poses assembled at once, each along its own proven steps. Then designs share one
 series in the inputs, where these come back often enough (see `box`), or the segments of a chain of series in
 time; one that asks for much shorter ones goes on without the others (see `build_chains`). A design that
-cannot be closed, assembled or moved drops out with its status, and the others go on as if it had not been
+cannot be closed, assembled or moved drops out with its error, and the others go on as if it had not been
 there.
 """
 
@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.errors import PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import assembled, closed_drawings
 from pointcoord.solve.box import follow_by_inputs
 from pointcoord.solve.follower import Path
-from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain, Settings, build_chains
 from pointcoord.time_functions import TimeFunction
 
@@ -57,7 +57,7 @@ class SolvedDesigns:
 
     followed: tuple[Followed, ...]
     closed: Array
-    failures: Mapping[int, Status]
+    failures: Mapping[int, PointcoordError]
 
     @property
     def solved(self) -> Numbers:
@@ -91,15 +91,15 @@ def solve_designs(
     Raises:
         InputOutOfRange: a law has no meaning at an instant, whatever the design.
     """
-    failures: dict[int, Status] = {}
+    failures: dict[int, PointcoordError] = {}
     alive = np.arange(len(mechanism.drawn))
     closed = np.full(mechanism.drawn.shape, np.nan)
     if not len(alive):
         return SolvedDesigns((), closed, failures)
 
-    def left(stopped: Mapping[int, Status]) -> Numbers:
+    def left(stopped: Mapping[int, PointcoordError]) -> Numbers:
         """Places of those that go on."""
-        failures.update({int(alive[place]): status for place, status in stopped.items()})
+        failures.update({int(alive[place]): error for place, error in stopped.items()})
         return np.array([place for place in range(len(alive)) if place not in stopped], dtype=np.intp)
 
     drawing, stopped = closed_drawings(mechanism, start, tolerance)
@@ -119,10 +119,10 @@ def solve_designs(
         rest = np.delete(np.arange(len(alive)), mapped)
         alive, pose = alive[rest], pose.taken(rest)
     for numbers, chain in build_chains(pose.mechanism, functions, pose, start, stop, settings):
-        if chain.status.complete:
+        if chain.status.stopped is None:
             followed.append(Followed(alive[numbers], chain))
         else:
-            failures |= dict.fromkeys(alive[numbers].tolist(), chain.status)
+            failures |= dict.fromkeys(alive[numbers].tolist(), chain.status.stopped)
     return SolvedDesigns(tuple(followed), closed, dict(sorted(failures.items())))
 
 

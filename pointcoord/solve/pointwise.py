@@ -167,7 +167,8 @@ def solve_instants(
         if path.done < 1.0:
             problem = "the mechanism cannot be assembled"
             place = whole_place(part, path.y, path.factors)
-            status = blocked(mechanism, problem, place, known[done, 0], path.done < 1.0, float(times[done]))
+            stop = blocked(mechanism, problem, place, known[done, 0], path.done < 1.0, float(times[done]))
+            status = Status(stop)
             y, left, known, times = y[:done], left[:done], known[:done], times[:done]
             break
         here, factors = path.y, path.factors
@@ -384,7 +385,7 @@ def solve_from_drawing(
         parts.append((path.y[:first], path.left[:first]))
         if unfinished.any():
             problem, when = "the mechanism cannot be assembled", float(times[low + first])
-            status = blocked(mechanism, problem, path, target, unfinished, when)
+            status = Status(blocked(mechanism, problem, path, target, unfinished, when))
             known, times = known[: low + first], times[: low + first]
             break
     y, left = (np.concatenate(part) for part in zip(*parts, strict=True))

@@ -30,7 +30,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import InputOutOfRange
+from pointcoord.errors import InputOutOfRange, MotionTooLong, MotionTooRough
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden, on_branch, regular_along
 from pointcoord.numerics.counters import Work
@@ -42,7 +42,7 @@ from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
 from pointcoord.solve.standing_still import starting_place, whole_place
-from pointcoord.solve.status import COMPLETE, Status, TooLong, TooRough
+from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
@@ -216,7 +216,7 @@ def build_chains(
         members = waiting.pop()
         course = _Course.of(mechanism.taken(members), functions, start, stop, settings)
         chain, kept = course.build(pose.taken(members), leaving=len(members) > 1)
-        if len(kept) > 1 and not (chain.status.complete or isinstance(chain.status, TooLong)):
+        if len(kept) > 1 and not (chain.status.complete or isinstance(chain.status.stopped, MotionTooLong)):
             # Which of them it was shows one by one.
             waiting += [members[[place]] for place in kept.tolist()]
         else:
@@ -306,12 +306,12 @@ class _Course:
             return chain(course.stops_at(joint, untold, coarsest=False))
         while joint.instant < stop or not segments:
             if len(segments) == MOST_SEGMENTS:
-                return chain(TooLong(MOST_SEGMENTS, joint.instant, start, stop))
+                return chain(Status(MotionTooLong(MOST_SEGMENTS, joint.instant, start, stop)))
             if len(segments) == TELLING and not self.settings.hopeful:
                 # Later ones would have to be four times as long on average to be enough.
                 likely = start + MOST_SEGMENTS / TELLING * (joint.instant - start)
                 if stop - start > 4.0 * (likely - start):
-                    return chain(TooLong(MOST_SEGMENTS, likely, start, stop))
+                    return chain(Status(MotionTooLong(MOST_SEGMENTS, likely, start, stop)))
             segment, lengths = course.segment_from(joint)
             solves = segment.order * joint.members
             work += Work(
@@ -486,9 +486,10 @@ class _Course:
         # Members share their segments: where these become too short for all, one of them is at its end.
         condition = np.where(unfinished, place.factors.condition, 0.0)
         unfinished = unfinished & (condition >= condition.max())
-        status = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
+        error = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
-        return status if status.condition > REGULAR else TooRough(status.reduce, instant, coarsest)
+        locked = error.condition > REGULAR
+        return Status(error if locked else MotionTooRough(error.reduce, instant, coarsest=coarsest))
 
 
 @dataclass(frozen=True)

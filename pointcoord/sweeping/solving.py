@@ -50,7 +50,6 @@ from pointcoord.simulation import (
 )
 from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.designs import SolvedDesigns, solve_designs
-from pointcoord.solve.status import Status, TooLong, TooRough
 from pointcoord.sweeping.designs import Designs
 from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
 from pointcoord.time_functions import TimeFunction
@@ -322,14 +321,14 @@ class _Block:
         solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
         self._look_at_closing(scene, members, mechanism, solved.closed)
         self._read(scene, members, mechanism, functions, solved)
-        for place, status in solved.failures.items():
+        for place, error in solved.failures.items():
             if members[place] in self.failures:
                 continue
-            if isinstance(status, TooLong | TooRough):
+            if isinstance(error, MotionTooLong | MotionTooRough):
                 # What is too long or too rough for all together may not be so for one, or for a map.
                 self._alone(int(members[place]))
                 continue
-            self.fail([members[place]], _error(status))
+            self.fail([members[place]], error)
         return solved.bytes_of_a_design
 
     def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
@@ -503,12 +502,6 @@ def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
         if part.points[one] != part.points[other]:
             found |= (points[one] == points[other]).all(axis=-1)
     return found
-
-
-def _error(status: Status) -> PointcoordError:
-    error = status.error()
-    assert error is not None  # a design that was solved to its end is alive
-    return error
 
 
 REASONS: tuple[tuple[type[PointcoordError], str], ...] = (

@@ -122,8 +122,8 @@ def test_of_memory_that_is_full_the_amount_is_told_if_it_is_known(words: str, sa
 @pytest.mark.parametrize(
     ("reason", "advised"),
     [
-        (MotionTooLong(10, 0.5, 0.0, 1.0, None), True),
-        (MotionTooRough("rack", 0.5, None), True),
+        (MotionTooLong(10, 0.5, 0.0, 1.0), True),
+        (MotionTooRough("rack", 0.5), True),
         (ValueError("too bumpy"), False),
     ],
     ids=["long", "rough", "bumpy"],

@@ -104,7 +104,7 @@ def test_a_law_too_rough_to_follow_finely_is_followed_as_the_scene_asks(
 
     def finely(task: Task) -> Motion:
         asked.append(task.scene.tolerance)
-        raise MotionTooRough("rack", 0.5, None)
+        raise MotionTooRough("rack", 0.5)
 
     def as_asked(scene: Scene, method: Method) -> Motion:
         asked.append(scene.tolerance)
