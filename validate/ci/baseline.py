@@ -198,7 +198,7 @@ class Baseline:
 def _another(name: str, lacking: Sequence[str], others: Sequence[str]) -> str:
     return (
         f"{name} has another formulation than in the baseline: {', '.join(others)} in the place of "
-        f"{', '.join(lacking)}, of which no number could be held to it"
+        f"{', '.join(lacking)}, of which no number could be compared with it"
     )
 
 

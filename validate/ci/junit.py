@@ -221,10 +221,10 @@ def _moved(move: Move, factor: float, lost: bool) -> _Case:
         return _Case(name, out=out)
     if move.verdict == "not tested":
         return _Case(
-            name, "skipped", move.verdict, "not tested: one claim is too wide to test the other", out
+            name, "skipped", move.verdict, "not tested: one error bound is too wide to test the other", out
         )
     message = (
-        f"moved by {_told(move.moved, move.unit)} at {move.instant:.9g} s, where both claims together allow "
-        f"{_told(move.bound, move.unit)}; {_times(move.share)}{_held(factor)}"
+        f"moved by {_told(move.moved, move.unit)} at {move.instant:.9g} s, where both error bounds together "
+        f"allow {_told(move.bound, move.unit)}; {_times(move.share)}{_held(factor)}"
     )
     return _Case(name, "failure", move.verdict, message, out)

@@ -148,7 +148,7 @@ def why_undecided(row: Comparison, outcome: Outcome) -> str:
     notes = [note for note in outcome.notes if f": {words} of {row.name}: its accuracy " in note]
     if notes:
         return "; ".join(notes)
-    return f"the tolerance rests on what {row.rests_on} claims, and is too wide to test the other one"
+    return f"the tolerance rests on the error bound of {row.rests_on}, and is too wide to test the other one"
 
 
 def _is_about(line: str, words: str, row: Comparison) -> bool:

@@ -102,7 +102,7 @@ def _since(record: Record) -> Iterator[str]:
     moved = [since.scene for since in held if since.moved]
     target = shown(record.baseline.target)
     if not held:
-        yield f"nothing could be held to the baseline {target}"
+        yield f"nothing could be compared with the baseline {target}"
     else:
         yield (
             f"moved since the baseline {target}: {named(moved)}"

@@ -51,9 +51,9 @@ FURTHER = ("pointcoord-newton", "absolute")
 _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
 Solve each scene by two formulations and compare every number that it asks for. Each
-formulation claims how far off its numbers may be, and a difference is held to the sum of both
-claims, its tolerance. Of each scene a line says how much of its tolerance any number uses at most,
-and where; -v prints every quantity.
+formulation states an error bound with every number; the tolerance of a difference is the sum of
+both bounds. Of each scene a line says how much of its tolerance any number uses at most, and
+where; -v prints every quantity.
 
 formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
@@ -101,7 +101,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--solver",
         metavar="MODULE:NAME",
         help="a solver of your own in the place of --first: a function, object or class that takes plain "
-        f"data (see the README); without --second it is held to {FIRST}",
+        f"data (see the README); without --second it is compared with {FIRST}",
     )
     parser.add_argument(
         "--accuracy",
@@ -147,10 +147,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--summary", metavar="FILE", help="write a summary in Markdown; - likewise")
     parser.add_argument(
-        "--save-baseline", metavar="FILE", help="keep the solved numbers and what is claimed of them (npz)"
+        "--save-baseline", metavar="FILE", help="keep the solved numbers and their error bounds (npz)"
     )
     parser.add_argument(
-        "--baseline", metavar="FILE", help="say what moved since a kept baseline, relative to both claims"
+        "--baseline",
+        metavar="FILE",
+        help="say what moved since a kept baseline by more than both error bounds",
     )
     parser.add_argument(
         "-v", "--verbose", action="store_true", help="print the table of every quantity of each scene"

@@ -42,7 +42,7 @@ PARTS: tuple[Part, ...] = get_args(Part)
 ROWS = "pointcoord-cost.jsonl"
 
 DESCRIPTION = """\
-What accuracy costs in time: every way to solve a scene, over the range of its settings, held to
+What accuracy costs in time: every way to solve a scene, over the range of its settings, compared with
 a many-digit reference. Three sentences say who is quickest, what a digit costs and where others
 win; a picture shows error against time; tables hold the rest: what each effect costs, how time
 and memory grow with instants, designs and unknowns, what loading takes, and what a pose takes at

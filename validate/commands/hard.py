@@ -14,8 +14,8 @@ from validate.output.progress import progress
 
 DESCRIPTION = """\
 Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
-in extreme sizes and rates. Every answer is held to a reference that is solved in 60 digits
-and proven: it must be right within what the formulation claims, or refused with a reason.
+in extreme sizes and rates. Every answer is compared with a reference that is solved in 60
+digits and proven: it must be right within its error bound, or refused with a reason.
 `pointcoord study hard` does the same by several processes or machines, and keeps records."""
 
 

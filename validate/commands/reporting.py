@@ -28,7 +28,7 @@ def add_report(parser: argparse.ArgumentParser) -> None:
 
 # What pages hold, and the command that makes one with it; those of a kind of run hold that.
 OF_A_KIND = {
-    "validate": ("scenes in motion, held to two formulations", "pointcoord report DIR SCENE"),
+    "validate": ("scenes in motion, compared by two formulations", "pointcoord report DIR SCENE"),
     "hard": ("hard cases", "pointcoord hard --report DIR"),
     "cost": ("accuracy against time", "pointcoord cost --report DIR"),
 }

@@ -78,7 +78,7 @@ STUDIES: Mapping[str, Named] = {
         ("random_cars", "random_cars"),
         "random cars through both models",
         "Random cars and motions, solved by both models. What they do not agree in, what only one of them\n"
-        "answers and one in twenty of the others is held to the reference.",
+        "answers and one in twenty of the others is compared with the reference.",
         {
             "--count": _number("scenes; 20000 if not given"),
             "--first": {
@@ -103,9 +103,9 @@ STUDIES: Mapping[str, Named] = {
     ),
     "claims": Named(
         ("claims", "claims"),
-        "whether what a model claims of its accuracy holds",
-        "Random cars and motions, solved by one model: every number of every instant is held against the\n"
-        "reference, and its error against what is claimed of it.",
+        "whether the error bounds that a model states hold",
+        "Random cars and motions, solved by one model: every number of every instant is compared with\n"
+        "the reference, and its error with its bound.",
         {
             "--count": _number("scenes; 300 if not given"),
             "--first": _number("of them; 0 if not given"),

@@ -65,7 +65,7 @@ NEARLY = 1.5
 TOO_COARSE = (
     "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
 )
-NO_NUMBERS = "no row has a number of it that can be held to anything"
+NO_NUMBERS = "no row has a number of it that can be compared with anything"
 # A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
 WIDER = 10.0
 # Rows out of reach, or columns, that are named one by one.
@@ -511,8 +511,8 @@ def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
     )
     who = "the file is" if whole else f"{names}{more}"
     return (
-        f"held to points placed within {scene.tolerance:g} mm, the scene's tolerance, and to what that makes "
-        f"of each number: {who} in full digits and no --accuracy is given"
+        f"compared with points placed within {scene.tolerance:g} mm, the scene's tolerance, and with what "
+        f"that makes of each number: {who} in full digits and no --accuracy is given"
     )
 
 

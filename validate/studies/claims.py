@@ -106,11 +106,11 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
         )
         for one in data
     ]
-    head = ("suspension", "quantity", "numbers", "exact", "largest error / claim", "scene")
+    head = ("suspension", "quantity", "numbers", "exact", "largest error / bound", "scene")
     scenes = len({row["number"] for row in held})
-    table = Table((*head, *(f"claim / error at {100 * level:g}%" for level in LEVELS)), tuple(lines))
+    table = Table((*head, *(f"bound / error at {100 * level:g}%" for level in LEVELS)), tuple(lines))
     return Findings(
-        (f"{scenes} scenes held against the reference", table),
+        (f"{scenes} scenes compared with the reference", table),
         {**settings, "scenes": scenes, "quantities": data},
         ExitStatus.AGREE if all(row["error"] <= row["claim"] for row in held) else ExitStatus.DISAGREE,
     )

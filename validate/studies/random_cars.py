@@ -144,7 +144,7 @@ def _compared(car: RandomScene, first: Solution, second: Solution) -> Row:
         f"tolerance {worst.tolerance:.3g}, at t = {worst.instant:.6g} s"
     )
     if worst.verdict != "disagrees":
-        said = f", {worst.part:.6f} of it what {worst.rests_on} claims"
+        said = f", {worst.part:.6f} of it the error bound of {worst.rests_on}"
         return _kept(car, f"{worst.verdict}: {worst.quantity}", reason + said)
     return _kept(car, f"disagreed in {worst.quantity}: {judged(car.scene, first, second)}", reason)
 

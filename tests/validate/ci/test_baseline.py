@@ -315,7 +315,7 @@ def test_a_run_that_has_nothing_in_its_baseline_has_no_verdict(
     saved(tmp_path)
     words = ["validate", short_scene(tmp_path), "--second", "absolute"]
     assert main([*words, "--baseline", str(tmp_path / "b.npz")]) == 3
-    assert "nothing could be held to the baseline" in capsys.readouterr().out
+    assert "nothing could be compared with the baseline" in capsys.readouterr().out
 
 
 def test_a_scene_that_is_refused_now_is_not_called_gone(tmp_path: Path) -> None:

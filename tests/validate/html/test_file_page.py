@@ -122,7 +122,7 @@ def test_names_of_a_file_show_as_text_and_what_the_page_lacks_is_named(folder: P
     assert not {"b"} & {tag for tag, _ in read.opened}
     assert not [script for script in read.scripts if "alert(1)" in script]
     lacking = {row[0]: row[1] for row in read.cells if row and row[-1].startswith("pointcoord ")}
-    assert lacking["scenes in motion, held to two formulations"] == "pointcoord report DIR SCENE"
+    assert lacking["scenes in motion, compared by two formulations"] == "pointcoord report DIR SCENE"
     assert "hard cases" in lacking
     assert "Drawn are 0" not in text
 
