@@ -329,10 +329,9 @@ RECIPES: dict[str, Recipe] = {
         ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
         {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},
     ),
-    "validate.fitting.errors.FitError": Recipe(
+    "validate.errors.UsageError: a coordinate": Recipe(
         lambda *_: free_coordinates(BOUNCE, ["strut_top", "strut_top.z"]),
         ("--free", "strut_top.z is there twice", "allowed: each coordinate once"),
-        {"place": "--free", "problem": bool, "allowed": bool},
     ),
     "validate.errors.UsageError: a baseline": Recipe(
         lambda folder, _: read_baseline(str(folder / "none.npz")),

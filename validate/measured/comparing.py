@@ -45,7 +45,16 @@ from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import ARCSINE, CONTACT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
-from validate.measured.poses import SPEED, Driven, Found, Numbers, Poses, of_a_pose, poses_of
+from validate.measured.poses import (
+    SPEED,
+    Driven,
+    Found,
+    Numbers,
+    Poses,
+    at_either_end,
+    of_a_pose,
+    poses_of,
+)
 from validate.measured.supposed import Supposed, in_reach, likely
 from validate.plain_text import shown
 from validate.tables.errors import FileError
@@ -413,14 +422,15 @@ def _held(
     stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
     if unsaid:
         notes.append(_granted(unsaid, measured, scene))
-    around: list[tuple[bool, list[Found]]] = []
-    for i, s in enumerate((*measured.independent, *measured.rates)):
-        off = s.off
-        if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
-            off = off + scene.tolerance
-        if off.any():
-            ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
-            around.append((not s.said and bool(s.off.any()), [poses.at(e[:first], e[first:]) for e in ends]))
+    given = (*measured.independent, *measured.rates)
+    reached_to = [
+        s.off + scene.tolerance if unsaid and s.meaning.kind == TRAVEL and not s.off.any() else s.off
+        for s in given
+    ]
+    around = [
+        (not given[i].said and bool(given[i].off.any()), [poses.at(e[:first], e[first:]) for e in ends])
+        for i, ends in at_either_end(values, reached_to)
+    ]
     largest: dict[tuple[str, str], float] = {}
     for s in measured.numbers:
         of = s.meaning.quantity, s.meaning.per

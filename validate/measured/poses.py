@@ -9,10 +9,10 @@ A derivative by an independent column is the rate where that goes at 1 per unit 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -211,6 +211,16 @@ class Driven:
         return Found(numbers, bounds, reached, reasons, inputs)
 
 
+def at_either_end(
+    values: Sequence[Array], offs: Sequence[Array]
+) -> Iterator[tuple[int, tuple[list[Array], list[Array]]]]:
+    """By the place of each column that is rounded: all values, with its own at either end of the rounding."""
+    for i, off in enumerate(offs):
+        if off.any():
+            below, above = ([*values[:i], values[i] + side * off, *values[i + 1 :]] for side in (-1.0, 1.0))
+            yield i, (below, above)
+
+
 def input_of(words: str) -> str:
     """The input that a column or an entry of [held] stands for; a travel is one of its own name."""
     return words.removeprefix(f"{INPUT}.")
@@ -295,20 +305,7 @@ def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
     return max(found, key=lambda name: found[name], default="")
 
 
-class Poses(Protocol):
-    """Our numbers over what a file is over."""
-
-    @property
-    def driven(self) -> Driven:
-        """The car by what rows are taken by."""
-        ...
-
-    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
-        """Our numbers at values of the independent columns and of the file's rates, each (N,)."""
-        ...
-
-
-def poses_of(scene: Scene, measured: Measured) -> Poses:
+def poses_of(scene: Scene, measured: Measured) -> OverTime | OverMap:
     """What gives our numbers at a file's rows.
 
     Raises:
@@ -504,3 +501,7 @@ class OverMap:
             {n: _spread(np.asarray(a), covered) for n, a in bounds.items()},
             {n: _spread(a, covered) for n, a in law.items()},
         )
+
+
+Poses = OverTime | OverMap
+"""Our numbers over what a file is over: by the car that `driven` says, `at` values of its columns."""
