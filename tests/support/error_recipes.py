@@ -203,10 +203,9 @@ def in_no_step(patch: pytest.MonkeyPatch) -> object:
 
 
 RECIPES: dict[str, Recipe] = {
-    "validate.hardpoint_files.axes.UnknownAxes": Recipe(
+    "validate.errors.UsageError: axes": Recipe(
         lambda *_: Axes.of("forward,rearward,up"),
         ("'forward,rearward,up'", "allowed", "forward,left,up", "rearward"),
-        {"text": "forward,rearward,up"},
     ),
     "pointcoord.errors.SceneError": Recipe(
         lambda *_: changed(time={"stop": -1.0}),

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from itertools import permutations
 
+from validate.errors import UsageError
 from validate.hardpoint_files.contents import Place
 from validate.tables.units import LENGTHS
 
@@ -27,18 +28,6 @@ DIRECTIONS = {
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
-class UnknownAxes(ValueError):
-    """Words that are not the directions of three axes.
-
-    Args:
-        text: what was given.
-    """
-
-    def __init__(self, text: str) -> None:
-        self.text = text
-        super().__init__(f"axes are {text!r}; allowed: {ALLOWED}; each line of the car once")
-
-
 @dataclass(frozen=True)
 class Axes:
     """Where the x, y and z of a file point."""
@@ -50,11 +39,12 @@ class Axes:
         """Axes from their words.
 
         Raises:
-            UnknownAxes: they are not three directions at right angles.
+            UsageError: they are not three directions at right angles.
         """
         found = re.findall(r"[^\s,;]+", words.lower()) if isinstance(words, str) else list(words)
         if sorted(DIRECTIONS.get(word, (-1, 0))[0] for word in found) != [0, 1, 2]:
-            raise UnknownAxes(words if isinstance(words, str) else ",".join(found))
+            text = words if isinstance(words, str) else ",".join(found)
+            raise UsageError(f"axes are {text!r}; allowed: {ALLOWED}; each line of the car once")
         x, y, z = found
         return cls((x, y, z))
 

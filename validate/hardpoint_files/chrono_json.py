@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 
 from pointcoord.toml_text import read_file
 from validate.hardpoint_files.contents import (
+    Axle,
     Contents,
     FilePoint,
     Place,
@@ -105,12 +106,7 @@ def _suspension(data: Mapping[str, Any], template: str, clean: str, source: str)
         "points are in the frame of the suspension, which the car's own file puts somewhere",
         "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
     )
-    return Contents(
-        tuple(points),
-        called={"": template},
-        spin_axes={"": SpinAxis(axis, " and ".join(taken))},
-        notes={"": notes},
-    )
+    return Contents(tuple(points), {"": Axle(template, {}, SpinAxis(axis, " and ".join(taken)), notes)})
 
 
 # A vehicle, and the files that it names.
@@ -126,10 +122,7 @@ def _vehicle(data: Mapping[str, Any], clean: str, source: str) -> Contents:
         for number, axle in enumerate(axles, 1)
     ]
     points: list[FilePoint] = []
-    called: dict[str, str] = {}
-    spin_axes: dict[str, SpinAxis] = {}
-    notes: dict[str, tuple[str, ...]] = {}
-    doubts: dict[str, tuple[str, ...]] = {}
+    read: dict[str, Axle] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
         x, y, z = place
         name = axle.get(SUSPENSION)
@@ -151,15 +144,13 @@ def _vehicle(data: Mapping[str, Any], clean: str, source: str) -> Contents:
             replace(point, part=label, place=(point.place[0] + x, point.place[1] + y, point.place[2] + z))
             for point in one.points
         ]
-        called[label], spin_axes[label] = template, one.spin_axes[""]
-        steered, doubted = _steering(axle, data, clean, source)
-        notes[label] = (
+        steered, doubts = _steering(axle, data, clean, source)
+        moved = (
             f"points and their lines are those of {path}, moved by its {PLACE} {[float(n) for n in place]} m "
-            "into the frame of the chassis",
-            steered,
+            "into the frame of the chassis"
         )
-        doubts[label] = doubted
-    return Contents(tuple(points), called=called, spin_axes=spin_axes, notes=notes, doubts=doubts)
+        read[label] = replace(one.axles[""], notes=(moved, steered), doubts=doubts)
+    return Contents(tuple(points), read)
 
 
 def _labels(places: Sequence[Place]) -> list[str]:

@@ -16,6 +16,7 @@ from functools import partial
 
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.contents import (
+    Axle,
     Contents,
     FilePoint,
     Spoilt,
@@ -154,7 +155,7 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
         unit=next(iter(units), ""),
         axes=next(iter(directions), ()),
         spoilt=tuple(spoilt),
-        notes={"": tuple(notes)} if notes else {},
+        axles={"": Axle(notes=tuple(notes))},
     )
 
 

@@ -18,18 +18,17 @@ class Vocabulary:
     """What other words are for ours.
 
     Attributes:
-        phrases: our words for others, each a few words; nothing for words that say nothing.
+        phrases: our words for others, each a few words; none for words that say nothing.
     """
 
     phrases: Mapping[tuple[str, ...], tuple[str, ...]]
 
     @classmethod
-    def of(cls, others: Mapping[str, list[str]], idle: list[str]) -> Vocabulary:
-        """From our words with others for each, and words that say nothing."""
-        phrases = {
-            tuple(plain(theirs).split()): tuple(ours.split()) for ours in others for theirs in others[ours]
-        }
-        return cls(phrases | {tuple(plain(word).split()): () for word in idle})
+    def of(cls, others: Mapping[str, list[str]]) -> Vocabulary:
+        """From our words with others for each; words that say nothing are others for the empty text."""
+        return cls(
+            {tuple(plain(theirs).split()): tuple(ours.split()) for ours in others for theirs in others[ours]}
+        )
 
     def words(self, name: str) -> tuple[str, ...]:
         """A name in our words, in order; numbers count where there is nothing else."""
