@@ -21,9 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, designs_of
-from validate.measured.comparing import ours_of
 from validate.measured.mapping import Measured
-from validate.measured.poses import Driven, Found, of_a_pose, poses_of
+from validate.measured.poses import Driven, Found, of_a_pose, ours_of, poses_of
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]

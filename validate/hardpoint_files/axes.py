@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from decimal import Decimal
 from itertools import permutations
 
+import numpy as np
+
 from validate.errors import UsageError
 from validate.hardpoint_files.contents import Place
 from validate.tables.units import LENGTHS
@@ -67,13 +69,11 @@ class Axes:
     @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
-        places = [DIRECTIONS[word] for word in self.directions]
-        order = [place for place, _ in places]
-        swaps = sum(order[i] > order[j] for i in range(3) for j in range(i + 1, 3))
-        sign = -1 if swaps % 2 else 1
-        for _, own in places:
-            sign *= own
-        return sign > 0
+        turned = np.zeros((3, 3))
+        for row, word in zip(turned, self.directions, strict=True):
+            at, sign = DIRECTIONS[word]
+            row[at] = sign
+        return bool(np.linalg.det(turned) > 0.0)
 
     def to_scene(self, place: Place, unit: str) -> Place:
         """A place in the file's axes and unit as x rearward, y right, z up, mm."""

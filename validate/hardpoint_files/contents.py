@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 
@@ -121,6 +121,19 @@ def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
     except InvalidOperation:
         raise FileError(source, line, f"{what} is {short(text)}", "a number") from None
     return finite(number, source, line, what)
+
+
+def place_of(numbers: Sequence[str], source: str, line: int, name: str) -> Place:
+    """Three coordinates with the digits of their texts.
+
+    Raises:
+        FileError: one is no number.
+    """
+    x, y, z = (
+        decimal_of(number, source, line, f"{axis} of {short(name)}")
+        for axis, number in zip("xyz", numbers, strict=True)
+    )
+    return x, y, z
 
 
 def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:

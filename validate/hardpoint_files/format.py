@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated
 
@@ -19,7 +19,6 @@ from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files import chrono_json, columns, lotus_report
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.contents import Contents, plain
-from validate.hardpoint_files.vocabulary import Vocabulary
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
@@ -59,7 +58,8 @@ class Format(BaseModel):
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
-        vocabulary: other words for those of its names; none if names are as they are listed.
+        vocabulary: by words of its names, others for these; words that say nothing are others for the empty
+            text. None at all if names are as they are listed.
         refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
@@ -82,7 +82,7 @@ class Format(BaseModel):
     names: dict[str, tuple[str, ...]] = {}
     side: str = ""
     axes_told_by: str = ""
-    vocabulary: Annotated[Vocabulary, BeforeValidator(Vocabulary.of)] | None = None
+    vocabulary: dict[str, tuple[str, ...]] = {}
     refused: str = ""
     refused_words: str = ""
     angles: dict[str, str] = {}
@@ -94,6 +94,33 @@ class Format(BaseModel):
             return {}
         shared = {ours: self.names[ours] for ours in mechanism_file(kind).points if ours in self.names}
         return shared | self.suspensions[kind].names
+
+    @cached_property
+    def _phrases(self) -> dict[tuple[str, ...], tuple[str, ...]]:
+        """Words of the vocabulary for others, each a few."""
+        return {
+            tuple(plain(theirs).split()): tuple(ours.split())
+            for ours, others in self.vocabulary.items()
+            for theirs in others
+        }
+
+    def in_our_words(self, name: str) -> tuple[str, ...]:
+        """A name in few words: `LCA_IN_FRONT` and `Lower wishbone, front pivot` are one point.
+
+        They are in the order of the alphabet; numbers count where there is nothing else. Two names are one if
+        these are the same: a word too many, such as that of a damper, is another point, and so is one said
+        twice, as in `Rear upper rear pivot`.
+        """
+        left = plain(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)).split()
+        longest = max(map(len, self._phrases), default=1)
+        found: list[str] = []
+        while left:
+            size = next(
+                (n for n in range(min(longest, len(left)), 0, -1) if tuple(left[:n]) in self._phrases), 0
+            )
+            found += self._phrases[tuple(left[:size])] if size else left[:1]
+            left = left[max(size, 1) :]
+        return tuple(sorted([word for word in found if not word.isdigit()] or found))
 
     def called(self, said: str) -> str | None:
         """Our type of the suspension that a file calls so; None if it is none of ours."""

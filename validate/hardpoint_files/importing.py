@@ -38,6 +38,7 @@ from validate.hardpoint_files.format import Format, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
+from validate.plain_text import some_of
 from validate.tables.cells import text_of
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
@@ -46,6 +47,8 @@ from validate.tables.units import LENGTHS
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
 SIDES = ("left", "right")
 PARTS = ("front", "rear")
+# Points or lines that are named one by one.
+NAMED = 12
 
 
 @dataclass(frozen=True)
@@ -188,7 +191,7 @@ class _Import:
         facts = [self.turning(axes, axes_by, unit), *axle.notes]
         facts += self.format.suspensions[kind].notes if kind in self.format.suspensions else ()
         if values:
-            facts.append(f"lines without a point: {_some(values)}")
+            facts.append(f"lines without a point: {some_of(values, NAMED)}")
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         if self.choices.mirror:
@@ -278,11 +281,11 @@ class _Import:
         taken = self.own.names.keys() | self.own.points.keys()
         ours = {their: our for their, our in ours.items() if our not in taken} | said
 
-        by_words = self.format.vocabulary
-        worded = {} if by_words is None else {by_words.words(their): our for their, our in ours.items()}
+        in_words = self.format.in_our_words
+        worded = {in_words(their): our for their, our in ours.items()} if self.format.vocabulary else {}
 
         def known(name: str) -> str:
-            return ours.get(plain(name)) or ("" if by_words is None else worded.get(by_words.words(name), ""))
+            return ours.get(plain(name)) or worded.get(in_words(name), "")
 
         def found(point: FilePoint) -> tuple[str, FilePoint]:
             for base, (side, part) in self.readings(point.name):
@@ -414,7 +417,7 @@ class _Import:
             for name in lost
         ]
         unknown = [point for point in others if not self.holds_nothing(point)]
-        listed = _some([f"{short(point.name)} on line {point.line}" for point in unknown])
+        listed = some_of([f"{short(point.name)} on line {point.line}" for point in unknown], NAMED)
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
         if self.topology.wheel_axis[0] in lost:
@@ -422,7 +425,7 @@ class _Import:
         raise self.refuse(
             f"lacks {', '.join(theirs)} of a {self.kind}"
             + (f"; not known in it: {listed}" if listed else "")
-            + (f"; no points: {_some(values)}" if values else ""),
+            + (f"; no points: {some_of(values, NAMED)}" if values else ""),
             advice,
         )
 
@@ -464,7 +467,7 @@ class _Import:
             known = self.choices.side or side
             some = [f"--axes {one} of a {wheel} wheel" for one, wheel in ways if known in ("", wheel)]
             raise self.refuse(told, f"{' or '.join(some)}, as {words} lie; or others, if they are so")
-        if seen is None or _same_but_for_left(said, seen):
+        if seen is None or said in both:
             return said, by, []
         told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
         if self.choices.axes is not None:
@@ -597,16 +600,3 @@ class _Import:
         """The static angles that the file prints of this axle beside those of the drawing."""
         places = {name: point.place for name, point in ours.items()}
         return check_angles(self.format.angles, axle.angles, drawn, places, LENGTHS[unit], self.topology)
-
-
-def _same_but_for_left(axes: Axes, seen: Axes) -> bool:
-    """Whether axes are those seen; left-handed ones may differ in the way of left, which no point shows."""
-    said, shown = (set(zip("xyz", one.directions, strict=True)) for one in (axes, seen))
-    sideways = {(axis, way) for axis in "xyz" for way in SIDES}
-    same_line = {axis for axis, way in said if way in SIDES} == {axis for axis, way in shown if way in SIDES}
-    return said - sideways == shown - sideways and same_line
-
-
-def _some(words: Sequence[str]) -> str:
-    """The first of many."""
-    return ", ".join(words[:12]) + (f" and {len(words) - 12} more" if len(words) > 12 else "")

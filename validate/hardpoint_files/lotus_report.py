@@ -13,6 +13,7 @@ from validate.hardpoint_files.contents import (
     FilePoint,
     Printed,
     decimal_of,
+    place_of,
     short,
 )
 from validate.tables.errors import FileError
@@ -65,8 +66,4 @@ def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePo
         )
     if not name:
         raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
-    x, y, z = (
-        decimal_of(number, source, line, f"{axis} of {short(name)}")
-        for axis, number in zip("xyz", given, strict=True)
-    )
-    return FilePoint(name, (x, y, z), line, part=part)
+    return FilePoint(name, place_of(given, source, line, name), line, part=part)
