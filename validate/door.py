@@ -11,14 +11,13 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError
-from validate.hardpoint_files.axes import UnknownAxes
 from validate.output.console import Console
 from validate.output.files import OutputError
 from validate.solvers.plain import NoSolver
 from validate.studies.study import StudyStopped
 
 MEANINGS: tuple[tuple[tuple[type[BaseException], ...], ExitStatus], ...] = (
-    ((UsageError, PointcoordError, MissingPackage, NoSolver, UnknownAxes), ExitStatus.WRONG_INPUT),
+    ((UsageError, PointcoordError, MissingPackage, NoSolver), ExitStatus.WRONG_INPUT),
     ((OutputError, StudyStopped), ExitStatus.NOT_FINISHED),
     ((FormulationError,), ExitStatus.NO_VERDICT),
 )

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
+from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import Measured, understood
 from validate.measured.reading import columns_of_text
 
@@ -28,6 +30,17 @@ def measured(text: str, scene: Scene, **content: object) -> Measured:
     for name, part in own.items():
         columns[name] = {**columns.get(name, {}), **part}
     return understood(columns_of_text(text, "x.csv"), {"columns": columns, **content}, scene, "map.toml")
+
+
+def compared(text: str, content: Mapping[str, Any], scene: Scene, **more: Any) -> DataOutcome:
+    """What comes of a file by a map as plain data."""
+    columns = columns_of_text(text, "mine.csv")
+    return compare_results(understood(columns, content, scene, "map.toml"), scene, "car", **more)
+
+
+def verdicts(found: DataOutcome) -> dict[str, str]:
+    """By the name of each number."""
+    return {row.name: row.verdict for row in found.outcome.rows}
 
 
 def at_inputs(car: Scene, inputs: Mapping[str, Sequence[float]], samples: int) -> dict[str, dict[str, Array]]:

@@ -203,10 +203,9 @@ def in_no_step(patch: pytest.MonkeyPatch) -> object:
 
 
 RECIPES: dict[str, Recipe] = {
-    "validate.hardpoint_files.axes.UnknownAxes": Recipe(
+    "validate.errors.UsageError: axes": Recipe(
         lambda *_: Axes.of("forward,rearward,up"),
         ("'forward,rearward,up'", "allowed", "forward,left,up", "rearward"),
-        {"text": "forward,rearward,up"},
     ),
     "pointcoord.errors.SceneError": Recipe(
         lambda *_: changed(time={"stop": -1.0}),
@@ -329,10 +328,9 @@ RECIPES: dict[str, Recipe] = {
         ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
         {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},
     ),
-    "validate.fitting.errors.FitError": Recipe(
+    "validate.errors.UsageError: a coordinate": Recipe(
         lambda *_: free_coordinates(BOUNCE, ["strut_top", "strut_top.z"]),
         ("--free", "strut_top.z is there twice", "allowed: each coordinate once"),
-        {"place": "--free", "problem": bool, "allowed": bool},
     ),
     "validate.errors.UsageError: a baseline": Recipe(
         lambda folder, _: read_baseline(str(folder / "none.npz")),

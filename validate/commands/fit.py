@@ -23,9 +23,8 @@ from validate.commands.usage import (
 )
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.fitting.corrected import corrected_text
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
-from validate.fitting.record import data_of, table_of
+from validate.fitting.record import corrected_text, data_of, table_of
 from validate.fitting.words import text_of, warnings_of_fit
 from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
@@ -103,8 +102,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     Returns:
         NO_VERDICT if least squares did not end.
     Raises:
-        UsageError: the options do not go together, or the target has no name for a scene.
-        FileError, FitError, UnknownName: the file, its map or an option is wrong.
+        UsageError: the options do not go together, the target has no name for a scene, or a coordinate is
+            there twice.
+        FileError, UnknownName: the file, its map or an option is wrong.
         SceneError: the scene is wrong; PointcoordError: it cannot be solved.
         OutputError: a result cannot be written.
     """

@@ -21,10 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, designs_of
-from validate.fitting.errors import FitError
-from validate.measured.comparing import ours_of
 from validate.measured.mapping import Measured
-from validate.measured.poses import Driven, Found, of_a_pose, poses_of
+from validate.measured.poses import Driven, Found, of_a_pose, ours_of, poses_of
+from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -63,7 +62,7 @@ class Curves:
         offsets = dict(zip(self.free, amounts.tolist(), strict=True))
         return designs_of(self.scene if scene is None else scene, offsets=offsets).design(0)
 
-    def solved(self, amounts: Array, values: Sequence[Array] | None = None) -> Solved:
+    def solved(self, amounts: Array, values: Sequence[Array] | None = None) -> Found:
         """A design at values of the independent columns, the file's own unless given.
 
         Raises:
@@ -74,13 +73,19 @@ class Curves:
             values = [s.values for s in self.measured.independent]
         if all(of_a_pose(s.meaning) for s in numbers):
             driven = self.driven.redrawn(design, self.design(amounts, self.driven.scene))
-            return Solved(self, driven.poses(values, numbers, TIGHT))
-        return Solved(self, poses_of(design, self.measured).at(values))
+            return driven.poses(values, numbers, TIGHT)
+        return poses_of(design, self.measured).at(values)
+
+    def numbers(self, found: Found) -> Array:
+        """Every column one after the other, (columns * rows,), in our units; NaN where there is no pose."""
+        nothing = np.full(len(found.reached), np.nan)
+        columns = [ours_of(s, found, self.scene)[0] for s in self.measured.numbers]
+        return np.concatenate([nothing if c is None else c for c in columns])
 
     def at(self, amounts: Array, values: Sequence[Array] | None = None) -> Array:
-        """Every column one after the other, (columns * rows,), in our units; NaN where there is no pose."""
+        """The numbers of a design; NaN throughout where it cannot be solved."""
         try:
-            return self.solved(amounts, values).numbers
+            return self.numbers(self.solved(amounts, values))
         except PointcoordError:
             return np.full(len(self.measured.numbers) * len(self.measured.rows), np.nan)
 
@@ -88,7 +93,7 @@ class Curves:
         """How the used numbers change with each coordinate, (used, free), in our units by mm.
 
         Raises:
-            FitError: a design beside it has no pose there.
+            FileError: a design beside it has no pose there.
         """
         found = np.empty((int(used.sum()), len(self.free)))
         for i, moved in enumerate(STEP * np.eye(len(self.free))):
@@ -97,24 +102,5 @@ class Curves:
             lost = int(np.flatnonzero(used)[int(np.argmin(np.isfinite(found).all(axis=1)))])
             problem = "the car's numbers have no slope there: its pose is next to a singular one"
             row = self.measured.rows[lost % len(self.measured.rows)]
-            raise FitError(row, problem, "rows away from where the car jams")
+            raise FileError(self.measured.source, row, problem, "rows away from where the car jams")
         return found
-
-
-@dataclass(frozen=True)
-class Solved:
-    """A design at the rows of a file.
-
-    Attributes:
-        found: its numbers.
-    """
-
-    curves: Curves
-    found: Found
-
-    @cached_property
-    def numbers(self) -> Array:
-        """Every column one after the other, (columns * rows,), in our units; NaN where there is no pose."""
-        nothing = np.full(len(self.found.reached), np.nan)
-        columns = [ours_of(s, self.found, self.curves.scene)[0] for s in self.curves.measured.numbers]
-        return np.concatenate([nothing if c is None else c for c in columns])

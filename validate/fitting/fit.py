@@ -36,10 +36,12 @@ from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
 
 from pointcoord import PointcoordError, Scene, UnknownName, designs_of
-from validate.fitting.curves import Curves, Solved
-from validate.fitting.errors import FitError
+from validate.errors import UsageError
+from validate.fitting.curves import Curves
 from validate.measured.mapping import Measured
+from validate.measured.poses import Found, at_either_end
 from validate.plain_text import shown
+from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -181,28 +183,26 @@ def fit_hardpoints(
 
     Args:
         free: coordinates such as lower_ball_joint.z, or points for all three; empty: of every point.
-        bounds: that corrections keep, mm.
-        prior: how far off hardpoints are thought to be, a standard deviation, mm.
+        bounds: that corrections keep, mm, above 0.
+        prior: how far off hardpoints are thought to be, a standard deviation, mm, above 0.
         accuracy: how far off the file's numbers may be beside their digits, each in its own unit.
         solves: how many corrections are tried before it stops without having converged.
         told: is called with words and how many designs were tried.
     Raises:
-        UnknownName: no point or axis is called so.
-        FitError: bounds or prior no number above 0, or fewer numbers than none.
+        UnknownName: no point or axis is called so. UsageError: a coordinate is there twice.
+        FileError: no number of the file can be used.
         PointcoordError: the scene as drawn cannot be solved.
     """
-    for name, value in (("the bounds", bounds), ("the prior", prior)):
-        if not (math.isfinite(value) and value > 0.0):
-            raise FitError(name, f"is {value:g} mm", "a finite number above 0")
     measured, left_out = _without_derivatives(measured)
     curves = Curves(scene, measured, free_coordinates(scene, free))
     zero = np.zeros(len(curves.free))
     start = curves.solved(zero)
-    first, theirs = start.numbers, np.concatenate([s.values for s in measured.numbers])
+    first, theirs = curves.numbers(start), np.concatenate([s.values for s in measured.numbers])
     used: Bools = np.isfinite(first) & np.isfinite(theirs)
     if not used.any():
-        why = next(iter(start.found.reasons.values()), "no number is both there and ours")
-        raise FitError(measured.source, f"no row can be used ({why})", "rows that the scene's car can have")
+        why = next(iter(start.reasons.values()), "no number is both there and ours")
+        allowed = "rows that the scene's car can have"
+        raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
     spread = _spread(curves, accuracy)[used]
     turns = np.concatenate([np.full(len(s.values), s.meaning.unit == "rad") for s in measured.numbers])[used]
     search = _Search(curves, used, {zero.tobytes(): start}, told)
@@ -216,7 +216,7 @@ def fit_hardpoints(
         return np.concatenate([gap(search.numbers(amounts)) / spread, amounts / prior])
 
     def slopes(amounts: Array) -> Array:
-        known = search.slopes(amounts) / spread[:, None]
+        known = curves.slopes(amounts, used) / spread[:, None]
         return np.concatenate([known, np.eye(len(zero)) / prior])
 
     solved = least_squares(
@@ -281,35 +281,34 @@ def _without_derivatives(measured: Measured) -> tuple[Measured, tuple[str, ...]]
     """The file without columns that are derivatives, and that they are left out.
 
     Raises:
-        FitError: there are no others.
+        FileError: there are no others.
     """
     curves = tuple(s for s in measured.numbers if not s.meaning.per)
     slopes = [shown(s.column) for s in measured.numbers if s.meaning.per]
     if not curves:
         problem = f"holds derivatives only ({', '.join(slopes)})"
-        raise FitError(measured.source, problem, "the curves themselves, such as an angle over travel")
+        raise FileError(measured.source, "", problem, "the curves themselves, such as an angle over travel")
     notes = [f"{', '.join(slopes)} is not fitted to: derivatives are not, their curves are"] if slopes else []
     return replace(measured, numbers=curves), tuple(notes)
 
 
-def _notes(curves: Curves, start: Solved) -> tuple[str, ...]:
+def _notes(curves: Curves, start: Found) -> tuple[str, ...]:
     """Inputs that the file does not give, and rows that are left out."""
     drawn = [
         f"{name} is as drawn in every design: the file does not give it" for name in curves.driven.as_drawn
     ]
     lost = [
-        f"{curves.measured.rows[row]} is left out: {reason}"
-        for row, reason in sorted(start.found.reasons.items())
+        f"{curves.measured.rows[row]} is left out: {reason}" for row, reason in sorted(start.reasons.items())
     ]
     more = [f"{len(lost) - NAMED} more rows are left out"] if len(lost) > NAMED else []
     return (*drawn, *lost[:NAMED], *more)
 
 
 class _Search:
-    """Designs that least squares ask for, each solved once: its numbers are wanted first, then its slopes."""
+    """Designs that least squares ask for, each solved once."""
 
     def __init__(
-        self, curves: Curves, used: Bools, solved: dict[bytes, Solved], told: Callable[[str, int], None]
+        self, curves: Curves, used: Bools, solved: dict[bytes, Found], told: Callable[[str, int], None]
     ) -> None:
         self.curves, self.used, self.told = curves, used, told
         self.tried = 0
@@ -323,24 +322,21 @@ class _Search:
         except PointcoordError as error:
             self.failures[str(error)] = None
             return np.full(len(self.used), np.nan)
-        lost = np.flatnonzero(self.used & ~np.isfinite(found.numbers))
+        numbers = self.curves.numbers(found)
+        lost = np.flatnonzero(self.used & ~np.isfinite(numbers))
         if len(lost):
             rows = self.curves.measured.rows
             row = int(lost[0]) % len(rows)
-            self.failures[f"{rows[row]}: {found.found.reasons.get(row, 'no number')}"] = None
-        return found.numbers
+            self.failures[f"{rows[row]}: {found.reasons.get(row, 'no number')}"] = None
+        return numbers
 
-    def slopes(self, amounts: Array) -> Array:
-        """Of the used numbers."""
-        return self.curves.slopes(amounts, self.used)
-
-    def _design(self, amounts: Array) -> Solved:
+    def _design(self, amounts: Array) -> Found:
         key = amounts.tobytes()
         if key not in self._solved:
             self.tried += 1
             self.told(f"{self.tried} tried", self.tried)
             solved = self.curves.solved(amounts)
-            # A rejected step is followed by a shorter one, and slopes are those of the last that was taken.
+            # A rejected step is followed by a shorter one from the last that was taken.
             self._solved = dict([*self._solved.items()][-KEPT:]) | {key: solved}
         return self._solved[key]
 
@@ -361,7 +357,7 @@ def free_coordinates(scene: Scene, free: Sequence[str]) -> tuple[str, ...]:
 
     Raises:
         UnknownName: no point or axis is called so.
-        FitError: one is there twice.
+        UsageError: one is there twice.
     """
     topology, drawn = scene.mechanism.topology, scene.mechanism.points
     if not free:
@@ -378,7 +374,7 @@ def free_coordinates(scene: Scene, free: Sequence[str]) -> tuple[str, ...]:
         found += [name] if dot else [f"{name}.{axis}" for axis in "xyz"]
     twice = next((name for name in found if found.count(name) > 1), "")
     if twice:
-        raise FitError("--free", f"{twice} is there twice", "each coordinate once")
+        raise UsageError(f"--free: {twice} is there twice; allowed: each coordinate once")
     return tuple(found)
 
 
@@ -389,13 +385,9 @@ def _spread(curves: Curves, accuracy: float) -> Array:
     values = [s.values for s in measured.independent]
     swing = np.zeros(len(values[0]) * len(measured.numbers))
     here = curves.at(zero)
-    for i, s in enumerate(measured.independent):
-        if s.off.any():
-            ends = [
-                curves.at(zero, [v + side * s.off if k == i else v for k, v in enumerate(values)])
-                for side in (-1.0, 1.0)
-            ]
-            swing += np.max([np.nan_to_num(np.abs(end - here)) for end in ends], axis=0)
+    for _, ends in at_either_end(values, [s.off for s in measured.independent]):
+        gaps = [np.nan_to_num(np.abs(curves.at(zero, end) - here)) for end in ends]
+        swing += np.max(gaps, axis=0)
     off = np.concatenate([s.off + s.accuracy_or(accuracy) for s in measured.numbers])
     least = np.concatenate(
         [np.full(len(s.values), LEAST[s.meaning.unit.partition("/")[0]]) for s in measured.numbers]

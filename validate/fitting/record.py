@@ -1,4 +1,4 @@
-"""A fit as plain data, and its corrections as a table."""
+"""A fit as plain data, its corrections as a table, and the corrected scene as a file."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import io
 from typing import Any
 
 from validate.fitting.fit import CONFIDENCE, Fit
-from validate.fitting.words import unseen_words, warnings_of_fit
+from validate.fitting.words import counted, unseen_words, warnings_of_fit
 from validate.plain_text import shown
+from validate.toml_written import written
 
 HEADER = (
     "coordinate",
@@ -81,6 +82,27 @@ def table_of(fit: Fit) -> str:
         )
         writer.writerow([one, *cells])
     return text.getvalue()
+
+
+def corrected_text(fit: Fit, name: str, source: str) -> str:
+    """A scene file (TOML) of the corrected car, with what was done to it in comments."""
+    content = fit.scene.model_dump(exclude_none=True)
+    before = [f"# {shown(name)}, its hardpoints fitted to {shown(source)}."]
+    for unit in dict.fromkeys(column.unit for column in fit.columns):
+        first, last, _ = fit.rms(unit)
+        before.append(f"# r.m.s. difference {first:.4g} {unit} before, {last:.4g} {unit} after.")
+    if not fit.unique:
+        before.append(f"# Not unique: the data do not see {counted(len(fit.unseen))} of coordinates.")
+    before += [
+        f"# {one} moved by {amount:+z.4f} mm, "
+        + (
+            "which is its bound."
+            if one in fit.on_bounds
+            else f"standard deviation {fit.deviations[one]:.2g} mm."
+        )
+        for one, amount in fit.corrections.items()
+    ]
+    return "\n".join([*before, *written(content)]) + "\n"
 
 
 def _coordinate(fit: Fit, one: str) -> dict[str, Any]:

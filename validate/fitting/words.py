@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import qr
 
 from validate.fitting.fit import CONFIDENCE, Combination, Fit, Fitted
 from validate.plain_text import shown
@@ -127,21 +128,13 @@ def combination(parts: Mapping[str, float], said: float = SAID) -> str:
 
 
 def simplest(found: Sequence[Combination]) -> list[dict[str, float]]:
-    """The same space of combinations by ones of few coordinates: each has one of its own (full pivoting)."""
+    """The same space of combinations by ones of few coordinates: each has one of its own, by pivoting."""
     if not found:
         return []
-    names = list(found[0].parts)
-    rows = np.array([[one.parts[name] for name in names] for one in found])
-    left = list(range(len(rows)))
-    while left:
-        sizes = np.abs(rows[left])
-        row, column = np.unravel_index(int(sizes.argmax()), sizes.shape)
-        pivot = left.pop(int(row))
-        rows[pivot] /= rows[pivot, column]
-        for other in range(len(rows)):
-            if other != pivot:
-                rows[other] -= rows[other, column] * rows[pivot]
-    return [dict(zip(names, row.tolist(), strict=True)) for row in rows]
+    rows = np.array([[*one.parts.values()] for one in found])
+    _, order = qr(rows, mode="r", pivoting=True)
+    few = np.linalg.solve(rows[:, order[: len(rows)]], rows)
+    return [dict(zip(found[0].parts, row.tolist(), strict=True)) for row in few]
 
 
 def _of(unit: str, number: float) -> str:

@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from decimal import Decimal
 from itertools import permutations
 
+import numpy as np
+
+from validate.errors import UsageError
 from validate.hardpoint_files.contents import Place
 from validate.tables.units import LENGTHS
 
@@ -27,18 +30,6 @@ DIRECTIONS = {
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
-class UnknownAxes(ValueError):
-    """Words that are not the directions of three axes.
-
-    Args:
-        text: what was given.
-    """
-
-    def __init__(self, text: str) -> None:
-        self.text = text
-        super().__init__(f"axes are {text!r}; allowed: {ALLOWED}; each line of the car once")
-
-
 @dataclass(frozen=True)
 class Axes:
     """Where the x, y and z of a file point."""
@@ -50,11 +41,12 @@ class Axes:
         """Axes from their words.
 
         Raises:
-            UnknownAxes: they are not three directions at right angles.
+            UsageError: they are not three directions at right angles.
         """
         found = re.findall(r"[^\s,;]+", words.lower()) if isinstance(words, str) else list(words)
         if sorted(DIRECTIONS.get(word, (-1, 0))[0] for word in found) != [0, 1, 2]:
-            raise UnknownAxes(words if isinstance(words, str) else ",".join(found))
+            text = words if isinstance(words, str) else ",".join(found)
+            raise UsageError(f"axes are {text!r}; allowed: {ALLOWED}; each line of the car once")
         x, y, z = found
         return cls((x, y, z))
 
@@ -77,13 +69,11 @@ class Axes:
     @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
-        places = [DIRECTIONS[word] for word in self.directions]
-        order = [place for place, _ in places]
-        swaps = sum(order[i] > order[j] for i in range(3) for j in range(i + 1, 3))
-        sign = -1 if swaps % 2 else 1
-        for _, own in places:
-            sign *= own
-        return sign > 0
+        turned = np.zeros((3, 3))
+        for row, word in zip(turned, self.directions, strict=True):
+            at, sign = DIRECTIONS[word]
+            row[at] = sign
+        return bool(np.linalg.det(turned) > 0.0)
 
     def to_scene(self, place: Place, unit: str) -> Place:
         """A place in the file's axes and unit as x rearward, y right, z up, mm."""

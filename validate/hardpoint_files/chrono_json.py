@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import Decimal, DecimalException
 from math import cos, radians, sin
 from pathlib import Path
@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 
 from pointcoord.toml_text import read_file
 from validate.hardpoint_files.contents import (
+    Axle,
     Contents,
     FilePoint,
     Place,
@@ -39,6 +40,113 @@ ACROSS = 1e-6
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
 
+def _blank(found: re.Match[str]) -> str:
+    """Texts as they are; comments as the line breaks in them."""
+    return found[0] if found[0].startswith('"') else "\n" * found[0].count("\n") + " "
+
+
+def _no_number(word: str) -> NoReturn:
+    raise ValueError(f"{word} is no number")
+
+
+@dataclass(frozen=True)
+class _Json:
+    """A file.
+
+    Attributes:
+        data: what it holds. text: the same as it is written, without comments.
+    """
+
+    source: str
+    data: Mapping[str, Any]
+    text: str
+
+    @classmethod
+    def of(cls, text: str, source: str) -> _Json:
+        """A file of such a text.
+
+        Raises:
+            FileError: it is no JSON, or no table.
+        """
+        clean = _COMMENT.sub(_blank, text)
+        try:
+            data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=_no_number)
+        except json.JSONDecodeError as error:
+            raise FileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
+        except (ValueError, RecursionError, DecimalException) as error:
+            raise FileError(source, 0, f"is no JSON: {error}", FORM) from None
+        if not isinstance(data, dict):
+            raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
+        return cls(source, data, clean)
+
+    @property
+    def called(self) -> tuple[Any, Any]:
+        """Its type and its template, of which either may be anything."""
+        return self.data.get("Type"), self.data.get("Template")
+
+    @property
+    def suspension(self) -> str:
+        """What it calls itself if it is a suspension; empty if it is none."""
+        kind, template = self.called
+        return template if kind == "Suspension" and isinstance(template, str) else ""
+
+    def refuse(self, told: str, allowed: str, *keys: str) -> FileError:
+        """What is wrong at the place of keys."""
+        return FileError(self.source, self.line(*keys), told, allowed)
+
+    def line(self, *keys: str) -> int:
+        """The line of a key inside others; 0 if it is not there as written."""
+        at = 0
+        for key in keys:
+            written = re.escape(json.dumps(key, ensure_ascii=False))
+            found = re.compile(written + r"\s*:").search(self.text, at) or re.compile(written).search(
+                self.text, at
+            )
+            if found is None:
+                return 0
+            at = found.start()
+        return self.text.count("\n", 0, at) + 1
+
+    def named(self, name: object, place: str, *keys: str) -> _Json:
+        """The file that it names at a place, from the nearest folder above it that has one of that name."""
+        if not isinstance(name, str):
+            raise self.refuse(f"has no {place}", "the name of a file", *keys)
+        for folder in Path(self.source).absolute().parents:
+            path = folder / name
+            if path.is_file():
+                data = read_file(path, f"the path of a file that {self.source} names")
+                return _Json.of(data.decode("utf-8-sig", "replace"), str(path))
+        told = f"names {short(name)}, which is in none of the folders above it"
+        allowed = (
+            "a vehicle in Chrono's folder of data with the files that it names, or a suspension's own file"
+        )
+        raise self.refuse(told, allowed, name)
+
+    def numbers(self, value: object, axes: str, name: str, *keys: str) -> list[Decimal]:
+        """A number for each axis, which are called so together."""
+        name, words = short(name), {3: "three", 4: "four"}[len(axes)]
+        if not isinstance(value, list) or len(value) != len(axes):
+            told = f"{len(value)} values" if isinstance(value, list) else f"{short(str(value))}"
+            raise self.refuse(f"{name} has {told}", f"a list of {words} numbers", *keys)
+        for axis, number in zip(axes, value, strict=True):
+            if not isinstance(number, Decimal):
+                raise self.refuse(f"{axis} of {name} is {short(str(number))}", "a number", *keys)
+            finite(number, self.source, self.line(*keys), f"{axis} of {name}")
+        return value
+
+    def place(self, value: object, name: str, *keys: str) -> Place:
+        """Three coordinates."""
+        x, y, z = self.numbers(value, "xyz", name, *keys)
+        return x, y, z
+
+    def angle(self, key: str) -> float:
+        """An angle at a key, rad; 0 if it is not there."""
+        value = self.data.get(key, Decimal(0))
+        if not isinstance(value, Decimal) or not abs(finite(value, self.source, self.line(key), key)) < 90:
+            raise self.refuse(f"{key} is {short(str(value))}", "an angle below 90 deg", key)
+        return radians(float(value))
+
+
 def read(text: str, source: str) -> Contents:
     """The points of a suspension, or of those that a vehicle names, and where their spin axes point.
 
@@ -47,119 +155,83 @@ def read(text: str, source: str) -> Contents:
             file that is not there.
         SceneError: a file that it names cannot be read.
     """
-    return _read(text, source, ())
+    file, on_the_way = _Json.of(text, source), {source}
+    while not file.suspension:
+        # A simulation's own files name the vehicle.
+        within = file.data.get("Vehicle")
+        name = within.get("Input File") if isinstance(within, dict) else file.data.get("Vehicle Input File")
+        inner = file.named(name, "vehicle") if isinstance(name, str) else file
+        if inner.source in on_the_way:
+            return _vehicle(file)
+        on_the_way.add(inner.source)
+        file = inner
+    return _suspension(file)
 
 
-def _read(text: str, source: str, on_the_way: tuple[str, ...]) -> Contents:
-    data, clean = _data(text, source)
-    kind, template = data.get("Type"), data.get("Template")
-    if kind == "Suspension" and isinstance(template, str):
-        return _suspension(data, template, clean, source)
-    # A simulation's own files name the vehicle.
-    within = data.get("Vehicle")
-    vehicle = within.get("Input File") if isinstance(within, dict) else data.get("Vehicle Input File")
-    if isinstance(vehicle, str) and source not in on_the_way:
-        path, inner = _named(
-            vehicle, source, _line(clean, "Input File") or _line(clean, "Vehicle Input File")
-        )
-        return _read(inner, path, (*on_the_way, source))
-    if kind == "Vehicle" and isinstance(data.get(AXLES), list):
-        return _vehicle(data, clean, source)
-    told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
-    if not isinstance(kind, str):
-        told = "is JSON without a Type, which every file of Chrono's has"
-    raise FileError(source, _line(clean, "Type"), told, KINDS)
-
-
-def _data(text: str, source: str) -> tuple[dict[str, Any], str]:
-    """The JSON of a file, and its text without comments."""
-    clean = _COMMENT.sub(_blank, text)
-    try:
-        data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=_no_number)
-    except json.JSONDecodeError as error:
-        raise FileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
-    except (ValueError, RecursionError, DecimalException) as error:
-        raise FileError(source, 0, f"is no JSON: {error}", FORM) from None
-    if not isinstance(data, dict):
-        raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
-    return data, clean
-
-
-def _suspension(data: Mapping[str, Any], template: str, clean: str, source: str) -> Contents:
+def _suspension(file: _Json) -> Contents:
     points = [
-        FilePoint(
-            f"{part}: {key}",
-            _place(value, clean, source, f"{part}: {key}", part, key),
-            _line(clean, part, key),
-        )
-        for part, keys in data.items()
+        FilePoint(f"{part}: {key}", file.place(value, f"{part}: {key}", part, key), file.line(part, key))
+        for part, keys in file.data.items()
         if isinstance(keys, dict)
         for key, value in keys.items()
         if key == "COM" or key.startswith("Location")
     ]
-    camber, toe = (_angle(data, key, clean, source) for key in (CAMBER, TOE))
+    camber, toe = (file.angle(key) for key in (CAMBER, TOE))
     # The left spindle's own y axis: R_z(-toe) R_x(-camber) e_y in Chrono's axes (ChDoubleWishbone.cpp).
     axis = (sin(toe) * cos(camber), cos(toe) * cos(camber), -sin(camber))
-    taken = (f"{key} {data[key]}" if key in data else f"no {key}, which is 0 then" for key in (CAMBER, TOE))
+    taken = (
+        f"{key} {file.data[key]}" if key in file.data else f"no {key}, which is 0 then"
+        for key in (CAMBER, TOE)
+    )
     notes = (
         "points are in the frame of the suspension, which the car's own file puts somewhere",
         "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
     )
     return Contents(
-        tuple(points),
-        called={"": template},
-        spin_axes={"": SpinAxis(axis, " and ".join(taken))},
-        notes={"": notes},
+        tuple(points), {"": Axle(file.suspension, {}, SpinAxis(axis, " and ".join(taken)), notes)}
     )
 
 
 # A vehicle, and the files that it names.
 
 
-def _vehicle(data: Mapping[str, Any], clean: str, source: str) -> Contents:
+def _vehicle(file: _Json) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
-    axles = data[AXLES]
+    (kind, template), axles = file.called, file.data.get(AXLES)
+    if kind != "Vehicle" or not isinstance(axles, list):
+        told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
+        if not isinstance(kind, str):
+            told = "is JSON without a Type, which every file of Chrono's has"
+        raise file.refuse(told, KINDS, "Type")
     if not axles or not all(isinstance(axle, dict) for axle in axles):
-        raise FileError(source, _line(clean, AXLES), f"has no {AXLES}", f"one with {SUSPENSION} each")
+        raise file.refuse(f"has no {AXLES}", f"one with {SUSPENSION} each", AXLES)
     places = [
-        _place(axle.get(PLACE), clean, source, f"{PLACE} of axle {number}", PLACE)
+        file.place(axle.get(PLACE), f"{PLACE} of axle {number}", PLACE)
         for number, axle in enumerate(axles, 1)
     ]
     points: list[FilePoint] = []
-    called: dict[str, str] = {}
-    spin_axes: dict[str, SpinAxis] = {}
-    notes: dict[str, tuple[str, ...]] = {}
-    doubts: dict[str, tuple[str, ...]] = {}
+    read: dict[str, Axle] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
         x, y, z = place
-        name = axle.get(SUSPENSION)
-        if not isinstance(name, str):
-            raise FileError(
-                source, _line(clean, AXLES), f"has no {SUSPENSION} of an axle", "the name of a file"
-            )
         if y:
             told = f"{PLACE} of its {label} axle has y {y}, beside the middle of the car"
-            raise FileError(source, _line(clean, PLACE), told, "y 0")
-        path, text = _named(name, source, _line(clean, name))
-        inner, inner_clean = _data(text, path)
-        template = inner.get("Template")
-        if inner.get("Type") != "Suspension" or not isinstance(template, str):
-            told = f"is of Type {short(str(inner.get('Type')))}, and {source} has it as a suspension"
-            raise FileError(path, _line(inner_clean, "Type"), told, "Type Suspension with a Template")
-        one = _suspension(inner, template, inner_clean, path)
+            raise file.refuse(told, "y 0", PLACE)
+        own = file.named(axle.get(SUSPENSION), f"{SUSPENSION} of an axle", AXLES)
+        if not own.suspension:
+            told = f"is of Type {short(str(own.called[0]))}, and {file.source} has it as a suspension"
+            raise own.refuse(told, "Type Suspension with a Template", "Type")
+        one = _suspension(own)
         points += [
             replace(point, part=label, place=(point.place[0] + x, point.place[1] + y, point.place[2] + z))
             for point in one.points
         ]
-        called[label], spin_axes[label] = template, one.spin_axes[""]
-        steered, doubted = _steering(axle, data, clean, source)
-        notes[label] = (
-            f"points and their lines are those of {path}, moved by its {PLACE} {[float(n) for n in place]} m "
-            "into the frame of the chassis",
-            steered,
+        steered, doubts = _steering(axle, file)
+        moved = (
+            f"points and their lines are those of {own.source}, moved by its {PLACE} "
+            f"{[float(n) for n in place]} m into the frame of the chassis"
         )
-        doubts[label] = doubted
-    return Contents(tuple(points), called=called, spin_axes=spin_axes, notes=notes, doubts=doubts)
+        read[label] = replace(one.axles[""], notes=(moved, steered), doubts=doubts)
+    return Contents(tuple(points), read)
 
 
 def _labels(places: Sequence[Place]) -> list[str]:
@@ -172,11 +244,9 @@ def _labels(places: Sequence[Place]) -> list[str]:
     return [str(number) for number, _ in enumerate(places, 1)]
 
 
-def _steering(
-    axle: Mapping[str, Any], data: Mapping[str, Any], clean: str, source: str
-) -> tuple[str, tuple[str, ...]]:
+def _steering(axle: Mapping[str, Any], file: _Json) -> tuple[str, tuple[str, ...]]:
     """What moves the inner end of an axle's tie rods, and what may be another motion than our rack's."""
-    index, steerings = axle.get(STEERING), data.get(STEERINGS)
+    index, steerings = axle.get(STEERING), file.data.get(STEERINGS)
     # Chrono's -1 is an axle that is not steered.
     if index is None or index == -1:
         return (
@@ -186,15 +256,10 @@ def _steering(
     there = steerings if isinstance(steerings, list) else []
     if not isinstance(index, Decimal) or index != int(index) or not 0 <= index < len(there):
         told = f"{STEERING} is {short(str(index))}, but there are {len(there)} {STEERINGS}"
-        raise FileError(source, _line(clean, STEERING), told, "the number of one, from 0")
-    one = there[int(index)]
-    name = one.get("Input File") if isinstance(one, dict) else None
-    if not isinstance(name, str):
-        raise FileError(
-            source, _line(clean, STEERINGS), f"has no Input File of {STEERINGS} {index}", "the name of a file"
-        )
-    path, text = _named(name, source, _line(clean, name))
-    kind = short(str(_data(text, path)[0].get("Template")))
+        raise file.refuse(told, "the number of one, from 0", STEERING)
+    one = there[int(index)] if isinstance(there[int(index)], dict) else {}
+    name = one.get("Input File")
+    kind = short(str(file.named(name, f"Input File of {STEERINGS} {index}", STEERINGS).called[1]))
     if kind != short(RACK):
         note = f"it is steered by a {kind} ({name}), here by a straight rack"
         return note, (
@@ -202,7 +267,7 @@ def _steering(
             "with the rack as drawn they are the same",
         )
     turned = one.get(ORIENTATION, [Decimal(1), Decimal(0), Decimal(0), Decimal(0)])
-    w, x, y, z = (float(n) for n in _numbers(turned, 4, clean, source, ORIENTATION, ORIENTATION))
+    w, x, y, z = (float(n) for n in file.numbers(turned, "wxyz", ORIENTATION, ORIENTATION))
     # The rack slides along its own y axis (ChRackPinion.cpp), turned by the quaternion.
     along = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
     note = f"it is steered by a {kind} ({name}), which moves the tie rod's inner end across the car, as here"
@@ -211,66 +276,3 @@ def _steering(
     words = ", ".join(f"{part:.6g}" for part in along)
     note = f"it is steered by a {kind} ({name}) that runs along {words}, here straight across the car"
     return note, (f"{note}; with the rack as drawn they are the same",)
-
-
-def _named(name: str, source: str, line: int) -> tuple[str, str]:
-    """The path and text of a file that another one names, from the nearest folder above it that has it."""
-    for folder in Path(source).absolute().parents:
-        path = folder / name
-        if path.is_file():
-            text = read_file(path, f"the path of a file that {source} names").decode("utf-8-sig", "replace")
-            return str(path), text
-    told = f"names {short(name)}, which is in none of the folders above it"
-    allowed = "a vehicle in Chrono's folder of data with the files that it names, or a suspension's own file"
-    raise FileError(source, line, told, allowed)
-
-
-# JSON.
-
-
-def _blank(found: re.Match[str]) -> str:
-    """Texts as they are; comments as the line breaks in them."""
-    return found[0] if found[0].startswith('"') else "\n" * found[0].count("\n") + " "
-
-
-def _no_number(word: str) -> NoReturn:
-    raise ValueError(f"{word} is no number")
-
-
-def _line(text: str, *keys: str) -> int:
-    """The line of a key inside others, in a text without comments; 0 if it is not there as written."""
-    at = 0
-    for key in keys:
-        written = re.escape(json.dumps(key, ensure_ascii=False))
-        found = re.compile(written + r"\s*:").search(text, at) or re.compile(written).search(text, at)
-        if found is None:
-            return 0
-        at = found.start()
-    return text.count("\n", 0, at) + 1
-
-
-def _place(value: Any, text: str, source: str, name: str, *keys: str) -> Place:
-    x, y, z = _numbers(value, 3, text, source, name, *keys)
-    return x, y, z
-
-
-def _numbers(value: Any, count: int, text: str, source: str, name: str, *keys: str) -> list[Decimal]:
-    """So many numbers, which are called so."""
-    line, name = _line(text, *keys), short(name)
-    words = {3: "three", 4: "four"}[count]
-    if not isinstance(value, list) or len(value) != count:
-        told = f"{len(value)} values" if isinstance(value, list) else f"{short(str(value))}"
-        raise FileError(source, line, f"{name} has {told}", f"a list of {words} numbers")
-    for axis, number in zip("xyz" if count == 3 else "wxyz", value, strict=True):
-        if not isinstance(number, Decimal):
-            raise FileError(source, line, f"{axis} of {name} is {short(str(number))}", "a number")
-        finite(number, source, line, f"{axis} of {name}")
-    return value
-
-
-def _angle(data: Mapping[str, Any], key: str, text: str, source: str) -> float:
-    value = data.get(key, Decimal(0))
-    if not isinstance(value, Decimal) or not abs(finite(value, source, _line(text, key), key)) < 90:
-        allowed = "an angle below 90 deg"
-        raise FileError(source, _line(text, key), f"{key} is {short(str(value))}", allowed)
-    return radians(float(value))

@@ -9,17 +9,17 @@ are not guessed at: a table [table] in the file of names says which columns are 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
-from functools import partial
 
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.contents import (
+    Axle,
     Contents,
     FilePoint,
     Spoilt,
-    decimal_of,
+    place_of,
     plain,
     short,
     words_of,
@@ -55,7 +55,6 @@ SAY = (
 )
 NOWHERE = (Decimal(0), Decimal(0), Decimal(0))
 Row = Sequence[str]
-Refused = Callable[[int, str, str], FileError]
 
 
 @dataclass(frozen=True)
@@ -93,7 +92,7 @@ class _Titles:
 
     def title(self, at: int) -> str:
         """A column's title; empty if it has none."""
-        return self.row[at] if at < len(self.row) else ""
+        return _cell(self.row, at)
 
 
 UNTITLED = _Titles({NO_WHEEL: (1, 2, 3)}, 0)
@@ -107,13 +106,12 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
     Raises:
         FileError: titles are not as they must be, a point has no name, or there is no point.
     """
-    refused = partial(FileError, source)
     lines = lines_of(text)
     rows = [(line, row if lines.mark else _named(row)) for line, row in lines.rows]
     if lines.mixed:
         told = "has numbers with points and with commas"
-        raise refused(lines.mixed, told, "one sign before the decimals, none between thousands")
-    titles, heading, words = _said(rows, said, refused) if said else UNTITLED, NO_WHEEL, ("", 0, 0)
+        raise FileError(source, lines.mixed, told, "one sign before the decimals, none between thousands")
+    titles, heading, words = _said(rows, said, source) if said else UNTITLED, NO_WHEEL, ("", 0, 0)
     points: list[FilePoint] = []
     spoilt: list[Spoilt] = []
     notes: dict[str, None] = {}
@@ -121,7 +119,7 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
     for line, row in rows:
         if titles.said and row == titles.row:
             continue
-        if not titles.said and (found := _titles(row, refused, line)) is not None:
+        if not titles.said and (found := _titles(row, source, line)) is not None:
             tables.append(titles := found)
             continue
         if unit := _unit_line(row, titles):
@@ -135,26 +133,28 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
             words = ", ".join(row[1:]), line, sum(map(bool, row))
         elif titles is UNTITLED and words[2] > 3 and not points:
             told = f"has titles that are not known: {short(words[0])}"
-            raise refused(words[1], told, f"X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X; {SAY}")
-        new, broken = _points_of(row, titles, heading, refused, line)
+            raise FileError(
+                source, words[1], told, f"X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X; {SAY}"
+            )
+        new, broken = _points_of(row, titles, heading, source, line)
         points += new
         spoilt += broken
         if new:
             notes |= {f"the column {short(titles.title(at))} is not read": None for at in titles.further(row)}
     if not points:
         wrong = next((one.error for one in spoilt if one.value), None)
-        raise wrong or refused(0, "has no points", f"{ROW}; {SAY}")
+        raise wrong or FileError(source, 0, "has no points", f"{ROW}; {SAY}")
     units, directions = ({getattr(one, key) for one in tables} - {"", ()} for key in ("unit", "directions"))
     if len(units) > 1 or len(directions) > 1:
-        raise refused(
-            0, f"has tables in different {'units' if len(units) > 1 else 'axes'}", "a file for each"
+        raise FileError(
+            source, 0, f"has tables in different {'units' if len(units) > 1 else 'axes'}", "a file for each"
         )
     return Contents(
         tuple(points),
         unit=next(iter(units), ""),
         axes=next(iter(directions), ()),
         spoilt=tuple(spoilt),
-        notes={"": tuple(notes)} if notes else {},
+        axles={"": Axle(notes=tuple(notes))},
     )
 
 
@@ -168,6 +168,11 @@ def _named(words: Row) -> Row:
     return [" ".join(words[: len(words) - count]), *words[len(words) - count :]]
 
 
+def _cell(row: Row, at: int) -> str:
+    """A cell of a line; empty behind its end."""
+    return row[at] if at < len(row) else ""
+
+
 def _counts_lines(words: set[str]) -> bool:
     return bool(words) and words <= OF_LINES
 
@@ -179,19 +184,19 @@ def _words(title: str) -> set[str]:
 # Titles, and lines that are no points.
 
 
-def _said(rows: Sequence[tuple[int, Row]], said: Mapping[str, str | int], refused: Refused) -> _Titles:
+def _said(rows: Sequence[tuple[int, Row]], said: Mapping[str, str | int], source: str) -> _Titles:
     """The columns that the user names."""
     titles = {plain(one) for one in said.values() if isinstance(one, str)}
     row: Row = next((row for _, row in rows if titles and titles <= {*map(plain, row)}), [])
     if titles and not row:
         told = f"has no line with the titles {', '.join(str(one) for one in said.values())}"
-        raise refused(0, told, "titles as they stand there, or numbers of columns from 1")
+        raise FileError(source, 0, told, "titles as they stand there, or numbers of columns from 1")
     heads = [*map(plain, row)]
     at = {key: heads.index(plain(one)) if isinstance(one, str) else one - 1 for key, one in said.items()}
     return _Titles({NO_WHEEL: (at["x"], at["y"], at["z"])}, at["name"], at.get("corner"), row=row, said=True)
 
 
-def _titles(row: Row, refused: Refused, line: int) -> _Titles | None:
+def _titles(row: Row, source: str, line: int) -> _Titles | None:
     """What a line of titles says; None if this is none."""
     words = [_words(cell) for cell in row]
     there = [at for at, some in enumerate(words) if len(some & {*"xyz"}) == 1]
@@ -211,7 +216,7 @@ def _titles(row: Row, refused: Refused, line: int) -> _Titles | None:
         wheel = wheel_of(of_wheels)
         if axis in columns.setdefault(wheel, {}):
             told = f"has two columns of {axis} (the second is {short(row[at])})"
-            raise refused(line, told, f"one for each wheel; {SAY}")
+            raise FileError(source, line, told, f"one for each wheel; {SAY}")
         columns[wheel][axis] = at
         units.add(length_called(unit))
         directions[axis] = way
@@ -219,20 +224,20 @@ def _titles(row: Row, refused: Refused, line: int) -> _Titles | None:
         if missing := [axis for axis in "xyz" if axis not in three]:
             of = f" of the {' '.join(filter(None, reversed(wheel)))} wheel" if any(wheel) else ""
             told = f"has no column of {missing[0]}{of} in {short(', '.join(row))}"
-            raise refused(line, told, f"columns x, y and z, such as X (mm), Left X; {SAY}")
+            raise FileError(source, line, told, f"columns x, y and z, such as X (mm), Left X; {SAY}")
     if len(units) > 1:
         told = f"has lengths in {', '.join(sorted(unit or 'no unit' for unit in units))}"
-        raise refused(line, told, "one unit in all columns")
+        raise FileError(source, line, told, "one unit in all columns")
     ways = [way for way in directions.values() if way]
     if len(ways) not in (0, 3):
         told = f"says where only some of its axes point ({', '.join(ways)})"
-        raise refused(line, told, "all three, or none")
+        raise FileError(source, line, told, "all three, or none")
     others = [at for at in range(len(row)) if at not in there]
     wheels_at = [at for at in others if words[at] and not words[at] - OF_WHEELS]
     rest_at = [at for at in others if at not in wheels_at and not _counts_lines(words[at])]
     named = sorted(rest_at, key=lambda at: (not words[at] & {"name", "names"}, not words[at] & OF_NAMES, at))
     if not named:
-        raise refused(line, "has no column of names", f"a column of names before x, y and z; {SAY}")
+        raise FileError(source, line, "has no column of names", f"a column of names before x, y and z; {SAY}")
     return _Titles(
         {wheel: [three[axis] for axis in "xyz"] for wheel, three in columns.items()},
         named[0],
@@ -251,7 +256,7 @@ def wheel_of(words: Sequence[str] | set[str]) -> Wheel:
 
 def _unit_line(row: Row, titles: _Titles) -> str:
     """The unit that a line below the titles gives all coordinates; empty if it is no such line."""
-    cells = [row[at].strip("()[] ") if at < len(row) else "" for at in sorted(titles.own)]
+    cells = [_cell(row, at).strip("()[] ") for at in sorted(titles.own)]
     units = {*map(length_called, cells)}
     return units.pop() if len(units) == 1 else ""
 
@@ -268,35 +273,31 @@ def _heading(row: Row) -> Wheel | None:
 
 
 def _points_of(
-    row: Row, titles: _Titles, heading: Wheel, refused: Refused, line: int
+    row: Row, titles: _Titles, heading: Wheel, source: str, line: int
 ) -> tuple[list[FilePoint], list[Spoilt]]:
     """The points of a line, and what is said in place of one."""
-    name = row[titles.name_at] if titles.name_at < len(row) else ""
+    name = _cell(row, titles.name_at)
     numbers = [cell for cell in row if is_number(cell)]
     if not name or (is_number(name) and not titles.said):
         if len(numbers) >= 3:
-            raise refused(line, "has coordinates without a name", ROW)
+            raise FileError(source, line, "has coordinates without a name", ROW)
         return [], []
     value = next((cell for cell in numbers if cell != name), "")
     if not titles.said and (untitled := [at for at in titles.further(row) if not titles.title(at)]):
         told = f"has {len(numbers)} numbers for {short(name)}, some of them in columns without a title"
         allowed = f"three, or a line of titles such as Point, Left X, Left Y, Left Z, Right X; {SAY}"
-        error = refused(line, told, allowed)
+        error = FileError(source, line, told, allowed)
         return [], [Spoilt(FilePoint(name, NOWHERE, line, *heading), error, row[untitled[0]])]
     at = titles.wheel_at
-    of_line = wheel_of(plain(row[at]).split()) if at is not None and at < len(row) else NO_WHEEL
+    of_line = NO_WHEEL if at is None else wheel_of(plain(_cell(row, at)).split())
     points: list[FilePoint] = []
     spoilt: list[Spoilt] = []
     for wheel, three in titles.columns.items():
-        cells = [row[at] if at < len(row) else "" for at in three]
+        cells = [_cell(row, at) for at in three]
         side, part = (own or of or over for own, of, over in zip(wheel, of_line, heading, strict=True))
         point = FilePoint(name, NOWHERE, line, side, part)
         try:
-            x, y, z = (
-                decimal_of(cell, refused(line, "", "").source, line, f"{axis} of {short(name)}")
-                for axis, cell in zip("xyz", cells, strict=True)
-            )
-            points.append(replace(point, place=(x, y, z)))
+            points.append(replace(point, place=place_of(cells, source, line, name)))
         except FileError as error:
             # A line of words alone is a heading; one with numbers elsewhere is a mistake.
             if any(cells) or value:

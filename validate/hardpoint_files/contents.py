@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal, InvalidOperation
 
@@ -70,30 +70,44 @@ class SpinAxis:
 
 
 @dataclass(frozen=True)
+class Axle:
+    """What a file says of an axle beside its points.
+
+    Attributes:
+        called: what it calls the suspension; empty if it does not say.
+        angles: static angles that it prints, by its own words, deg.
+        spin_axis: where its wheel's spin axis points, if said without a point.
+        notes: what the user should know of its points. doubts: what may make them another car than is meant.
+    """
+
+    called: str = ""
+    angles: Mapping[str, Printed] = field(default_factory=dict)
+    spin_axis: SpinAxis | None = None
+    notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Contents:
     """A file, read.
 
     Attributes:
         points: in the order of the file.
-        called: what it calls its suspension, by part; empty if it does not say.
+        axles: by part; what is said of the whole file under the empty one.
         unit: of its lengths, if it says so.
-        angles: static angles that it prints, by part and its own words, deg.
-        spin_axes: by part, where its wheel's spin axis points, if said without a point.
         axes: where x, y and z point, if it says so.
         spoilt: lines that hold no point; right unless they are called like one.
-        notes: by part, what the user should know of its points. doubts: by part, what may make them another
-            car than the file's.
     """
 
     points: tuple[FilePoint, ...]
-    called: Mapping[str, str] = field(default_factory=dict)
+    axles: Mapping[str, Axle] = field(default_factory=dict)
     unit: str = ""
-    angles: Mapping[tuple[str, str], Printed] = field(default_factory=dict)
-    spin_axes: Mapping[str, SpinAxis] = field(default_factory=dict)
     axes: tuple[str, ...] = ()
     spoilt: tuple[Spoilt, ...] = ()
-    notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    doubts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def axle(self, part: str) -> Axle:
+        """What is said of an axle, or else of the whole file."""
+        return self.axles.get(part) or self.axles.get("", Axle())
 
 
 def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
@@ -107,6 +121,19 @@ def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
     except InvalidOperation:
         raise FileError(source, line, f"{what} is {short(text)}", "a number") from None
     return finite(number, source, line, what)
+
+
+def place_of(numbers: Sequence[str], source: str, line: int, name: str) -> Place:
+    """Three coordinates with the digits of their texts.
+
+    Raises:
+        FileError: one is no number.
+    """
+    x, y, z = (
+        decimal_of(number, source, line, f"{axis} of {short(name)}")
+        for axis, number in zip("xyz", numbers, strict=True)
+    )
+    return x, y, z
 
 
 def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:

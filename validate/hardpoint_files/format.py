@@ -8,16 +8,17 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from pointcoord.errors import UnknownName
+from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files import chrono_json, columns, lotus_report
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.contents import Contents, plain
-from validate.hardpoint_files.vocabulary import Vocabulary
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
@@ -32,23 +33,23 @@ FORMS: Mapping[str, Callable[..., Contents]] = {
 HEAD = 4000
 
 
-@dataclass(frozen=True)
-class Names:
+class Names(BaseModel):
     """A suspension in the words of a format.
 
     Attributes:
         called: what the format calls it, for people, with a pattern of each; empty if it does not say.
-        names: what it calls each of our points, any of several names.
+        names: what it calls each of our points, any of several names, beside those that the format has.
         notes: what the user should know of these points.
     """
 
-    called: Mapping[str, str]
-    names: Mapping[str, tuple[str, ...]]
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    called: dict[str, str] = {}
+    names: dict[str, tuple[str, ...]] = {}
     notes: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class Format:
+class Format(BaseModel):
     """A format, as its table says it.
 
     Attributes:
@@ -57,30 +58,69 @@ class Format:
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
-        vocabulary: other words for those of its names; None if names are as they are listed.
+        vocabulary: by words of its names, others for these; words that say nothing are others for the empty
+            text. None at all if names are as they are listed.
         refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
         our_own_names: whether its points may have our own names, and words for a wheel before or after a
             name; where all have our own, its axes are ours as well.
+        names: what it calls our points in every suspension that has them.
         suspensions: by our name of each.
     """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: str
     words: str
     form: str
     known_by: str
-    axes: Axes
+    axes: Annotated[Axes, BeforeValidator(Axes.of)]
     unit: str
     not_needed: tuple[str, ...]
-    suspensions: Mapping[str, Names]
+    suspensions: dict[str, Names]
+    names: dict[str, tuple[str, ...]] = {}
     side: str = ""
     axes_told_by: str = ""
-    vocabulary: Vocabulary | None = None
+    vocabulary: dict[str, tuple[str, ...]] = {}
     refused: str = ""
     refused_words: str = ""
-    angles: Mapping[str, str] = field(default_factory=dict)
+    angles: dict[str, str] = {}
     our_own_names: bool = False
+
+    def names_of(self, kind: str) -> dict[str, tuple[str, ...]]:
+        """What it calls each point of a suspension of ours."""
+        if kind not in self.suspensions:
+            return {}
+        shared = {ours: self.names[ours] for ours in mechanism_file(kind).points if ours in self.names}
+        return shared | self.suspensions[kind].names
+
+    @cached_property
+    def _phrases(self) -> dict[tuple[str, ...], tuple[str, ...]]:
+        """Words of the vocabulary for others, each a few."""
+        return {
+            tuple(plain(theirs).split()): tuple(ours.split())
+            for ours, others in self.vocabulary.items()
+            for theirs in others
+        }
+
+    def in_our_words(self, name: str) -> tuple[str, ...]:
+        """A name in few words: `LCA_IN_FRONT` and `Lower wishbone, front pivot` are one point.
+
+        They are in the order of the alphabet; numbers count where there is nothing else. Two names are one if
+        these are the same: a word too many, such as that of a damper, is another point, and so is one said
+        twice, as in `Rear upper rear pivot`.
+        """
+        left = plain(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)).split()
+        longest = max(map(len, self._phrases), default=1)
+        found: list[str] = []
+        while left:
+            size = next(
+                (n for n in range(min(longest, len(left)), 0, -1) if tuple(left[:n]) in self._phrases), 0
+            )
+            found += self._phrases[tuple(left[:size])] if size else left[:1]
+            left = left[max(size, 1) :]
+        return tuple(sorted([word for word in found if not word.isdigit()] or found))
 
     def called(self, said: str) -> str | None:
         """Our type of the suspension that a file calls so; None if it is none of ours."""
@@ -121,32 +161,11 @@ class Format:
 @lru_cache
 def formats() -> Mapping[str, Format]:
     """Every format by name; the one that fits every file comes last."""
-    found = [_format(path.stem, tomllib.loads(path.read_text("utf-8"))) for path in FORMATS.glob("*.toml")]
+    found = [
+        Format.model_validate({"name": path.stem} | tomllib.loads(path.read_text("utf-8")))
+        for path in FORMATS.glob("*.toml")
+    ]
     return {one.name: one for one in sorted(found, key=lambda one: (not one.known_by, one.name))}
-
-
-def _format(name: str, table: dict[str, Any]) -> Format:
-    suspensions = {
-        kind: Names(
-            own.get("called", {}),
-            {ours: tuple(theirs) for ours, theirs in own["names"].items()},
-            tuple(own.get("notes", ())),
-        )
-        for kind, own in table.pop("suspensions").items()
-    }
-    refused = table.pop("refused", {})
-    idle = table.pop("idle", {}).get("words", [])
-    if "vocabulary" in table:
-        table["vocabulary"] = Vocabulary.of(table["vocabulary"], idle)
-    return Format(
-        name=name,
-        axes=Axes.of(table.pop("axes")),
-        not_needed=tuple(table.pop("not_needed", {}).get("names", ())),
-        suspensions=suspensions,
-        refused=refused.get("known_by", ""),
-        refused_words=refused.get("words", ""),
-        **table,
-    )
 
 
 def format_of(text: str, name: str | None, source: str) -> Format:

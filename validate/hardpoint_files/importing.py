@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
+from functools import cached_property
 from math import radians, tan
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from pointcoord.toml_text import read_file
 from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
 from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.contents import (
+    Axle,
     Contents,
     FilePoint,
     Place,
@@ -32,10 +34,11 @@ from validate.hardpoint_files.contents import (
     short,
 )
 from validate.hardpoint_files.derived import derived
-from validate.hardpoint_files.format import Format, Names, format_of
+from validate.hardpoint_files.format import Format, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
+from validate.plain_text import some_of
 from validate.tables.cells import text_of
 from validate.tables.errors import FileError
 from validate.tables.units import LENGTHS
@@ -44,6 +47,8 @@ from validate.tables.units import LENGTHS
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
 SIDES = ("left", "right")
 PARTS = ("front", "rear")
+# Points or lines that are named one by one.
+NAMED = 12
 
 
 @dataclass(frozen=True)
@@ -116,7 +121,7 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
         SceneError: the file cannot be read.
         FileError: it is not as it must be, or does not say all that is needed.
         UnknownName: no such format, suspension, side, part, unit or point.
-        UnknownAxes: `axes` are none.
+        UsageError: `axes` are none.
         AssemblyError: its points cannot be put together.
     """
     choices, source = Choices(**said), str(path)
@@ -164,30 +169,29 @@ class _Import:
         return FileError(self.source, line, problem, allowed)
 
     def result(self) -> Imported:
-        kind = self.suspension()
-        words = self.format.suspensions.get(kind, Names({}, {}))
-        topology = mechanism_file(kind).topology()
+        kind, topology = self.kind, self.topology
         if not (topology.wheel_axis and topology.inboard):
             raise self.refuse(
                 f"is read as {kind}, whose file names no wheel: the roles wheel_axis and inboard",
                 "a suspension of one wheel; else a scene written by hand (pointcoord new)",
             )
-        ours, others, part, side_said = self.chosen(kind)
-        axis = self.spin_axis(part)
+        ours, others, part, side_said = self.chosen()
+        axle = self.contents.axle(part)
+        axis = self.spin_axis(axle)
         values = self.values(part, side_said)
-        self.require_all(kind, topology, words, ours, others, axis, values)
-        doubts = list(self.contents.doubts.get(part, ()))
-        axes, axes_by, doubted = self.axes(topology, ours, side_said)
+        self.require_all(ours, others, axis, values)
+        doubts = list(axle.doubts)
+        axes, axes_by, doubted = self.axes(ours, side_said)
         unit = self.unit()
         doubts += doubted
         doubts += self.against_unit(unit, ours)
         turned = {name: axes.to_scene(point.place, unit) for name, point in ours.items()}
-        side = self.side(side_said, topology, turned, axes)
-        points = self.placed(kind, ours, turned, axis, side)
-        facts = [self.turning(axes, axes_by, unit)]
-        facts += (*self.contents.notes.get(part, self.contents.notes.get("", ())), *words.notes)
+        side = self.side(side_said, turned, axes)
+        points = self.placed(ours, turned, axis, side)
+        facts = [self.turning(axes, axes_by, unit), *axle.notes]
+        facts += self.format.suspensions[kind].notes if kind in self.format.suspensions else ()
         if values:
-            facts.append(f"lines without a point: {_some(values)}")
+            facts.append(f"lines without a point: {some_of(values, NAMED)}")
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         if self.choices.mirror:
@@ -209,7 +213,7 @@ class _Import:
             points=tuple(points.values()),
             not_needed=tuple(point for point in others if self.holds_nothing(point)),
             unknown=tuple(point for point in others if not self.holds_nothing(point)),
-            angles=self.angles(bounce.angles, topology, ours, unit),
+            angles=self.angles(axle, bounce.angles, ours, unit),
             bounce=bounce,
             facts=tuple(facts),
             doubts=tuple(doubts),
@@ -226,12 +230,12 @@ class _Import:
 
     # Which suspension, and which of the file's points are which of ours.
 
-    def suspension(self) -> str:
+    @cached_property
+    def kind(self) -> str:
         """Our type of the suspension: as the user or the file says, or the one whose points are there."""
         if self.choices.suspension:
             return self.choices.suspension
-        called = self.contents.called
-        if called:
+        if called := self.called:
             part = self.one_of("part", "axle", self.choices.part, {*called})
             said = called.get(part) or next(iter(called.values()))
             kind = self.format.called(said)
@@ -248,6 +252,16 @@ class _Import:
             )
         return best[0]
 
+    @property
+    def topology(self) -> Topology:
+        """Of our type of the suspension."""
+        return mechanism_file(self.kind).topology()
+
+    @property
+    def called(self) -> dict[str, str]:
+        """What the file calls its suspensions, by part."""
+        return {part: axle.called for part, axle in self.contents.axles.items() if axle.called}
+
     def closest(self) -> list[str]:
         """The suspensions of which the file lacks the fewest points."""
         missing = {
@@ -258,7 +272,7 @@ class _Import:
 
     def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
         """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
-        words = self.format.suspensions.get(kind, Names({}, {})).names
+        words = self.format.names_of(kind)
         ours = {plain(their): our for our, theirs in words.items() for their in theirs}
         if self.format.our_own_names:
             ours |= {plain(name): name for name in mechanism_file(kind).points}
@@ -267,11 +281,11 @@ class _Import:
         taken = self.own.names.keys() | self.own.points.keys()
         ours = {their: our for their, our in ours.items() if our not in taken} | said
 
-        by_words = self.format.vocabulary
-        worded = {} if by_words is None else {by_words.words(their): our for their, our in ours.items()}
+        in_words = self.format.in_our_words
+        worded = {in_words(their): our for their, our in ours.items()} if self.format.vocabulary else {}
 
         def known(name: str) -> str:
-            return ours.get(plain(name)) or ("" if by_words is None else worded.get(by_words.words(name), ""))
+            return ours.get(plain(name)) or worded.get(in_words(name), "")
 
         def found(point: FilePoint) -> tuple[str, FilePoint]:
             for base, (side, part) in self.readings(point.name):
@@ -304,9 +318,9 @@ class _Import:
         found = [find(point) for point in self.contents.points]
         return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
 
-    def chosen(self, kind: str) -> tuple[dict[str, FilePoint], list[FilePoint], str, str]:
+    def chosen(self) -> tuple[dict[str, FilePoint], list[FilePoint], str, str]:
         """The points of one wheel by our names, the file's others, and the axle and side by the file."""
-        known, others = self.named(kind)
+        known, others = self.named(self.kind)
         unused = [
             their
             for their in self.own.names.values()
@@ -338,7 +352,7 @@ class _Import:
                     else "one of them, or a file of names (--names) that says which",
                     point.line,
                 )
-        find = self.lookup(kind)
+        find = self.lookup(self.kind)
         for spoilt, point in self.spoilt(part, side):
             our, own = find(point)
             fits = own.part in ("", part) and own.side in ("", side)
@@ -367,7 +381,7 @@ class _Import:
                 " or ".join(f"--{option} {label}" for label in labels),
             )
         if not chosen and len(labels) > 1:
-            called = self.contents.called
+            called = self.called
             told = [f"{label} ({called[label]})" if label in called else label for label in labels]
             raise self.refuse(
                 f"has points of more than one {what}: {', '.join(told)}",
@@ -385,46 +399,43 @@ class _Import:
 
     def require_all(
         self,
-        kind: str,
-        topology: Topology,
-        words: Names,
         ours: Mapping[str, FilePoint],
         others: Sequence[FilePoint],
         axis: SpinAxis | None,
         values: Sequence[str],
     ) -> None:
-        lacking = self.missing(topology, ours.items())
+        """Refuse a file without a point that is needed and does not follow from others."""
+        lacking = self.missing(self.topology, ours.items())
         there = {name: point.place for name, point in ours.items()}
-        structure = mechanism_file(kind).structures[AS_DRAWN]
+        structure = mechanism_file(self.kind).structures[AS_DRAWN]
         lost = [name for name in lacking if derived(name, structure, there, 1, axis) is None]
         if not lost:
             return
+        names = self.format.names_of(self.kind)
         theirs = [
-            f"{name} (looked for: {', '.join(map(short, words.names[name]))})"
-            if name in words.names
-            else name
+            f"{name} (looked for: {', '.join(map(short, names[name]))})" if name in names else name
             for name in lost
         ]
         unknown = [point for point in others if not self.holds_nothing(point)]
-        listed = _some([f"{short(point.name)} on line {point.line}" for point in unknown])
+        listed = some_of([f"{short(point.name)} on line {point.line}" for point in unknown], NAMED)
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
-        if topology.wheel_axis[0] in lost:
+        if self.topology.wheel_axis[0] in lost:
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
         raise self.refuse(
-            f"lacks {', '.join(theirs)} of a {kind}"
+            f"lacks {', '.join(theirs)} of a {self.kind}"
             + (f"; not known in it: {listed}" if listed else "")
-            + (f"; no points: {_some(values)}" if values else ""),
+            + (f"; no points: {some_of(values, NAMED)}" if values else ""),
             advice,
         )
 
-    def spin_axis(self, part: str) -> SpinAxis | None:
+    def spin_axis(self, axle: Axle) -> SpinAxis | None:
         """Where the file or the user says that the wheel's spin axis points."""
         camber, toe = self.choices.camber, self.choices.toe
-        if part in self.contents.spin_axes:
+        if axle.spin_axis is not None:
             if camber is not None or toe is not None:
                 raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
-            return self.contents.spin_axes[part]
+            return axle.spin_axis
         if camber is None or toe is None:
             if camber is not None or toe is not None:
                 raise self.refuse("has one static angle said of it", "both --camber and --toe, or neither")
@@ -438,15 +449,13 @@ class _Import:
 
     # Axes, unit and side, and what speaks against them.
 
-    def axes(
-        self, topology: Topology, ours: Mapping[str, FilePoint], side: str
-    ) -> tuple[Axes, str, list[str]]:
+    def axes(self, ours: Mapping[str, FilePoint], side: str) -> tuple[Axes, str, list[str]]:
         """Where x, y and z point, who says so, and the doubts of it.
 
         Axes that nobody said and the car's points speak against are refused; those of the user are doubted.
         """
         said, by = self.axes_said(ours)
-        seen, outboard, words = self.seen(topology, ours)
+        seen, outboard, words = self.seen(ours)
         # Which way is left no point shows: it decides which wheel this is.
         both = [] if seen is None else [seen, seen.other_handed]
         ways = [(one.option, SIDES[one.to_scene(outboard, "mm")[1] > 0]) for one in both]
@@ -458,7 +467,7 @@ class _Import:
             known = self.choices.side or side
             some = [f"--axes {one} of a {wheel} wheel" for one, wheel in ways if known in ("", wheel)]
             raise self.refuse(told, f"{' or '.join(some)}, as {words} lie; or others, if they are so")
-        if seen is None or _same_but_for_left(said, seen):
+        if seen is None or said in both:
             return said, by, []
         told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
         if self.choices.axes is not None:
@@ -481,7 +490,7 @@ class _Import:
         telling = [point for point in read.values() if re.fullmatch(told_by, plain(point.name))]
         return (self.format.axes, f"names such as {short(telling[0].name)}") if telling else (None, "")
 
-    def seen(self, topology: Topology, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, Place, str]:
+    def seen(self, ours: Mapping[str, FilePoint]) -> tuple[Axes | None, Place, str]:
         """The axes in which a car's points lie as these, where outboard is, and what shows it.
 
         There are none where the mechanism does not say which points lie so.
@@ -491,6 +500,7 @@ class _Import:
             (a, b, c), (d, e, f) = ours[one].place, ours[other].place
             return a - d, b - e, c - f
 
+        topology = self.topology
         outboard = difference(topology.wheel_centre, topology.inboard)
         if not (topology.front_and_rear and topology.steering_axis):
             return None, outboard, ""
@@ -534,9 +544,9 @@ class _Import:
             return [f"the file {told}" + (f"; {others}" if others else "")]
         raise self.refuse(told, others or f"--unit {unit} if that is so")
 
-    def side(self, label: str, topology: Topology, turned: Mapping[str, Place], axes: Axes) -> str:
+    def side(self, label: str, turned: Mapping[str, Place], axes: Axes) -> str:
         """The wheel's side, from where it lies; it must be the one that the file or the user says."""
-        wheel, inner = topology.wheel_centre, topology.inboard
+        wheel, inner = self.topology.wheel_centre, self.topology.inboard
         lies, out = turned[wheel][1], turned[wheel][1] - turned[inner][1]
         if not out:
             raise self.refuse(f"has {wheel} as far out as {inner}", "a wheel outboard of it; see --axes")
@@ -566,15 +576,13 @@ class _Import:
 
     def placed(
         self,
-        kind: str,
         ours: Mapping[str, FilePoint],
         turned: Mapping[str, Place],
         axis: SpinAxis | None,
         side: str,
     ) -> dict[str, ScenePoint]:
         """The scene's points in the order of its topology, with where each comes from."""
-        file = mechanism_file(kind)
-        topology, structure = file.topology(), file.structures[AS_DRAWN]
+        topology, structure = self.topology, mechanism_file(self.kind).structures[AS_DRAWN]
         out = 1 if side == "right" else -1
         needed = {*topology.required_points, *topology.wheel_axis}
         found = {}
@@ -587,23 +595,8 @@ class _Import:
         return found
 
     def angles(
-        self, drawn: Mapping[str, float], topology: Topology, ours: Mapping[str, FilePoint], unit: str
+        self, axle: Axle, drawn: Mapping[str, float], ours: Mapping[str, FilePoint], unit: str
     ) -> tuple[AngleCheck, ...]:
         """The static angles that the file prints of this axle beside those of the drawing."""
-        parts = {point.part for point in ours.values()} | {""}
-        printed = {words: value for (part, words), value in self.contents.angles.items() if part in parts}
         places = {name: point.place for name, point in ours.items()}
-        return check_angles(self.format.angles, printed, drawn, places, LENGTHS[unit], topology)
-
-
-def _same_but_for_left(axes: Axes, seen: Axes) -> bool:
-    """Whether axes are those seen; left-handed ones may differ in the way of left, which no point shows."""
-    said, shown = (set(zip("xyz", one.directions, strict=True)) for one in (axes, seen))
-    sideways = {(axis, way) for axis in "xyz" for way in SIDES}
-    same_line = {axis for axis, way in said if way in SIDES} == {axis for axis, way in shown if way in SIDES}
-    return said - sideways == shown - sideways and same_line
-
-
-def _some(words: Sequence[str]) -> str:
-    """The first of many."""
-    return ", ".join(words[:12]) + (f" and {len(words) - 12} more" if len(words) > 12 else "")
+        return check_angles(self.format.angles, axle.angles, drawn, places, LENGTHS[unit], self.topology)

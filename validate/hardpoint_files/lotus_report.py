@@ -8,10 +8,12 @@ from __future__ import annotations
 import re
 
 from validate.hardpoint_files.contents import (
+    Axle,
     Contents,
     FilePoint,
     Printed,
     decimal_of,
+    place_of,
     short,
 )
 from validate.tables.errors import FileError
@@ -31,7 +33,7 @@ def read(text: str, source: str) -> Contents:
     """
     points: list[FilePoint] = []
     called: dict[str, str] = {}
-    angles: dict[tuple[str, str], Printed] = {}
+    angles: dict[str, dict[str, Printed]] = {}
     part = unit = ""
     for line, words in enumerate(text.splitlines(), 1):
         if found := _AXLE.match(words):
@@ -44,7 +46,7 @@ def read(text: str, source: str) -> Contents:
             points.append(_point(found[1], found[2].strip(), source, line, part))
         elif found := _ANGLE.match(words):
             value = decimal_of(found[2], source, line, found[1].strip())
-            angles.setdefault((part, found[1].strip()), Printed(value, line))
+            angles.setdefault(part, {}).setdefault(found[1].strip(), Printed(value, line))
     if not points:
         raise FileError(
             source,
@@ -52,7 +54,8 @@ def read(text: str, source: str) -> Contents:
             "has no points",
             "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot",
         )
-    return Contents(tuple(points), called=called, unit=unit, angles=angles)
+    axles = {part: Axle(called.get(part, ""), angles.get(part, {})) for part in (*called, *angles)}
+    return Contents(tuple(points), axles, unit)
 
 
 def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePoint:
@@ -63,8 +66,4 @@ def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePo
         )
     if not name:
         raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
-    x, y, z = (
-        decimal_of(number, source, line, f"{axis} of {short(name)}")
-        for axis, number in zip("xyz", given, strict=True)
-    )
-    return FilePoint(name, (x, y, z), line, part=part)
+    return FilePoint(name, place_of(given, source, line, name), line, part=part)

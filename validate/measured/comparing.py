@@ -27,7 +27,7 @@ little tested in a file of them alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -36,18 +36,27 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
-from pointcoord.effects.angle import Angle
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
-from validate.diagnosis.evidence import Evidence, Solved, axes_of
+from validate.diagnosis.evidence import Evidence, Solved
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.mapping import ARCSINE, CONTACT, PLACES, TIME, TRAVEL, Measured, Series, angle_of
-from validate.measured.poses import SPEED, Driven, Found, Numbers, Poses, of_a_pose, poses_of
-from validate.measured.supposed import Supposed, in_reach, likely
-from validate.plain_text import shown
+from validate.measured.mapping import CONTACT, PLACES, TIME, TRAVEL, Measured, Series
+from validate.measured.poses import (
+    SPEED,
+    Driven,
+    Found,
+    Numbers,
+    Poses,
+    at_either_end,
+    of_a_pose,
+    ours_of,
+    poses_of,
+)
+from validate.measured.supposed import in_reach, likely
+from validate.plain_text import shown, some_of
 from validate.tables.errors import FileError
 from validate.tables.units import named
 from validate.toml_written import key_of
@@ -103,6 +112,11 @@ class Held:
         return _apart(self.series.values, self.ours, self.series)
 
     @property
+    def share(self) -> Array:
+        """Difference of every number in its tolerance, likewise."""
+        return np.asarray(self.gap / (self.tolerance + SMALLEST))
+
+    @property
     def counts(self) -> tuple[int, int]:
         """How many of its numbers are compared, and how many there are."""
         there = np.isfinite(self.series.values)
@@ -131,7 +145,6 @@ class DataOutcome:
         outcome: its comparison as that of any two solutions; its instants are values of the independent
             column, in s, rad or mm, or numbers of rows from 0 on where several inputs are independent.
         over: what these are, with their unit.
-        explanations: what would explain that it disagrees, the best first.
         accuracy: how far the file's numbers may be off beside their digits, in their columns' units.
         absent: quantities that the scene asks for and the file does not give, in words; they are no rows of
             the outcome, so that it agrees where all that is given does.
@@ -141,7 +154,6 @@ class DataOutcome:
     outcome: Outcome
     over: str
     absent: tuple[str, ...]
-    explanations: tuple[Explanation, ...] = ()
     accuracy: float = 0.0
     columns: tuple[Held, ...] = ()
     rows: tuple[str, ...] = ()
@@ -180,7 +192,7 @@ def compare_results(
         held, ours, notes = _held(measured, scene, accuracy, poses)
     except FileError as error:
         raise _with_meant(error, measured, poses.driven) from None
-    solution = _solution(measured, held, measured.source)
+    solution = _solution(measured, held)
     rows = [
         _row(name, measured, quantity, of, columns, factor)
         for quantity, part in _by_name(held).items()
@@ -211,8 +223,7 @@ def compare_results(
         explanations = (*explanations, *others) if whole else (*others, *explanations)
         explanations = (*travel, *explanations)
     outcome = replace(outcome, explanations=explanations)
-    over = _over(measured)
-    return DataOutcome(outcome, over, absent, explanations, accuracy or 0.0, tuple(held), measured.rows)
+    return DataOutcome(outcome, _over(measured), absent, accuracy or 0.0, tuple(held), measured.rows)
 
 
 def _other_independent(
@@ -226,7 +237,7 @@ def _other_independent(
     """Whether the columns that rows are taken by are meant otherwise, such as in another unit."""
     lost = len(measured.rows) - int(np.isfinite(np.stack([h.ours for h in held])).any(axis=0).sum())
     names = tuple(f"{row.quantity}.{row.name}" for row in outcome.disagreements)
-    few = islice(_likely(measured, driven), TRIED if len(measured.independent) == 1 else 1)
+    few = islice(likely(driven, measured), TRIED if len(measured.independent) == 1 else 1)
     for one in few:
         try:
             other, _, _ = _held(one.measured, scene, accuracy)
@@ -250,13 +261,9 @@ def _with_meant(error: FileError, measured: Measured, driven: Driven) -> FileErr
     return FileError(error.source, error.place, error.problem, allowed)
 
 
-def _likely(measured: Measured, driven: Driven) -> Iterator[Supposed]:
-    return likely(driven, measured, lambda s, found: ours_of(s, found, driven.scene)[0])
-
-
 def _meant(measured: Measured, driven: Driven) -> str:
     """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely."""
-    known = (one.words for one in _likely(measured, driven))
+    known = (one.words for one in likely(driven, measured))
     return next(known, "") or next(in_reach(driven, measured), "")
 
 
@@ -295,12 +302,12 @@ def _other_travel(
         """The largest difference in its tolerance, of poses alone: the radius is where it is least."""
         driven = Driven.of(scene, other(radius))
         found = driven.poses([s.values for s in independent], measured.numbers)
-        parts = [
-            (h.series.values - np.asarray(ours_of(h.series, found, scene)[0])) / (h.tolerance + SMALLEST)
+        there = [
+            replace(h, ours=np.asarray(ours_of(h.series, found, scene)[0]))
             for h in held
             if of_a_pose(h.series.meaning)
         ]
-        return float(np.max(np.abs(np.nan_to_num(parts)), initial=0.0))
+        return float(np.max(np.nan_to_num([h.share for h in there]), initial=0.0))
 
     try:
         radius = measured.rolling_radius
@@ -320,8 +327,8 @@ def _other_travel(
 
 def _largest(held: Sequence[Held]) -> float:
     """The largest difference of all columns in its tolerance; infinite if there is none."""
-    parts = np.concatenate([(h.series.values - h.ours) / (h.tolerance + SMALLEST) for h in held])
-    return float(np.nanmax(np.abs(parts), initial=0.0)) if np.isfinite(parts).any() else math.inf
+    shares = np.concatenate([h.share for h in held])
+    return float(np.nanmax(shares, initial=0.0)) if np.isfinite(shares).any() else math.inf
 
 
 def _explained(
@@ -413,14 +420,15 @@ def _held(
     stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
     if unsaid:
         notes.append(_granted(unsaid, measured, scene))
-    around: list[tuple[bool, list[Found]]] = []
-    for i, s in enumerate((*measured.independent, *measured.rates)):
-        off = s.off
-        if unsaid and s.meaning.kind == TRAVEL and not s.off.any():
-            off = off + scene.tolerance
-        if off.any():
-            ends = [[v + side * off if k == i else v for k, v in enumerate(values)] for side in (-1.0, 1.0)]
-            around.append((not s.said and bool(s.off.any()), [poses.at(e[:first], e[first:]) for e in ends]))
+    given = (*measured.independent, *measured.rates)
+    reached_to = [
+        s.off + scene.tolerance if unsaid and s.meaning.kind == TRAVEL and not s.off.any() else s.off
+        for s in given
+    ]
+    around = [
+        (not given[i].said and bool(given[i].off.any()), [poses.at(e[:first], e[first:]) for e in ends])
+        for i, ends in at_either_end(values, reached_to)
+    ]
     largest: dict[tuple[str, str], float] = {}
     for s in measured.numbers:
         of = s.meaning.quantity, s.meaning.per
@@ -500,16 +508,10 @@ def _stated(scene: Scene, here: Found, laws: Mapping[str, Array]) -> Numbers:
 
 
 def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
-    whole = len(unsaid) == len(measured.numbers)
-    names = ", ".join(shown(s.column) for s in unsaid[:NAMED])
-    more = (
-        f" and {len(unsaid) - NAMED} more are"
-        if len(unsaid) > NAMED
-        else " is"
-        if len(unsaid) == 1
-        else " are"
+    names = some_of([shown(s.column) for s in unsaid], NAMED)
+    who = (
+        "the file is" if len(unsaid) == len(measured.numbers) else f"{names} {'are' if unsaid[1:] else 'is'}"
     )
-    who = "the file is" if whole else f"{names}{more}"
     return (
         f"compared with points placed within {scene.tolerance:g} mm, the scene's tolerance, and with what "
         f"that makes of each number: {who} in full digits and no --accuracy is given"
@@ -522,64 +524,12 @@ def _apart(one: Array, other: Array, series: Series) -> Array:
     return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if series.meaning.unit == "rad" else gap
 
 
-def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
-    """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
-    meaning, angle = series.meaning, angle_of(series.meaning)
-    if meaning.per and meaning.per not in found.slopes:
-        return None, None
-    if meaning.per and angle is None:
-        slopes = found.slopes[meaning.per]
-        values, bounds = slopes.places, slopes.bounds
-    elif meaning.name not in found.numbers.get(meaning.quantity, {}):
-        return None, None
-    elif angle is not None and (meaning.per or series.definition == ARCSINE):
-        return _of_a_line(series, angle, found, scene)
-    else:
-        values = found.numbers[meaning.quantity]
-        bounds = found.bounds.get(meaning.quantity, {})
-    if meaning.name not in values:
-        return None, None
-    value = values[meaning.name]
-    bound = bounds.get(meaning.name, np.zeros_like(value))
-    return (value, bound) if meaning.axis is None else (value[:, meaning.axis], bound[:, meaning.axis])
-
-
-def _of_a_line(series: Series, angle: Angle, found: Found, scene: Scene) -> tuple[Array, Array]:
-    """The arcsine of a component of an angle's line, not of a projection of it; or the angle's derivative.
-
-    With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
-    """
-    axes, (start, end) = axes_of(scene), angle.ends(scene.mechanism.topology)
-
-    def line(places: Mapping[str, Array], bounds: Mapping[str, Array]) -> tuple[Array, Array]:
-        """From end to end, and how far it may be off: each end may be by its bound along each axis."""
-        ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
-        return places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
-
-    along, off = line(found.numbers[PLACES], found.bounds[PLACES])
-    s = axes.component(along, angle.sine)
-    if not series.meaning.per:
-        long = np.linalg.norm(along, axis=-1)
-        # The line turns by what it may be off / its length at most, an arcsine grows by 1 / cosine of that.
-        return np.arcsin(s / long), np.asarray(off / long / np.sqrt(1.0 - (s / long) ** 2))
-    slopes = found.slopes[series.meaning.per]
-    going, off_ = line(slopes.places, slopes.bounds)
-    c = axes.component(along, angle.cosine)
-    s_, c_ = axes.component(going, angle.sine), axes.component(going, angle.cosine)
-    square = s**2 + c**2
-    value = (s_ * c - c_ * s) / square
-    changed = (np.abs(c) + np.abs(s)) * off_ + (np.abs(s_) + np.abs(c_)) * off
-    # To first order; what is left is smaller by the bound / the line's length.
-    return value, 1.001 * (changed / square + 2.0 * np.abs(value) * off / np.sqrt(square))
-
-
 def _out_of_reach(measured: Measured, found: Found) -> list[str]:
     lost = sorted(found.reasons)
     notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
     if len(lost) > NAMED:
-        others = ", ".join(measured.rows[i] for i in lost[NAMED : 2 * NAMED])
-        more = f" and {len(lost) - 2 * NAMED} more" if len(lost) > 2 * NAMED else ""
-        notes.append(f"likewise left out: {others}{more}")
+        others = [measured.rows[i] for i in lost[NAMED:]]
+        notes.append(f"likewise left out: {some_of(others, NAMED)}")
     return notes
 
 
@@ -588,9 +538,8 @@ def _widened(measured: Measured, held: Sequence[Held]) -> list[str]:
     wide = [h for h in held if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
     if not wide:
         return []
-    names = ", ".join(shown(h.series.column) for h in wide[:NAMED])
-    more = f" and {len(wide) - NAMED} more" if len(wide) > NAMED else ""
-    return [f"{names}{more}: tolerance widened because {_rounded(measured)}"]
+    names = some_of([shown(h.series.column) for h in wide], NAMED)
+    return [f"{names}: tolerance widened because {_rounded(measured)}"]
 
 
 def _rounded(measured: Measured) -> str:
@@ -601,7 +550,8 @@ def _rounded(measured: Measured) -> str:
     return f"{' and '.join(given)}; if that is exact as written, add this line to a map: {lines}"
 
 
-def _solution(measured: Measured, held: Sequence[Held], who: str) -> Solution:
+def _solution(measured: Measured, held: Sequence[Held]) -> Solution:
+    """The file as a solution of its own."""
     instants = _instants(measured)
     count = len(instants)
     numbers: dict[str, dict[str, Array]] = {}
@@ -616,7 +566,8 @@ def _solution(measured: Measured, held: Sequence[Held], who: str) -> Solution:
                 place = (slice(None),) if axis is None else (slice(None), axis)
                 given[place], off[place] = h.series.values, np.nan_to_num(h.tolerance)
             numbers[quantity][name], claims[quantity][name] = given, off
-    return Solution(who, instants, numbers, Accuracy(np.ones(count), claims), measured.notes)
+    accuracy = Accuracy(np.ones(count), claims)
+    return Solution(measured.source, instants, numbers, accuracy, measured.notes)
 
 
 def _by_name(held: Sequence[Held]) -> dict[str, dict[str, list[Held]]]:

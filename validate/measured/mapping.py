@@ -39,14 +39,16 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from pointcoord import Scene, SceneError
 from pointcoord.effects.angle import Angle, WheelAngles
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.mechanism.faults import TableFault, fault_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
 from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
@@ -64,14 +66,69 @@ _DERIVATIVE = re.compile(r"d\(?(.+?)\)?/d\(?(.+?)\)?")
 PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
 TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "contact"
 RATES = ("rate", "acceleration")
-PROJECTED, ARCSINE = "projected", "arcsine"
-DEFINITIONS = (PROJECTED, ARCSINE)
-KEYS = ("independent", "rolling_radius", "solve_for", "held", "columns")
+Definition = Literal["projected", "arcsine"]
+PROJECTED: Definition = "projected"
+ARCSINE: Definition = "arcsine"
 # Values in even steps that are taken as set exactly: two always are.
 FEWEST = 3
 # No length, time, angle or rate of a car is larger in our units; the square of what is may be no number.
 FARTHEST = 1e12
-COLUMN_KEYS = ("is", "unit", "sign", "offset", "definition", "printed", "accuracy")
+
+
+def _sign(value: float) -> float:
+    if abs(value) != 1.0:
+        raise TableFault((), f"is {value:g}", "1 or -1")
+    return value
+
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Size = Annotated[Number, Field(ge=0.0)]
+
+
+class ColumnSaid(BaseModel):
+    """What a map says of a column, as the top of this file has it; None or empty what it does not say."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    is_: str | None = Field(default=None, alias="is")
+    unit: str = ""
+    sign: Annotated[Number, AfterValidator(_sign)] = 1.0
+    offset: Number = 0.0
+    definition: Definition = PROJECTED
+    printed: Size | None = None
+    accuracy: Size | None = None
+
+
+class MapSaid(BaseModel):
+    """What a map says, likewise."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    independent: str | None = None
+    rolling_radius: Number = math.nan
+    solve_for: str = ""
+    held: dict[str, Number] = {}
+    columns: dict[str, ColumnSaid] = {}
+
+    @classmethod
+    def of(cls, content: Mapping[str, Any], where: str) -> MapSaid:
+        """A map as plain data, checked.
+
+        Raises:
+            FileError: the first fault.
+        """
+        try:
+            return cls.model_validate(content)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            if first["type"] == "extra_forbidden":
+                *place, key = map(str, first["loc"])
+                fields = (ColumnSaid if place else cls).model_fields.items()
+                known = [field.alias or name for name, field in fields]
+                problem = f"no key is called {key!r}{meant(key, known)}"
+                raise FileError(where, ".".join(place), problem, ", ".join(known)) from None
+            fault = fault_of(error)
+            raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
 
 
 @dataclass(frozen=True)
@@ -221,7 +278,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     Raises:
         FileError: see `read_results`.
     """
-    map = _Map(where, content, columns, scene)
+    map = _Map(where, MapSaid.of(content, where), columns, scene)
     found = map.series()
     independent = map.independent(found)
     even = [s for s in independent if not s.said and s.off.any() and s.even]
@@ -259,7 +316,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
             independent,
             numbers,
             {name: value for name, value in map.held.items() if map.meanings[name].kind != "rate"},
-            map.number_at("rolling_radius", math.nan),
+            map.said.rolling_radius,
             map.solve_for,
             columns.rows,
             tuple(notes),
@@ -277,7 +334,7 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
         MissingPackage: Parquet needs pyarrow.
     """
     columns = read_columns(file)
-    map = _Map("", {}, columns, scene)
+    map = _Map("", MapSaid(), columns, scene)
     topology = scene.mechanism.topology
     inputs = ", ".join(f"{INPUT}.{name}" for name in topology.inputs)
     lines = [
@@ -308,89 +365,51 @@ class _Map:
     """A map of columns and what it is about."""
 
     where: str
-    content: Mapping[str, Any]
+    said: MapSaid
     columns: Columns
     scene: Scene
 
     def __post_init__(self) -> None:
-        self._require_keys("", self.content, KEYS)
-        for name, part in self._parts.items():
-            held = self.columns.no_numbers.get(name)
-            if held is not None:
-                if not (isinstance(part, Mapping) and part.get("is") == IGNORE):
-                    problem = f"column {shown(name)!r} of {self.columns.source} holds {held}"
-                    raise self._wrong("columns", problem, f'columns of numbers, or is = "{IGNORE}"')
-                continue
-            if name not in self.columns.names:
+        for name, part in self.said.columns.items():
+            holds = self.columns.no_numbers.get(name)
+            if holds is None and name not in self.columns.names:
                 hint = meant(name, self.columns.names)
                 problem = f"no column of {self.columns.source} is called {shown(name)!r}{hint}"
                 raise self._wrong("columns", problem, ", ".join(self.columns.names))
-            if not isinstance(part, Mapping):
-                raise self._is(f"columns.{name}", part, "a table such as { is = 'wheel.camber' }")
-            self._require_keys(f"columns.{name}", part, COLUMN_KEYS)
+            if holds is not None and part.is_ != IGNORE:
+                problem = f"column {shown(name)!r} of {self.columns.source} holds {holds}"
+                raise self._wrong("columns", problem, f'columns of numbers, or is = "{IGNORE}"')
 
-    def _require_keys(self, place: str, part: Mapping[str, Any], known: tuple[str, ...]) -> None:
-        for key in part:
-            if key not in known:
-                raise self._wrong(
-                    place, f"no key is called {shown(key)!r}{meant(key, known)}", ", ".join(known)
-                )
-
-    def _part(self, key: str) -> Mapping[str, Any]:
-        part = self.content.get(key, {})
-        if not isinstance(part, Mapping):
-            raise self._is(key, part, "a table")
-        return part
-
-    @property
-    def _parts(self) -> Mapping[str, Any]:
-        """What is said of columns, by their names."""
-        return self._part("columns")
+    def _part(self, column: str) -> ColumnSaid:
+        """What is said of a column."""
+        return self.said.columns.get(column) or ColumnSaid()
 
     def _wrong(self, place: str, problem: str, allowed: str) -> FileError:
         """The map is at fault."""
         return FileError(self.where, place, problem, allowed)
 
-    def _is(self, place: str, value: object, allowed: str) -> FileError:
-        return self._wrong(place, f"is {shown(repr(value))}", allowed)
-
     def _column(self, column: str, problem: str, allowed: str) -> FileError:
         """A column of the file is at fault."""
         return FileError(self.columns.source, f"column {shown(column)!r}", problem, allowed)
 
-    def number_at(
-        self, key: str, default: float, part: Mapping[str, Any] | None = None, at: str = ""
-    ) -> float:
-        """A finite number of the map."""
-        said = self.content if part is None else part
-        value = said.get(key, default)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self._is(f"{at}{key}", value, "a number")
-        if key in said and not math.isfinite(value):
-            raise self._is(f"{at}{key}", value, "a finite number")
-        return float(value)
-
     @property
     def solve_for(self) -> str:
-        """The input that a travel is reached by."""
-        value, inputs = self.content.get("solve_for", ""), self.scene.mechanism.topology.required_inputs
+        """The input that a travel is reached by; empty if the map does not say it."""
+        value, inputs = self.said.solve_for, self.scene.mechanism.topology.required_inputs
         if value and value not in inputs:
-            raise self._is("solve_for", value, ", ".join(inputs))
-        return str(value)
+            raise self._wrong("solve_for", f"is {value!r}", ", ".join(inputs))
+        return value
 
     @property
     def held(self) -> dict[str, float]:
         """Inputs and travels that every row has, by their names here: input.NAME and travel.POINT."""
-        found, part = {}, self._part("held")
         whole = tuple(words for words, one in self.meanings.items() if one.kind in (TRAVEL, "rate"))
         every = (*self.scene.mechanism.topology.inputs, *whole)
-        for name in part:
+        for name in self.said.held:
             if name not in every:
                 problem = f"no input or travel is called {shown(name)!r}{meant(name, every)}"
                 raise self._wrong("held", problem, ", ".join(every))
-            key = name if name in whole else f"{INPUT}.{name}"
-            found[key] = self.number_at(name, 0.0, part, "held.")
-        return found
+        return {n if n in whole else f"{INPUT}.{n}": value for n, value in self.said.held.items()}
 
     @cached_property
     def meanings(self) -> dict[str, Meaning]:
@@ -423,7 +442,8 @@ class _Map:
     @property
     def ignored(self) -> tuple[str, ...]:
         """Columns that are left out, in words."""
-        out, told = [name for name in self.columns.names if self.meaning(name) is None], self._parts
+        out = [name for name in self.columns.names if self.meaning(name) is None]
+        told = self.said.columns
         unnamed = [name for name in out if told and name not in told]
         known = [name for name in out if name not in unnamed]
         holding = {n: what for n, what in self.columns.no_numbers.items() if what != NOTHING_AT_ALL}
@@ -441,17 +461,14 @@ class _Map:
         Raises:
             FileError: the map gives it a name that there is not.
         """
-        part = self._parts.get(column)
-        if part is None or "is" not in part:
+        named = self._part(column).is_
+        if named is None:
             found = self._named(column) or self._named(_without_unit(column))
-            if part is None and self._parts:
+            if self.said.columns and column not in self.said.columns:
                 return found if column in self.meanings or self._goes_along(column, found) else None
             return found
-        named = part["is"]
         if named == IGNORE:
             return None
-        if not isinstance(named, str):
-            raise self._is(f"columns.{column}.is", named, "a name")
         found = self._named(named)
         if found is None:
             every = (*self.meanings, IGNORE)
@@ -465,8 +482,8 @@ class _Map:
 
     def _goes_along(self, column: str, found: Meaning | None) -> bool:
         """Whether a column that a map does not name is a number of ours beside those that it names."""
-        said = [part.get("is", name) for name, part in self._parts.items()]
-        taken = any(self._named(name) == found for name in said if isinstance(name, str))
+        said = [name if part.is_ is None else part.is_ for name, part in self.said.columns.items()]
+        taken = any(self._named(name) == found for name in said)
         return found is not None and found.kind == "number" and not taken and bool(self.unit_of(column))
 
     def _named(self, name: str) -> Meaning | None:
@@ -511,10 +528,8 @@ class _Map:
 
     def unit_of(self, column: str) -> str:
         """The unit of a column as the map or the file says it; empty where neither does."""
-        said = self._parts.get(column, {}).get("unit")
-        if said is not None and not isinstance(said, str):
-            return ""
-        return said or self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
+        in_file = self.columns.units[self.columns.names.index(column)]
+        return self._part(column).unit or in_file or _unit_at_the_end(column)
 
     def _derivative(self, column: str, meaning: Meaning, independent: Sequence[Series]) -> Meaning:
         """What a derivative is by, of the columns that rows are taken by."""
@@ -549,70 +564,56 @@ class _Map:
 
     def _sign_of(self, words: str) -> float:
         """The sign that the map gives to the column of a meaning."""
-        for column, part in self._parts.items():
+        for column, part in self.said.columns.items():
             named = self.meaning(column)
             if named is not None and named.words == words:
-                return self.number_at("sign", 1.0, part, f"columns.{column}.")
+                return part.sign
         return 1.0
 
     def _one(self, column: str, meaning: Meaning) -> Series:
-        i, part, place = self.columns.names.index(column), self._parts.get(column, {}), f"columns.{column}."
-        factor = self._factor(column, meaning, part)
-        sign = self.number_at("sign", 1.0, part, place)
-        if abs(sign) != 1.0:
-            raise self._is(f"{place}sign", part["sign"], "1 or -1")
-        if meaning.per:
-            # By their own column, which goes the other way than ours where the map says so.
-            sign *= self._sign_of(meaning.per)
-        offset = self.number_at("offset", 0.0, part, place)
+        i, part = self.columns.names.index(column), self._part(column)
+        factor = self._factor(column, meaning)
+        # A derivative is by its own column, which goes the other way than ours where the map says so.
+        sign = part.sign * (self._sign_of(meaning.per) if meaning.per else 1.0)
         theirs, steps = self.columns.values[i], self.columns.steps[i]
         with np.errstate(over="ignore"):
-            values = factor * (sign * theirs + offset)
+            values = factor * (sign * theirs + part.offset)
         for row in np.flatnonzero(np.abs(values) > FARTHEST)[:1].tolist():
             where = f"{self.columns.rows[row]}, column {shown(column)!r}"
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
             allowed = f"at most {FARTHEST:g} {meaning.unit}, or nothing or nan for none"
             raise FileError(self.columns.source, where, problem, allowed)
-        least = {key: self.number_at(key, 0.0, part, place) for key in ("printed", "accuracy") if key in part}
-        for key, value in least.items():
-            if value < 0.0:
-                raise self._is(f"{place}{key}", part[key], "0 or a number above")
-        definition = part.get("definition", PROJECTED)
-        if definition not in DEFINITIONS:
-            raise self._is(f"{place}definition", definition, ", ".join(DEFINITIONS))
-        if definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
+        if part.definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
             allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"
-            raise self._is(f"{place}definition", definition, allowed)
-        off = 0.5 * factor * np.broadcast_to(least.get("printed", steps), values.shape)
-        accuracy = least.get("accuracy")
-        return Series(column, meaning, values, off, definition, factor, accuracy, "printed" in least)
+            raise self._wrong(f"columns.{column}.definition", f"is {part.definition!r}", allowed)
+        printed = steps if part.printed is None else part.printed
+        off = 0.5 * factor * np.broadcast_to(printed, values.shape)
+        told = part.printed is not None
+        return Series(column, meaning, values, off, part.definition, factor, part.accuracy, told)
 
-    def _factor(self, column: str, meaning: Meaning, part: Mapping[str, Any]) -> float:
-        allowed = allowed_units(meaning.unit)
-        if not isinstance(part.get("unit", ""), str):
-            raise self._is(f"columns.{column}.unit", part["unit"], allowed)
-        said = part["unit"] if "unit" in part else self.unit_of(column)
+    def _factor(self, column: str, meaning: Meaning) -> float:
+        allowed, said = allowed_units(meaning.unit), self.unit_of(column)
         factor = factor_of(said, meaning.unit) if said else None
         if factor is None:
             problem = f"{shown(said)!r} is no unit of {meaning.words}"
             problem = problem if said else "its unit is not said, neither behind its name nor in a map"
-            if "unit" in part:
+            if self._part(column).unit:
                 raise self._wrong(f"columns.{column}.unit", problem, allowed)
             raise self._column(column, problem, allowed)
         return factor
 
     def independent(self, found: list[Series]) -> tuple[Series, ...]:
         """What the rows are taken by: as the map says it, or time, or a travel and inputs, or inputs."""
-        said = self.content.get("independent")
+        said = self.said.independent
         chosen = [s for s in found if said in (s.column, s.meaning.words)]
         if said is None:
             chosen = [s for s in found if s.meaning.kind == TIME]
         elif not chosen:
             every = [s.column for s in found]
-            problem = f"no column that we know is called {shown(str(said))!r}{meant(str(said), every)}"
+            problem = f"no column that we know is called {shown(said)!r}{meant(said, every)}"
             raise self._wrong("independent", problem, ", ".join(map_shown(every)))
         elif chosen[0].meaning.kind == "number":
-            problem = f"{shown(str(said))!r} is {chosen[0].meaning.words}"
+            problem = f"{shown(said)!r} is {chosen[0].meaning.words}"
             raise self._wrong("independent", problem, "a time, an input or a travel")
         if chosen and chosen[0].meaning.kind == TIME:
             return tuple(chosen)

@@ -9,16 +9,18 @@ A derivative by an independent column is the rate where that goes at 1 per unit 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import KinematicMap, Motion, Scene, kinematic_map, simulate, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.effects.angle import Angle
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
@@ -28,6 +30,7 @@ from pointcoord.solve.assembly import close_drawing
 from validate.diagnosis.evidence import axes_of
 from validate.formulations.asked_numbers import per_second
 from validate.measured.mapping import (
+    ARCSINE,
     CONTACT,
     INPUT,
     PLACES,
@@ -211,9 +214,70 @@ class Driven:
         return Found(numbers, bounds, reached, reasons, inputs)
 
 
+def at_either_end(
+    values: Sequence[Array], offs: Sequence[Array]
+) -> Iterator[tuple[int, tuple[list[Array], list[Array]]]]:
+    """By the place of each column that is rounded: all values, with its own at either end of the rounding."""
+    for i, off in enumerate(offs):
+        if off.any():
+            below, above = ([*values[:i], values[i] + side * off, *values[i + 1 :]] for side in (-1.0, 1.0))
+            yield i, (below, above)
+
+
 def input_of(words: str) -> str:
     """The input that a column or an entry of [held] stands for; a travel is one of its own name."""
     return words.removeprefix(f"{INPUT}.")
+
+
+def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
+    """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
+    meaning, angle = series.meaning, angle_of(series.meaning)
+    if meaning.per and meaning.per not in found.slopes:
+        return None, None
+    if meaning.per and angle is None:
+        slopes = found.slopes[meaning.per]
+        values, bounds = slopes.places, slopes.bounds
+    elif meaning.name not in found.numbers.get(meaning.quantity, {}):
+        return None, None
+    elif angle is not None and (meaning.per or series.definition == ARCSINE):
+        return _of_a_line(series, angle, found, scene)
+    else:
+        values = found.numbers[meaning.quantity]
+        bounds = found.bounds.get(meaning.quantity, {})
+    if meaning.name not in values:
+        return None, None
+    value = values[meaning.name]
+    bound = bounds.get(meaning.name, np.zeros_like(value))
+    return (value, bound) if meaning.axis is None else (value[:, meaning.axis], bound[:, meaning.axis])
+
+
+def _of_a_line(series: Series, angle: Angle, found: Found, scene: Scene) -> tuple[Array, Array]:
+    """The arcsine of a component of an angle's line, not of a projection of it; or the angle's derivative.
+
+    With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
+    """
+    axes, (start, end) = axes_of(scene), angle.ends(scene.mechanism.topology)
+
+    def line(places: Mapping[str, Array], bounds: Mapping[str, Array]) -> tuple[Array, Array]:
+        """From end to end, and how far it may be off: each end may be by its bound along each axis."""
+        ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
+        return places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
+
+    along, off = line(found.numbers[PLACES], found.bounds[PLACES])
+    s = axes.component(along, angle.sine)
+    if not series.meaning.per:
+        long = np.linalg.norm(along, axis=-1)
+        # The line turns by what it may be off / its length at most, an arcsine grows by 1 / cosine of that.
+        return np.arcsin(s / long), np.asarray(off / long / np.sqrt(1.0 - (s / long) ** 2))
+    slopes = found.slopes[series.meaning.per]
+    going, off_ = line(slopes.places, slopes.bounds)
+    c = axes.component(along, angle.cosine)
+    s_, c_ = axes.component(going, angle.sine), axes.component(going, angle.cosine)
+    square = s**2 + c**2
+    value = (s_ * c - c_ * s) / square
+    changed = (np.abs(c) + np.abs(s)) * off_ + (np.abs(s_) + np.abs(c_)) * off
+    # To first order; what is left is smaller by the bound / the line's length.
+    return value, 1.001 * (changed / square + 2.0 * np.abs(value) * off / np.sqrt(square))
 
 
 def of_a_pose(meaning: Meaning) -> bool:
@@ -295,20 +359,7 @@ def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:
     return max(found, key=lambda name: found[name], default="")
 
 
-class Poses(Protocol):
-    """Our numbers over what a file is over."""
-
-    @property
-    def driven(self) -> Driven:
-        """The car by what rows are taken by."""
-        ...
-
-    def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
-        """Our numbers at values of the independent columns and of the file's rates, each (N,)."""
-        ...
-
-
-def poses_of(scene: Scene, measured: Measured) -> Poses:
+def poses_of(scene: Scene, measured: Measured) -> OverTime | OverMap:
     """What gives our numbers at a file's rows.
 
     Raises:
@@ -504,3 +555,7 @@ class OverMap:
             {n: _spread(np.asarray(a), covered) for n, a in bounds.items()},
             {n: _spread(a, covered) for n, a in law.items()},
         )
+
+
+Poses = OverTime | OverMap
+"""Our numbers over what a file is over: by the car that `driven` says, `at` values of its columns."""

@@ -9,7 +9,7 @@ file to it.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, product
 
@@ -19,13 +19,11 @@ from numpy.typing import NDArray
 from pointcoord import PointcoordError
 from validate.diagnosis.least import fitted
 from validate.measured.mapping import INPUT, TIME, Measured, Series
-from validate.measured.poses import Driven, Found, of_a_pose
+from validate.measured.poses import Driven, of_a_pose, ours_of
 from validate.plain_text import shown
 from validate.tables.units import KINDS
 
 Array = NDArray[np.float64]
-OursOf = Callable[[Series, Found], Array | None]
-"""Our numbers of a column, (N,); None if they are not known."""
 
 ROWS = 16  # that poses are solved at
 NEARLY_ALL = 0.8  # of them must be in reach
@@ -66,13 +64,13 @@ Changes = dict[int, _Change]
 """What some columns are changed by, by their places."""
 
 
-def likely(driven: Driven, measured: Measured, ours_of: OursOf) -> Iterator[Supposed]:
+def likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
     """The likeliest suppositions, what is known beforehand before what is found; none over time."""
     if measured.independent[0].meaning.kind == TIME or not any(
         of_a_pose(s.meaning) for s in measured.numbers
     ):
         return
-    trial = _Trial(driven, _some(measured), ours_of)
+    trial = _Trial(driven, _some(measured))
     try:
         before = trial.left({})
         tried = [(trial.left(changes), changes) for changes in trial.supposed()]
@@ -129,8 +127,8 @@ def _some(measured: Measured) -> Measured:
 class _Trial:
     """A file's numbers by other values of its independent columns."""
 
-    def __init__(self, driven: Driven, measured: Measured, ours_of: OursOf) -> None:
-        self.driven, self.measured, self.ours_of = driven, measured, ours_of
+    def __init__(self, driven: Driven, measured: Measured) -> None:
+        self.driven, self.measured = driven, measured
         self.theirs = np.stack([s.values for s in measured.numbers])
         self.there = np.isfinite(self.theirs)
         wide = np.max(self.theirs, axis=1, where=self.there, initial=-np.inf)
@@ -224,7 +222,7 @@ class _Trial:
         if len(self.driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(values[0]):
             return np.full_like(self.theirs, np.nan)
         found = self.driven.poses(values, numbers)
-        ours = [self.ours_of(s, found) for s in numbers]
+        ours = [ours_of(s, found, self.driven.scene)[0] for s in numbers]
         nothing = np.full(len(values[0]), np.nan)
         gap = self.theirs - np.stack([nothing if one is None else one for one in ours])
         angles = np.array([s.meaning.unit == "rad" for s in numbers])[:, None]

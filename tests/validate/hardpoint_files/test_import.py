@@ -11,7 +11,8 @@ from foreign_files import CAR, OPTIMUMK, STRUT, WISHBONE, chrono, drawn, importe
 from pointcoord import PointcoordError, Scene, simulate, standing
 from pointcoord.mechanism import mechanism_file
 from validate.cli import main
-from validate.hardpoint_files.axes import DIRECTIONS, Axes, UnknownAxes
+from validate.errors import UsageError
+from validate.hardpoint_files.axes import DIRECTIONS, Axes
 from validate.hardpoint_files.format import FORMS, formats
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
@@ -443,16 +444,18 @@ def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> Non
 def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
     one = formats()[name]
     assert one.form in FORMS
+    points = {kind: {*mechanism_file(kind).points} for kind in one.suspensions}
+    assert {*one.names} <= set().union(*points.values())
     for kind, words in one.suspensions.items():
-        assert {*words.names} <= {*mechanism_file(kind).points}
-        theirs = [name for names in words.names.values() for name in names]
+        assert {*words.names} <= points[kind]
+        theirs = [name for names in one.names_of(kind).values() for name in names]
         assert len(theirs) == len({*theirs})
 
 
 def test_axes_are_three_directions_at_right_angles() -> None:
     assert Axes.of("Forward, left up").words == "x forward, y left, z up"
     for words in ("forward,left", "forward,left,down,up", "forward,rearward,up", "north,left,up", ""):
-        with pytest.raises(UnknownAxes):
+        with pytest.raises(UsageError, match="axes are "):
             Axes.of(words)
     assert Axes.of("forward,left,up").right_handed
     assert Axes.of("rearward,right,up").right_handed

@@ -354,12 +354,12 @@ def test_a_strut_is_known_by_its_words(tmp_path: Path) -> None:
 
 def test_every_two_points_of_a_suspension_have_different_words() -> None:
     one = formats()["csv"]
-    assert one.vocabulary is not None
-    for words in one.suspensions.values():
+    assert one.vocabulary
+    for kind in one.suspensions:
         seen: dict[tuple[str, ...], str] = {}
-        for ours, theirs in words.names.items():
+        for ours, theirs in one.names_of(kind).items():
             for name in theirs:
-                assert seen.setdefault(one.vocabulary.words(name), ours) == ours
+                assert seen.setdefault(one.in_our_words(name), ours) == ours
 
 
 # Axes and units.

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from curve_files import compared, verdicts
 from lotus_front import ROLLING_RADIUS
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from pointcoord import Motion, Scene, simulate
-from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import understood
 from validate.measured.reading import columns_of_text
 from validate.tables.errors import FileError
@@ -44,15 +44,6 @@ def text(**columns: Array) -> str:
     return "\n".join(lines)
 
 
-def compared(table: str, map: dict[str, Any], **more: Any) -> DataOutcome:
-    measured = understood(columns_of_text(table, "mine.csv"), map, CAR, "map.toml")
-    return compare_results(measured, CAR, "car", **more)
-
-
-def verdicts(found: DataOutcome) -> dict[str, str]:
-    return {row.name: row.verdict for row in found.outcome.rows}
-
-
 def angle_rate(motion: Motion, name: str) -> Array:
     """Of an angle of the wheel, rad/s: by how it changes in 2 microseconds."""
     h = 1e-6
@@ -68,7 +59,7 @@ def test_the_bump_steer_gradient_is_how_toe_changes_with_travel(wrong: float) ->
     slope[7] += wrong
     table = text(**{"bump [mm]": rise(BUMP)[1:-1], "toe [deg/mm]": slope})
     map = {"columns": {"bump": {"is": "travel.wheel_centre"}, "toe": {"accuracy": 2e-7}}}
-    (row,) = compared(table, map).outcome.rows
+    (row,) = compared(table, map, CAR).outcome.rows
     assert (row.name, row.unit) == ("toe per travel.wheel_centre", "rad/mm")
     assert row.verdict == ("disagrees" if wrong else "agrees")
     # What the file states, and little of ours.
@@ -87,11 +78,11 @@ def test_a_gradient_by_any_name_and_unit_is_the_same(name: str, unit: str, facto
     slope = np.degrees(angle_rate(BUMP, "toe") / rise(BUMP, 1)[1:-1])
     table = text(**{"bump [mm]": rise(BUMP)[1:-1], f"{name} [{unit}]": factor * slope})
     map = {"columns": {"bump": {"is": "travel.wheel_centre"}, name: {"accuracy": factor * 2e-7}}}
-    assert set(verdicts(compared(table, map)).values()) == {"agrees"}
+    assert set(verdicts(compared(table, map, CAR)).values()) == {"agrees"}
     # The same of a travel that counts downward: the gradient is by that.
     down = text(**{"bump [mm]": -rise(BUMP)[1:-1], f"{name} [{unit}]": -factor * slope})
     map["columns"]["bump"] |= {"sign": -1}
-    assert set(verdicts(compared(down, map)).values()) == {"agrees"}
+    assert set(verdicts(compared(down, map, CAR)).values()) == {"agrees"}
 
 
 def test_gradients_by_the_contacts_travel_are_those_of_its_lowest_point() -> None:
@@ -108,9 +99,9 @@ def test_gradients_by_the_contacts_travel_are_those_of_its_lowest_point() -> Non
     table = text(**{"bump [mm]": (height - drawn)[2:-2], "camber [deg/mm]": np.degrees(slope)})
     bump = {"is": "travel.contact"}
     map = {"rolling_radius": ROLLING_RADIUS, "columns": {"bump": bump, "camber": {"accuracy": 2e-6}}}
-    assert set(verdicts(compared(table, map)).values()) == {"agrees"}
+    assert set(verdicts(compared(table, map, CAR)).values()) == {"agrees"}
     bump["is"] = "travel.wheel_centre"
-    assert set(verdicts(compared(table, map)).values()) == {"disagrees"}
+    assert set(verdicts(compared(table, map, CAR)).values()) == {"disagrees"}
 
 
 def test_points_by_an_input_and_both_by_a_map_of_two() -> None:
@@ -126,8 +117,7 @@ def test_points_by_an_input_and_both_by_a_map_of_two() -> None:
             changes.append((x[-1] - x[0]) / (2.0 * step))
         columns[f"d(position.wheel_centre.x)/d({name}) [mm/{unit}]"] = np.array(changes)
     table = text(**{n: v[::5] for n, v in inputs.items()}, **columns)
-    measured = understood(columns_of_text(table, "mine.csv"), {}, CAR, "mine.csv")
-    found = compare_results(measured, CAR, "car", accuracy=1e-5)
+    found = compared(table, {}, CAR, accuracy=1e-5)
     assert verdicts(found) == {
         "wheel_centre per input.rack": "agrees",
         "wheel_centre per input.arm_angle": "agrees",
@@ -161,7 +151,7 @@ def over_travel(*left_out: str) -> tuple[str, dict[str, Any]]:
 
 def test_rates_over_travel_are_held_to_those_of_the_same_motion() -> None:
     table, map = over_travel()
-    found = compared(table, map)
+    found = compared(table, map, CAR)
     assert len(found.outcome.rows) == 4
     assert {row.verdict for row in found.outcome.rows} == {"agrees"}
     # Points to 1e-9 mm, as which digits in full are taken: what that makes of some 200 mm/s.
@@ -170,7 +160,7 @@ def test_rates_over_travel_are_held_to_those_of_the_same_motion() -> None:
     column = lines[0].split(",").index("acceleration.wheel_centre.z [mm/s^2]")
     cells = lines[4].split(",")
     cells[column] = repr(float(cells[column]) * (1.0 + 1e-6))
-    spoiled = compared("\n".join([*lines[:4], ",".join(cells), *lines[5:]]), map)
+    spoiled = compared("\n".join([*lines[:4], ",".join(cells), *lines[5:]]), map, CAR)
     assert [row.quantity for row in spoiled.outcome.disagreements] == ["acceleration"]
 
 
@@ -184,22 +174,22 @@ def test_rates_over_two_inputs_are_held_to_those_of_the_same_motion() -> None:
         "input.arm_angle.acceleration [rad/s^2]": np.full_like(t, 0.22),
         "input.rack.acceleration [mm/s^2]": np.full_like(t, 18.0),
     }
-    found = compared(text(**columns, **rates_of(BOTH)), {})
+    found = compared(text(**columns, **rates_of(BOTH)), {}, CAR)
     assert [row.verdict for row in found.outcome.rows] == ["agrees"] * 4
     # As if the rack stood still.
     columns["rack.rate [m/s]"] = np.zeros_like(t)
-    found = compared(text(**columns, **rates_of(BOTH)), {})
+    found = compared(text(**columns, **rates_of(BOTH)), {}, CAR)
     assert [row.verdict for row in found.outcome.rows] == ["disagrees"] * 4
 
 
 def test_rates_that_do_not_follow_say_which_column_they_lack() -> None:
-    found = compared(*over_travel("v"))
+    found = compared(*over_travel("v"), CAR)
     rows = {row.quantity: row for row in found.outcome.rows}
     assert rows["velocity"].verdict == rows["acceleration"].verdict == "not tested"
     why = "rates need a column of time, or travel.wheel_centre.rate: a column, or held by a map"
     assert rows["velocity"].why == why
     assert any(note.endswith(f"is not tested: {why}") for note in found.outcome.notes)
-    found = compared(*over_travel("a"))
+    found = compared(*over_travel("a"), CAR)
     verdict = {row.quantity: row.verdict for row in found.outcome.rows}
     assert (verdict["velocity"], verdict["acceleration"]) == ("agrees", "not tested")
     assert verdict["angular_acceleration"] == "not tested"
@@ -210,11 +200,11 @@ def test_a_rate_that_every_row_has_is_held_by_the_map() -> None:
     columns = {"arm_angle [rad]": 1.8 - 0.4 * motion.times, **rates_of(motion)}
     held = {"arm_angle.rate": -0.4, "input.arm_angle.acceleration": 0.0}
     with pytest.raises(FileError, match=r"no input or travel is called 'arm_angle\.rate'"):
-        compared(text(**columns), {"held": held})
+        compared(text(**columns), {"held": held}, CAR)
     held["input.arm_angle.rate"] = held.pop("arm_angle.rate")
-    assert {row.verdict for row in compared(text(**columns), {"held": held}).outcome.rows} == {"agrees"}
+    assert {row.verdict for row in compared(text(**columns), {"held": held}, CAR).outcome.rows} == {"agrees"}
     held["input.arm_angle.rate"] = 0.4
-    assert "disagrees" in {row.verdict for row in compared(text(**columns), {"held": held}).outcome.rows}
+    assert "disagrees" in {row.verdict for row in compared(text(**columns), {"held": held}, CAR).outcome.rows}
 
 
 @pytest.mark.parametrize(
@@ -233,7 +223,7 @@ def test_a_derivative_that_is_none_is_refused_with_its_column(
     table = f"bump [mm],{head}\n0,0.01\n10,0.02\n"
     map = {"columns": {"bump": {"is": "travel.wheel_centre"}, head.partition(" [")[0]: map}}
     with pytest.raises(FileError) as caught:
-        compared(table, map)
+        compared(table, map, CAR)
     assert [word for word in words if word not in str(caught.value)] == [], caught.value
 
 
@@ -241,7 +231,7 @@ def test_of_two_columns_that_a_gradient_may_be_by_its_name_says_which() -> None:
     table = "bump [mm],rack [mm],{} [deg/mm]\n0,0,0.01\n10,1,0.02\n"
     bump = {"bump": {"is": "travel.wheel_centre"}}
     with pytest.raises(FileError, match="may be by bump or by rack") as caught:
-        compared(table.format("toe"), {"columns": {**bump, "rack": {}, "toe": {}}})
+        compared(table.format("toe"), {"columns": {**bump, "rack": {}, "toe": {}}}, CAR)
     assert 'is = "d(wheel.toe)/d(bump)" in a map' in str(caught.value)
     named = {"columns": {**bump, "rack": {}, "toe": {"is": "d(wheel.toe)/d(bump)"}}}
     (toe,) = understood(columns_of_text(table.format("toe"), "mine.csv"), named, CAR, "map.toml").numbers
@@ -263,14 +253,14 @@ def test_a_travel_with_the_other_sign_is_told_as_that_where_a_derivative_by_it_i
     camber = np.degrees(BUMP.wheel["camber"][1:-1])
     table = text(**{"bump [mm]": -rise(BUMP)[1:-1], "steer [deg/mm]": slope, "camber [deg]": camber})
     parts = {"bump": {"is": "travel.wheel_centre"}, "steer": {"is": "wheel.toe", "accuracy": 2e-7}}
-    found = compared(table, {"columns": {**parts, "camber": {"accuracy": 1e-9}}})
-    assert [one.words for one in found.explanations] == [words]
-    assert found.explanations[0].leftover <= 1.0
+    found = compared(table, {"columns": {**parts, "camber": {"accuracy": 1e-9}}}, CAR)
+    assert [one.words for one in found.outcome.explanations] == [words]
+    assert found.outcome.explanations[0].leftover <= 1.0
 
 
 def test_an_offset_is_said_in_our_unit_and_in_the_columns() -> None:
     slope = np.degrees(angle_rate(BUMP, "toe") / rise(BUMP, 1)[1:-1]) + 0.25
     table = text(**{"bump [mm]": rise(BUMP)[1:-1], "steer [deg/mm]": slope})
     parts = {"bump": {"is": "travel.wheel_centre"}, "steer": {"is": "wheel.toe", "accuracy": 2e-6}}
-    first = compared(table, {"columns": parts}).explanations[0]
+    first = compared(table, {"columns": parts}, CAR).outcome.explanations[0]
     assert first.words.endswith("a constant offset of 0.00436332 rad/mm (0.25 deg/mm)")

@@ -10,11 +10,12 @@ from xml.etree import ElementTree
 import jsonschema
 import numpy as np
 import pytest
+from curve_files import compared
 
 from pointcoord import Scene, simulate, solve_poses, standing
 from validate.cli import main
 from validate.fitting.curves import Curves
-from validate.measured.comparing import DataOutcome, compare_results
+from validate.measured.comparing import DataOutcome
 from validate.measured.mapping import understood
 from validate.measured.poses import poses_of
 from validate.measured.reading import columns_of_text
@@ -22,7 +23,7 @@ from validate.output.document import schema_text
 from validate.paper.tables import TABLE_2, TABLE_3, PrintedRow, compare_with_paper
 from validate.tables.errors import FileError
 
-STEER = Scene.load("steer")
+STEER, WISHBONE = Scene.load("steer"), Scene.load("double-wishbone")
 
 
 def tolerances(found: DataOutcome) -> Mapping[str, Mapping[str, Any]]:
@@ -78,8 +79,7 @@ def test_our_own_numbers_of_a_motion_of_another_length_agree() -> None:
     lines += [
         ",".join(map(repr, map(float, row))) for row in zip(motion.times, *numbers.values(), strict=True)
     ]
-    measured = understood(columns_of_text("\n".join(lines), "x"), {}, STEER, "x")
-    outcome = compare_results(measured, STEER, "steer").outcome
+    outcome = compared("\n".join(lines), {}, STEER).outcome
     assert outcome.agreed
     assert len(outcome.rows) == 4
 
@@ -94,8 +94,7 @@ def test_digits_in_full_are_held_to_what_points_off_by_the_tolerance_make_of_the
     found = []
     for tolerance in (1e-9, 1e-7):
         car = STEER.model_copy(update={"tolerance": tolerance})
-        measured = understood(columns_of_text("\n".join(lines), "x"), {}, car, "x")
-        claims = tolerances(compare_results(measured, car, "steer"))
+        claims = tolerances(compared("\n".join(lines), {}, car))
         found.append((claims["position"]["wheel_centre"][:, 0], claims["wheel"]["camber"]))
     for fine, coarse in zip(*found, strict=True):
         # Beside rounding and our own bound, which are far below.
@@ -105,8 +104,8 @@ def test_digits_in_full_are_held_to_what_points_off_by_the_tolerance_make_of_the
     assert ((place >= 1e-9) & (place < 1e-7)).all()
     # An axis of some 100 mm turns by e / 100 mm at least.
     assert ((angle > 1e-12) & (angle < 1e-9)).all()
-    stated = understood(columns_of_text("\n".join(lines), "x"), {}, STEER, "x")
-    said = tolerances(compare_results(stated, STEER, "steer", 1e-3))["position"]["wheel_centre"][:, 0]
+    stated = compared("\n".join(lines), {}, STEER, accuracy=1e-3)
+    said = tolerances(stated)["position"]["wheel_centre"][:, 0]
     assert said == pytest.approx(1e-3, rel=1e-6)
 
 
@@ -120,11 +119,9 @@ def paper_file(table: tuple[PrintedRow, ...]) -> str:
 @pytest.mark.parametrize(("scene", "table"), [("bounce", TABLE_2), ("steer", TABLE_3)])
 def test_the_papers_tables_do_not_come_from_its_hardpoints(scene: str, table: tuple[PrintedRow, ...]) -> None:
     car = Scene.load(scene)
-    columns = columns_of_text(paper_file(table), "paper.csv")
     parts = {f"wheel_centre.{axis}": {"is": f"position.wheel_centre.{axis}"} for axis in "xyz"}
     content = {"columns": {"time": {"printed": 0}, **parts}}
-    measured = understood(columns, content, car, "map.toml")
-    found = compare_results(measured, car, scene)
+    found = compared(paper_file(table), content, car)
     (row,) = found.outcome.disagreements
     # The paper's own comparison goes another way to the same numbers: the motion at the printed times.
     rows = [row for row in compare_with_paper() if row.printed in table]
@@ -142,7 +139,7 @@ def test_times_that_are_rounded_widen_by_what_the_motion_does_meanwhile() -> Non
     text = "time [s],position.wheel_centre.x [mm]\n" + "".join(
         f"{t:.1f},{place:.6f}\n" for t, place in zip(times, x, strict=True)
     )
-    found = compare_results(understood(columns_of_text(text, "x"), {}, STEER, "x"), STEER, "steer")
+    found = compared(text, {}, STEER)
     claims = tolerances(found)["position"]["wheel_centre"][:, 0]
     change = [np.abs(motion.at(times + side).position["wheel_centre"][:, 0] - x) for side in (-0.05, 0.05)]
     assert claims == pytest.approx(np.max(change, axis=0) + 0.5e-6, abs=1e-9)
@@ -151,12 +148,12 @@ def test_times_that_are_rounded_widen_by_what_the_motion_does_meanwhile() -> Non
 def test_a_time_too_coarse_to_tell_anything_tests_nothing() -> None:
     text = "time [s],position.wheel_centre.x [mm]\n0.1,400.0\n0.2,400.0\n"
     content = {"columns": {"time": {"printed": 0.3}, "position.wheel_centre.x": {"printed": 0.1}}}
-    found = compare_results(understood(columns_of_text(text, "x"), content, STEER, "map"), STEER, "steer")
+    found = compared(text, content, STEER)
     (row,) = found.outcome.rows
     assert row.verdict in ("not tested", "disagrees")
     x = simulate(STEER).at(np.array([0.1, 0.2])).position["wheel_centre"][:, 0]
     right = f"time [s],position.wheel_centre.x [mm]\n0.1,{x[0]:.1f}\n0.2,{x[1]:.1f}\n"
-    found = compare_results(understood(columns_of_text(right, "x"), content, STEER, "map"), STEER, "steer")
+    found = compared(right, content, STEER)
     assert found.outcome.rows[0].verdict == "not tested"
 
 
@@ -164,7 +161,7 @@ def test_numbers_that_are_none_and_rows_outside_the_time_are_counted_and_the_oth
     x = simulate(STEER).at(np.array([0.1])).position["wheel_centre"][0, 0]
     text = f"time [s],position.wheel_centre.x [mm]\n0.1,{x:.3f}\n0.15,\n77.0,1.0\n"
     content = {"columns": {"time": {"printed": 0}, "position.wheel_centre.x": {}}}
-    found = compare_results(understood(columns_of_text(text, "x"), content, STEER, "map"), STEER, "steer")
+    found = compared(text, content, STEER)
     assert found.outcome.agreed
     notes = " / ".join(found.outcome.notes)
     assert "no number in 1 of 3 rows" in notes
@@ -174,26 +171,20 @@ def test_numbers_that_are_none_and_rows_outside_the_time_are_counted_and_the_oth
 
 def steered(racks: Sequence[float], wrong: float = 0.0, digits: int = 2) -> str:
     """Toe over the rack, deg and mm, wrong on purpose at one row; the rack is written without decimals."""
-    car = Scene.load("double-wishbone")
-    place = solve_poses(car, {"arm_angle": np.full(len(racks), DRAWN), "rack": np.array(racks)}).position
+    place = solve_poses(WISHBONE, {"arm_angle": np.full(len(racks), DRAWN), "rack": np.array(racks)}).position
     x, y, _ = (place["wheel_centre"] - place["wheel_axis_inner"]).T
     toe = -np.degrees(np.arctan2(x, y)) + wrong * (np.arange(len(racks)) == 3)
     rows = (f"{rack:.0f},{value:.{digits}f}" for rack, value in zip(racks, toe, strict=True))
     return "\n".join(["rack [mm],toe [deg]", *rows])
 
 
-DRAWN = standing(Scene.load("double-wishbone")).inputs["arm_angle"]
+DRAWN = standing(WISHBONE).inputs["arm_angle"]
 EVEN, UNEVEN = tuple(range(-30, 31, 5)), (-30.2, -23.7, -16.3, -9.6, 0.3, 7.8, 14.9, 22.4, 30.1)
-
-
-def held(text: str, map: Mapping[str, Any]) -> DataOutcome:
-    car = Scene.load("double-wishbone")
-    return compare_results(understood(columns_of_text(text, "mine.csv"), map, car, "map.toml"), car, "car")
 
 
 @pytest.mark.parametrize("wrong", [0.0, 0.3, 0.02])
 def test_a_column_in_even_steps_is_set_and_not_rounded(wrong: float) -> None:
-    found = held(steered(EVEN, wrong), {})
+    found = compared(steered(EVEN, wrong), {}, WISHBONE)
     (row,) = found.outcome.rows
     assert row.verdict == ("disagrees" if wrong else "agrees")
     assert np.degrees(row.tolerance) == pytest.approx(0.005, rel=1e-3)
@@ -202,13 +193,13 @@ def test_a_column_in_even_steps_is_set_and_not_rounded(wrong: float) -> None:
 
 def test_what_agrees_only_by_a_rounding_that_nobody_stated_is_not_tested_and_the_line_is_told() -> None:
     text = steered(UNEVEN)
-    (row,) = held(text, {}).outcome.rows
+    (row,) = compared(text, {}, WISHBONE).outcome.rows
     assert row.verdict == "not tested"
     line = "columns.rack.printed = 0"
     assert row.why.count(line) == 1
-    (row,) = held(text, {"columns": {"rack": {"printed": 1}}}).outcome.rows
+    (row,) = compared(text, {"columns": {"rack": {"printed": 1}}}, WISHBONE).outcome.rows
     assert row.verdict == "agrees"
-    found = held(text, tomllib.loads(line))
+    found = compared(text, tomllib.loads(line), WISHBONE)
     assert found.outcome.rows[0].verdict == "disagrees"
     # What has been followed is not advised again.
     assert not any("printed" in note for note in found.outcome.notes)
@@ -272,7 +263,7 @@ def test_a_wrong_map_or_file_is_refused_with_its_place(
     text: str, content: dict[str, object], words: tuple[str, ...]
 ) -> None:
     with pytest.raises(FileError) as caught:
-        compare_results(understood(columns_of_text(text, "mine.csv"), content, STEER, "map.toml"), STEER, "x")
+        compared(text, content, STEER)
     assert [word for word in words if word not in str(caught.value)] == [], caught.value
 
 
@@ -361,10 +352,9 @@ def test_a_file_over_time_of_a_misread_car_is_told_as_one(tmp_path: Path) -> Non
     lines = ["time [s],camber [deg],toe [deg]"]
     for t, camber, toe in zip(motion.times, motion.wheel["camber"], motion.wheel["toe"], strict=True):
         lines.append(f"{t:.3f},{float(np.degrees(camber))!r},{float(np.degrees(toe))!r}")
-    columns = columns_of_text("\n".join(lines), "x.csv")
     map = {"columns": {"time": {"printed": 0}, "camber": {}, "toe": {}}}
-    found = compare_results(understood(columns, map, car, "map"), car, "misread", accuracy=1e-6)
-    assert "tie_rod_outer.z drawn 2 mm too high" in found.explanations[0].words
+    found = compared("\n".join(lines), map, car, accuracy=1e-6)
+    assert "tie_rod_outer.z drawn 2 mm too high" in found.outcome.explanations[0].words
 
 
 def test_a_column_that_looks_printed_beside_others_in_full_is_told(

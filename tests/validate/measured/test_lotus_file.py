@@ -1,33 +1,24 @@
 """The table that Lotus' program printed, as a file: the first that was ever held to the built-in car."""
 
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
+import curve_files
 import numpy as np
 import pytest
+from curve_files import verdicts
 from lotus_front import BUMP, ROLLING_RADIUS, STEERING
 
 from pointcoord import Scene
 from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.mapping import read_results, understood
-from validate.measured.reading import columns_of_text
+from validate.measured.mapping import read_results
 
 CAR = Scene.load("double-wishbone")
 ANGLES = ("camber", "toe", "caster", "kingpin")
 CSV = "bump [mm],camber [deg],toe [deg],caster [deg],kingpin [deg]\n" + "".join(
     f"{bump:.1f}," + ",".join(f"{angle:.4f}" for angle in angles) + "\n" for bump, *angles in BUMP
 )
-# Its columns are named as we name them but for the bump, which is set and exact.
-MAP = f"""
-rolling_radius = {ROLLING_RADIUS}
-columns.bump = {{ is = "travel.contact", printed = 0 }}
-columns.camber.is = "wheel.camber"
-columns.toe.is = "toe"
-columns.caster = {{}}
-columns.kingpin.unit = "deg"
-"""
 CONTENT: dict[str, Any] = {
     "rolling_radius": ROLLING_RADIUS,
     "columns": {"bump": {"is": "travel.contact", "printed": 0}, **{name: {"is": name} for name in ANGLES}},
@@ -35,35 +26,24 @@ CONTENT: dict[str, Any] = {
 
 
 def compared(text: str, content: dict[str, Any] = CONTENT, scene: Scene = CAR) -> DataOutcome:
-    measured = understood(columns_of_text(text, "bump.csv"), content, scene, "map.toml")
-    return compare_results(measured, scene, "car")
+    return curve_files.compared(text, content, scene)
 
 
-def verdicts(found: DataOutcome) -> dict[str, str]:
-    return {row.name: row.verdict for row in found.outcome.rows}
-
-
-def test_the_printed_bump_table_agrees_to_its_four_digits_and_is_held_to_no_more(tmp_path: Path) -> None:
+def test_the_printed_bump_table_agrees_to_its_four_digits_by_the_map_of_the_readme(tmp_path: Path) -> None:
+    readme = (Path(__file__).parents[3] / "validate" / "measured" / "README.md").read_text(encoding="utf-8")
+    (block,) = (b for b in re.findall(r"```toml\n(.*?)```", readme, flags=re.S) if "travel.contact" in b)
     data, map = tmp_path / "bump.csv", tmp_path / "map.toml"
     data.write_text(CSV)
-    map.write_text(MAP)
+    map.write_text(block)
     found = compare_results(read_results(str(data), str(map), CAR), CAR, "car")
     assert found.outcome.agreed
-    assert verdicts(found) == dict.fromkeys(("camber", "kingpin", "toe", "caster"), "agrees")
+    assert verdicts(found) == dict.fromkeys(ANGLES, "agrees")
+    assert sum(len(angles) for angles in found.outcome.solutions[0].numbers["wheel"].values()) == 44
     for row in found.outcome.rows:
         # Half of the last digit; the rest is rounding in double precision and the map's bound.
         assert np.degrees(row.tolerance) == pytest.approx(0.5e-4, rel=1e-5)
         # A table of 44 rounded numbers that is right uses most of what rounding allows somewhere.
         assert 0.5 < row.share <= 1.0
-
-
-def test_all_44_angles_agree_with_the_map_of_the_readme() -> None:
-    readme = (Path(__file__).parents[3] / "validate" / "measured" / "README.md").read_text(encoding="utf-8")
-    (block,) = (b for b in re.findall(r"```toml\n(.*?)```", readme, flags=re.S) if "travel.contact" in b)
-    found = compared(CSV, tomllib.loads(block))
-    assert verdicts(found) == dict.fromkeys(("camber", "kingpin", "toe", "caster"), "agrees")
-    assert found.outcome.solutions[0].numbers["wheel"].keys() == {*ANGLES}
-    assert sum(len(angles) for angles in found.outcome.solutions[0].numbers["wheel"].values()) == 44
 
 
 def test_a_column_that_a_map_does_not_name_goes_along_by_its_own_name_or_is_told() -> None:
@@ -112,7 +92,7 @@ def test_travel_of_the_wheel_centre_is_another_table() -> None:
 def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such(radius: dict[str, float]) -> None:
     bump = {"is": "travel.wheel_centre", "printed": 0}
     found = compared(CSV, {**radius, "columns": {**CONTENT["columns"], "bump": bump}})
-    first = found.explanations[0]
+    first = found.outcome.explanations[0]
     assert first.words.startswith("bump is travel.contact with a rolling radius of 2")
     assert first.words.endswith("not travel.wheel_centre")
     assert first.leftover <= 1.0
@@ -124,7 +104,7 @@ def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such(radius:
     turned = "\n".join(
         ",".join([*c[:2], c[2] if i == 0 else str(-float(c[2])), *c[3:]]) for i, c in enumerate(lines)
     )
-    assert not any(e.kind == "travel" for e in compared(turned).explanations)
+    assert not any(e.kind == "travel" for e in compared(turned).outcome.explanations)
 
 
 def test_a_bump_that_may_be_rounded_widens_by_slope_times_half_its_digit() -> None:

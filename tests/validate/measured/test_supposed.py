@@ -5,12 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from curve_files import compared
 from numpy.typing import NDArray
 
 from pointcoord import Scene, solve_poses
-from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.mapping import understood
-from validate.measured.reading import columns_of_text
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -43,10 +41,6 @@ def printed(over: dict[str, Array], numbers: dict[str, Array]) -> tuple[str, dic
     return "\n".join(lines), {"columns": parts}
 
 
-def compared(table: str, map: dict[str, Any]) -> DataOutcome:
-    return compare_results(understood(columns_of_text(table, "mine.csv"), map, CAR, "map.toml"), CAR, "car")
-
-
 RACKS = np.linspace(-40.0, 43.7, 18)
 TURNS = drawn_angle() + np.linspace(-0.12, 0.1, 18)
 HOME = drawn_angle()
@@ -71,11 +65,10 @@ def test_a_rack_that_is_meant_otherwise_is_told_first(
 ) -> None:
     numbers = at(np.full_like(RACKS, HOME), RACKS)
     del numbers["rise"]
-    found = compared(*printed({head: change(RACKS)}, numbers))
-    first = found.explanations[0]
+    found = compared(*printed({head: change(RACKS)}, numbers), CAR)
+    first = found.outcome.explanations[0]
     assert (first.words, first.kind) == (words, "input")
     assert first.leftover <= 1.0
-    assert found.outcome.explanations[0] == first
 
 
 @pytest.mark.parametrize(
@@ -99,7 +92,7 @@ def test_an_angle_that_is_meant_otherwise_is_told_first_even_where_no_row_can_be
     del numbers["rise"]
     table, map = printed({head: change(TURNS)}, numbers)
     try:
-        said = compared(table, map).explanations[0].words
+        said = compared(table, map, CAR).outcome.explanations[0].words
     except FileError as error:
         # Of columns of which no row can be reached.
         said = error.allowed.removeprefix("rows that the scene's car can have; they nearly are if ")
@@ -120,24 +113,24 @@ def test_a_travel_that_is_meant_otherwise_is_told_first(
     rise = numbers.pop("rise")
     table, map = printed({head: change(rise)}, numbers)
     map["columns"]["bump"]["is"] = "travel.wheel_centre"
-    found = compared(table, map)
-    assert found.explanations[0].words == words
-    assert found.explanations[0].leftover <= 1.0
+    found = compared(table, map, CAR)
+    assert found.outcome.explanations[0].words == words
+    assert found.outcome.explanations[0].leftover <= 1.0
 
 
 def test_two_columns_with_the_other_sign_are_told_together() -> None:
     heave = 10.0 + 0.3 * RACKS + 0.01 * RACKS**2
     numbers = at(np.full_like(RACKS, HOME), RACKS)
     numbers["position.wheel_centre.z [mm]"] = numbers.pop("rise") + PLACES["wheel_centre"][2] + heave
-    found = compared(*printed({"rack [mm]": -RACKS, "heave [mm]": -heave}, numbers))
-    assert found.explanations[0].words == "rack has the other sign, and heave has the other sign"
-    assert found.explanations[0].leftover <= 1.0
+    found = compared(*printed({"rack [mm]": -RACKS, "heave [mm]": -heave}, numbers), CAR)
+    assert found.outcome.explanations[0].words == "rack has the other sign, and heave has the other sign"
+    assert found.outcome.explanations[0].leftover <= 1.0
 
 
 def test_another_fault_is_no_other_zero() -> None:
     numbers = at(np.full_like(RACKS, HOME), RACKS)
     del numbers["rise"]
     numbers["toe [deg]"] = -numbers["toe [deg]"]
-    found = compared(*printed({"rack [mm]": RACKS}, numbers))
-    assert found.explanations[0].words == "toe: the other sign"
-    assert not [one for one in found.explanations if one.kind == "input"]
+    found = compared(*printed({"rack [mm]": RACKS}, numbers), CAR)
+    assert found.outcome.explanations[0].words == "toe: the other sign"
+    assert not [one for one in found.outcome.explanations if one.kind == "input"]
