@@ -44,9 +44,10 @@ def files() -> list[Path]:
 @pytest.mark.parametrize("kind", NAMES)
 def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     # The absolute model moves positions back to the user's origin, bounds from a stated accuracy are taken at
-    # the positions that a model found, and the printed rows of the paper have a wheel centre; a sweep and an import ask the topology which point its wheel centre is. The static
-    # angles of a wheel whose spin axis another program's file lacks are two options of the import, and `axle`
-    # is which of the axles in such a file. A turn is one of the chassis.
+    # the positions that a model found, and the printed rows of the paper have a wheel centre; a sweep and an
+    # import ask the topology which point its wheel centre is. The static angles of a wheel whose spin axis
+    # another program's file lacks are two options of the import, and `axle` is which of the axles in such a
+    # file. A turn is one of the chassis.
     allowed = {
         "absolute_coordinates.py": {"position"},
         "modelled.py": {"position"},
