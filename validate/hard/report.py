@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any, get_args
 
-from validate.hard.case import OURS, Answer, Case, Expected, Outcome
+from validate.hard.case import OURS, Case, Outcome
 from validate.hard.run import MAP, Examined, as_expected, counts, refusals
 from validate.output.table import Part, Table
 
@@ -201,7 +201,7 @@ def _description(case: Case) -> dict[str, Any]:
         "values": list(case.values),
         "unit": case.unit,
         "behaviour": case.behaviour,
-        "expected": {name: _expected_data(one) for name, one in case.expected.items()},
+        "expected": {name: asdict(one) for name, one in case.expected.items()},
     }
 
 
@@ -212,18 +212,10 @@ def _case_data(result: Examined) -> dict[str, Any]:
         "trials": [
             {
                 "value": trial.value,
-                "answers": [_answer_data(answer) for answer in trial.answers],
+                "answers": [asdict(answer) for answer in trial.answers],
                 "facts": dict(trial.facts),
             }
             for trial in result.trials
         ],
-        "unexpected": [_answer_data(answer) | {"value": value} for value, answer in result.unexpected],
+        "unexpected": [asdict(answer) | {"value": value} for value, answer in result.unexpected],
     }
-
-
-def _expected_data(expected: Expected) -> dict[str, Any]:
-    return asdict(expected)
-
-
-def _answer_data(answer: Answer) -> dict[str, Any]:
-    return asdict(answer)

@@ -74,7 +74,11 @@ def tried(case: Case, number: int) -> Trial:
         MissingPackage: a formulation of the case is not installed.
     """
     value = case.values[number]
-    return _also_by_map(case, _tried(case, value), value in _few(case.values))
+    trial = _tried(case, value)
+    by_map = OURS in case.expected and MAP not in case.expected and value in _few(case.values)
+    if trial.judge is None or not by_map:
+        return trial
+    return replace(trial, answers=(*trial.answers, trial.judge(MAP)))
 
 
 def examined(case: Case, trials: Sequence[Trial], seconds: float) -> Examined:
@@ -92,13 +96,6 @@ def _few(values: Sequence[float]) -> tuple[float, ...]:
 def _of_map(case: Case) -> Expected:
     """A map may be refused, its effort being bounded; it answers only where the other method may."""
     return RIGHT_OR_REFUSED if "right" in case.expected[OURS].outcomes else REFUSED
-
-
-def _also_by_map(case: Case, trial: Trial, chosen: bool) -> Trial:
-    """The trial with what a map of the inputs answers, where that is to be tried and can be judged."""
-    if not chosen or trial.judge is None or OURS not in case.expected or MAP in case.expected:
-        return trial
-    return replace(trial, answers=(*trial.answers, trial.judge(MAP)))
 
 
 def _tried(case: Case, value: float) -> Trial:

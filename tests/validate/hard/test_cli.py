@@ -13,16 +13,22 @@ from validate.hard import catalogue
 from validate.hard.case import RIGHT, Answer, Case, Trial
 
 
+def case_of(name: str, examine: Callable[[float], Trial], formulation: str = "absolute") -> Case:
+    """A case of one value."""
+    return Case(name, "0. Made", "it is made", "a number", (1.0,), {formulation: RIGHT}, "none", examine)
+
+
+def interrupted(value: float) -> Trial:
+    raise KeyboardInterrupt
+
+
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> None:
     """A catalogue of two small cases, of which one goes wrong."""
 
     def case(name: str, formulation: str) -> Case:
         answer = Answer(formulation, "wrong", "far off")
-        return Case(
-            name, "0. Made", "it is made", "a number", (1.0,), {formulation: RIGHT}, "none",
-            lambda value: Trial(value, (answer,)),
-        )  # fmt: skip
+        return case_of(name, lambda value: Trial(value, (answer,)), formulation)
 
     monkeypatch.setattr(catalogue, "CASES", (case("ours-fails", "pointcoord"), case("quiet", "absolute")))
 
@@ -127,8 +133,7 @@ def test_a_file_that_cannot_be_written_is_told_before_anything_is_tried(
     def never(value: float) -> Trial:
         raise AssertionError("tried")
 
-    case = Case("untried", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", never)
-    monkeypatch.setattr(catalogue, "CASES", (case,))
+    monkeypatch.setattr(catalogue, "CASES", (case_of("untried", never),))
     for target in (tmp_path / "no" / "x.json", tmp_path):
         assert main(["hard", *more, "--json", str(target)]) == 4
         out, err = capsys.readouterr()
@@ -141,11 +146,7 @@ def test_a_file_that_cannot_be_written_is_told_before_anything_is_tried(
 def test_an_interrupted_run_leaves_the_file_as_it_was(
     before: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(value: float) -> Trial:
-        raise KeyboardInterrupt
-
-    case = Case("stop", "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", interrupted)
-    monkeypatch.setattr(catalogue, "CASES", (case,))
+    monkeypatch.setattr(catalogue, "CASES", (case_of("stop", interrupted),))
     target = tmp_path / "hard.json"
     if before is not None:
         target.write_text(before)
@@ -156,14 +157,8 @@ def test_an_interrupted_run_leaves_the_file_as_it_was(
 def test_an_interrupted_run_leaves_the_cases_that_are_finished(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def interrupted(value: float) -> Trial:
-        raise KeyboardInterrupt
-
-    def case(name: str, examine: Callable[[float], Trial]) -> Case:
-        return Case(name, "0. Made", "it is made", "a number", (1.0,), {"absolute": RIGHT}, "none", examine)
-
     right = Trial(1.0, (Answer("absolute", "right"),))
-    cases = (*(case(f"done-{i}", lambda value: right) for i in range(3)), case("stop", interrupted))
+    cases = (*(case_of(f"done-{i}", lambda value: right) for i in range(3)), case_of("stop", interrupted))
     monkeypatch.setattr(catalogue, "CASES", cases)
     target = tmp_path / "hard.json"
     assert main(["hard", "--json", str(target)]) == 130
