@@ -37,7 +37,6 @@ class Tried:
         reference: at the scene's instants; None if there is none.
     """
 
-    value: float
     scene: Scene
     solutions: Mapping[str, Solution]
     reference: Solution | None
@@ -128,7 +127,7 @@ def try_scene(
     facts: dict[str, float | str] = {"reference": said}
     if measure is not None:
         known = None if isinstance(reference, Exception) else reference
-        facts |= measure(Tried(value, scene, solutions, known))
+        facts |= measure(Tried(scene, solutions, known))
     unknown = isinstance(reference, Exception) and not isinstance(reference, InfeasibleError)
 
     def judge(name: str) -> Answer:
