@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 import shlex
 
@@ -23,7 +22,7 @@ from validate.commands.usage import (
 )
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates
+from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates, require_limits
 from validate.fitting.record import corrected_text, data_of, table_of
 from validate.fitting.words import text_of, warnings_of_fit
 from validate.measured.mapping import map_to_fill_in, read_results
@@ -110,10 +109,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """
     if STANDARD_INPUT in (options.data, options.map):
         raise UsageError("--data and --map read files; standard input (-) can be the scene only")
-    for option, least in (("bounds", "above 0"), ("prior", "above 0"), ("accuracy", "from 0 up")):
-        value = getattr(options, option)
-        if not (math.isfinite(value) and (value > 0.0 or (value == 0.0 and option == "accuracy"))):
-            raise UsageError(f"--{option} is {value:g}; allowed: a finite number {least}")
+    limits = options.bounds, options.prior, options.accuracy
+    require_limits(*limits, mark="--")
     targets = _targets(options, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     if options.map is not None and not os.path.exists(options.map):
@@ -124,7 +121,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         count = len(free_coordinates(scene, options.free))
         numbers = len(measured.numbers) * len(measured.rows)
         console.note(f"{name}: {count} coordinates are fitted to {numbers} numbers; this may take a while")
-        limits = options.bounds, options.prior, options.accuracy
         fit = fit_hardpoints(scene, measured, options.free, *limits, told=told)
     status = ExitStatus.AGREE if fit.converged else ExitStatus.NO_VERDICT
     source = measured.source

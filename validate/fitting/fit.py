@@ -169,6 +169,21 @@ class Fit:
         return before, after, count
 
 
+def require_limits(bounds: float, prior: float, accuracy: float, mark: str = "") -> None:
+    """Refuse limits of a fit that are none.
+
+    Args:
+        mark: what stands before the name of each where it is told, such as that of an option.
+    Raises:
+        UsageError: one is no finite number, or too small.
+    """
+    for name, value in (("bounds", bounds), ("prior", prior), ("accuracy", accuracy)):
+        zero = name == "accuracy"
+        if not (math.isfinite(value) and (value > 0.0 or (zero and value == 0.0))):
+            least = "from 0 up" if zero else "above 0"
+            raise UsageError(f"{mark}{name} is {value:g}; allowed: a finite number {least}")
+
+
 def fit_hardpoints(
     scene: Scene,
     measured: Measured,
@@ -189,10 +204,12 @@ def fit_hardpoints(
         solves: how many corrections are tried before it stops without having converged.
         told: is called with words and how many designs were tried.
     Raises:
-        UnknownName: no point or axis is called so. UsageError: a coordinate is there twice.
+        UnknownName: no point or axis is called so.
+        UsageError: a coordinate is there twice, or bounds, prior or accuracy are none.
         FileError: no number of the file can be used.
         PointcoordError: the scene as drawn cannot be solved.
     """
+    require_limits(bounds, prior, accuracy)
     measured, left_out = _without_derivatives(measured)
     curves = Curves(scene, measured, free_coordinates(scene, free))
     zero = np.zeros(len(curves.free))

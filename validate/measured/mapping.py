@@ -86,12 +86,12 @@ Size = Annotated[Number, Field(ge=0.0)]
 
 
 class ColumnSaid(BaseModel):
-    """What a map says of a column, as the top of this file has it; None or empty what it does not say."""
+    """What a map says of a column, as the top of this file has it; None what it does not say."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     is_: str | None = Field(default=None, alias="is")
-    unit: str = ""
+    unit: str | None = None
     sign: Annotated[Number, AfterValidator(_sign)] = 1.0
     offset: Number = 0.0
     definition: Definition = PROJECTED
@@ -528,8 +528,10 @@ class _Map:
 
     def unit_of(self, column: str) -> str:
         """The unit of a column as the map or the file says it; empty where neither does."""
-        in_file = self.columns.units[self.columns.names.index(column)]
-        return self._part(column).unit or in_file or _unit_at_the_end(column)
+        said = self._part(column).unit
+        if said is not None:
+            return said
+        return self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
 
     def _derivative(self, column: str, meaning: Meaning, independent: Sequence[Series]) -> Meaning:
         """What a derivative is by, of the columns that rows are taken by."""
@@ -597,7 +599,7 @@ class _Map:
         if factor is None:
             problem = f"{shown(said)!r} is no unit of {meaning.words}"
             problem = problem if said else "its unit is not said, neither behind its name nor in a map"
-            if self._part(column).unit:
+            if self._part(column).unit is not None:
                 raise self._wrong(f"columns.{column}.unit", problem, allowed)
             raise self._column(column, problem, allowed)
         return factor

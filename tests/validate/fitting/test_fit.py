@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, designs_of, simulate
 from validate import paper
 from validate.cli import main
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.fitting.curves import STEP, Curves
 from validate.fitting.fit import PRIOR, Fit, fit_hardpoints, free_coordinates
@@ -498,3 +499,18 @@ def test_a_wrong_unit_is_no_hardpoint_s_fault_and_the_next_step_is_told() -> Non
     fit = fit_hardpoints(CAR, measured(text, CAR), FREE, solves=10)
     assert fit.factor > 100.0
     assert any("pointcoord validate SCENE --data FILE" in words for words in warnings_of_fit(fit))
+
+
+@pytest.mark.parametrize(
+    ("limits", "said"),
+    [
+        ({"bounds": 0.0}, "bounds is 0; allowed: a finite number above 0"),
+        ({"prior": math.inf}, "prior is inf; allowed: a finite number above 0"),
+        ({"accuracy": -1.0}, "accuracy is -1; allowed: a finite number from 0 up"),
+    ],
+)
+def test_a_limit_that_is_none_is_refused_before_anything_is_solved(
+    limits: Mapping[str, float], said: str
+) -> None:
+    with pytest.raises(UsageError, match=said):
+        fit_hardpoints(CAR, measured(wheel_table(CAR, 4), CAR), FREE, **limits)

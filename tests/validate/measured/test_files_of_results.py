@@ -248,6 +248,7 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT, {"columns": {"cambr": {}}}, ("'cambr'", "did you mean 'camber'?")),
         (TEXT, {"columns": {"camber": {"is": "wheel.cambre"}}}, ("did you mean 'wheel.camber'?",)),
         (TEXT, {"columns": {"camber": {"unit": "mm"}}}, ("'mm' is no unit of wheel.camber", "deg")),
+        (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
         (TEXT, {"independent": "camber"}, ("'camber' is wheel.camber", "a time, an input or a travel")),
         (TEXT.replace(" [deg]", ""), {}, ("column 'camber'", "unit is not said", "deg")),
