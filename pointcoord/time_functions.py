@@ -411,8 +411,8 @@ def _about(series: Array, doubts: Array, half: Array, rounded: Array) -> tuple[A
 
 def _doubled_horner(highs: list[float], lows: list[float], t: Array) -> Array:
     """sum_j (high_j + low_j) t^j, rounded about once."""
-    high, low = np.zeros_like(t), np.zeros_like(t)
-    for c, c_low in zip(reversed(highs), reversed(lows), strict=True):
+    high, low = np.full_like(t, highs[-1]), np.full_like(t, lows[-1])
+    for c, c_low in zip(highs[-2::-1], lows[-2::-1], strict=True):
         product, rest = two_product(high, t)
         rest = rest + low * t
         high, carry = two_sum(product, np.array(c))

@@ -44,6 +44,7 @@ from pointcoord.numerics.enclosure import Enclosed, both, cross
 from pointcoord.numerics.kantorovich import applied
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
@@ -93,7 +94,7 @@ def enclosed_coordinates(
     """
     system, n = mechanism.map, mechanism.map.unknowns
     certificate, magnitude = poses.certificate, np.abs(poses.factors.preconditioner)
-    low = poses.low.copy()
+    low = poses.low.copy(order="K")
     low[..., :n] = -certificate.step
     largest = np.abs(certificate.step).max(axis=1)
     spread = certificate.spread[:, 0] + 32.0 * UNIT_ROUNDOFF * largest
@@ -158,7 +159,7 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
     # after one refinement.
     shared = gamma * poses.condition * rounded.max(axis=-1)
-    low, radius = computed.low.copy(), computed.radius.copy()
+    low, radius = (part.copy(order="K") for part in (computed.low, computed.radius))
     low[..., :n] = step
     radius[0, :, 0, :n] = proven + tail
     radius[1, :, 0, :n] = rounded + shared[:, None]
@@ -171,8 +172,8 @@ def _with_known(rate: Array, known: Mapping[int, Enclosed], unknowns: int) -> En
 
     These are zero but where an input drives one.
     """
-    high, low = (np.moveaxis(np.zeros((rate.shape[-1], *rate.shape[:-1])), 0, -1) for _ in range(2))
-    radius = np.zeros((2, len(rate), 1, rate.shape[-1]))
+    high, low = (components_last(np.zeros((rate.shape[-1], *rate.shape[:-1]))) for _ in range(2))
+    radius = components_last(np.zeros((rate.shape[-1], 2, len(rate), 1)))
     high[..., :unknowns] = rate[..., :unknowns]
     for place, number in known.items():
         high[..., place], low[..., place] = number.high, number.low
@@ -182,16 +183,16 @@ def _with_known(rate: Array, known: Mapping[int, Enclosed], unknowns: int) -> En
 
 def _factors(system: QuadraticMap, state: Enclosed) -> Edges:
     """Both differences of every term, (..., terms)."""
-    left, right = (state.take(first) - state.take(second) for first, second in system.terms[2])
-    return left, right
+    (first, second), (left, right) = system.differences
+    each = state.take(first) - state.take(second)
+    return each.take(left), each.take(right)
 
 
 def _twice_polar(system: QuadraticMap, a: Edges, b: Edges) -> Enclosed:
     """2 B(a, b) of two states' differences, (..., rows)."""
-    coefficients, starts, _ = system.terms
+    coefficients, starts = system.terms
     terms = (a[0] * b[1]).scaled(2.0) if a is b else a[0] * b[1] + b[0] * a[1]
-    simple = (np.frexp(np.abs(coefficients))[0] == 0.5).all()
-    return row_sums(terms.scaled(coefficients) if simple else terms * Enclosed.of(coefficients), starts)
+    return row_sums(terms.scaled(coefficients), starts)
 
 
 def row_sums(terms: Enclosed, starts: NDArray[np.intp]) -> Enclosed:
@@ -214,7 +215,7 @@ def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Enclosed]) -> li
     found: list[dict[str, Enclosed]] = []
     for state in coordinates:
         names = (*topology.chassis, *topology.moving)
-        found.append({name: state.take(list(layout.vector(name))) for name in names})
+        found.append({name: state.take(layout.span(name)) for name in names})
     frames = {carriers: _frame(found, carriers) for carriers in set(topology.carried.values())}
     for name, carriers in topology.carried.items():
         weights = exact_weights(mechanism, name)

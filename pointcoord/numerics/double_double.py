@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.numerics.vectors import LAST, NEXT
+from pointcoord.numerics.vectors import LAST, NEXT, components_first, components_last
 
 Array = NDArray[np.float64]
 Pair = tuple[Array, Array]
@@ -28,7 +28,7 @@ SPLITTER = 2.0**27 + 1.0  # splits 53 bits into two halves whose products are ex
 # Rounding of the low parts in units of u^2 times a term, by the bounds below: a factor's low part is at most
 # 6 u of it (its own rounding and that of a coordinate), a term's 13 u, a row's 21 u. Taking the two low
 # parts of factors rounds twice each (24), their products (12), their sum (26), what it leaves out (36), the
-# coefficient (26), the sums of up to 8 terms and of their carries (176): 300, with as much again to spare.
+# sums of up to 8 terms and of their carries (176): below 300, with as much again to spare.
 LEFT_OUT = 600.0
 # A product of pairs and a sum of four of them round some twenty times in units of u^2; three times that.
 PAIRS = 64.0 * UNIT_ROUNDOFF**2
@@ -134,8 +134,8 @@ def pair_cross(a: Pair, b: Pair) -> Pair:
 def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) -> tuple[Array, Array]:
     r"""C(y + low), and how far it may be from C of the coordinates that are meant.
 
-    Each term c (y_a - y_b)(y_c - y_d) is a pair, and a row is summed as pairs. With D the uncertainties of
-    the two coordinates in a factor F,  |F G - F' G'| <= |F| D_G + D_F (|G| + D_G).
+    Each term c (y_a - y_b)(y_c - y_d), c a power of two, is a pair, and a row is summed as pairs. With D the
+    uncertainties of the two coordinates in a factor F,  |F G - F' G'| <= |F| D_G + D_F (|G| + D_G).
 
     Args:
         y: coordinates, shape (..., size).
@@ -145,23 +145,27 @@ def doubled_residual(system: QuadraticMap, y: Array, low: Array, data: Array) ->
     Returns:
         The value, (..., rows), and the doubt, (..., rows) with the dimensions of `data`.
     """
-    coefficients, starts, factors = system.terms
+    coefficients, starts = system.terms
+    (first, second), factors = system.differences
     # Coordinate by coordinate, so that the poses lie side by side in memory.
-    y, low, data = (np.moveaxis(part, -1, 0) for part in (y, low, data))
+    y, low, data = (components_first(part) for part in (y, low, data))
     scale = coefficients.reshape(-1, *(1,) * (y.ndim - 1))
-    (f, f_low), (g, g_low) = (_difference(y, low, first, second) for first, second in factors)
+    differences = _difference(y, low, first, second)
+    (f, f_low), (g, g_low) = ([part[places] for part in differences] for places in factors)
     high, rest = two_product(f, g)
-    scaled, scaled_rest = two_product(high, scale)
-    rest = (rest + f * g_low + f_low * g) * scale + scaled_rest
-    total, carry = _row_sums(scaled, starts)
+    rest += f * g_low
+    rest += f_low * g
+    rest *= scale
+    high *= scale
+    total, carry = _row_sums(high, starts)
     value = total + (carry + _summed(rest, starts))
-    f_size, g_size = (largest(np.abs(part), data.shape[1:]) for part in (f, g))
-    f_doubt, g_doubt = (data[first] + data[second] for first, second in factors)
+    size, doubted = largest(np.abs(differences[0]), data.shape[1:]), data[first] + data[second]
+    (f_size, f_doubt), (g_size, g_doubt) = ((size[places], doubted[places]) for places in factors)
     doubt = f_size * g_doubt + f_doubt * (g_size + g_doubt)
     each = doubt * (1.0 + 16 * UNIT_ROUNDOFF) + LEFT_OUT * UNIT_ROUNDOFF**2 * f_size * g_size
     spread = _summed(np.abs(scale) * each, starts)
     spread = spread + 2.0 * UNIT_ROUNDOFF * largest(np.abs(value), data.shape[1:])
-    return np.moveaxis(value, 0, -1), np.moveaxis(spread, 0, -1)
+    return components_last(value), components_last(spread)
 
 
 def largest(size: Array, shape: tuple[int, ...]) -> Array:
@@ -171,6 +175,8 @@ def largest(size: Array, shape: tuple[int, ...]) -> Array:
     array([[3.],
            [2.]])
     """
+    if size.shape == shape:
+        return size
     dimensions = zip(range(-1, -1 - min(size.ndim, len(shape)), -1), reversed(shape), strict=False)
     shared = tuple(axis for axis, length in dimensions if length == 1 and size.shape[axis] > 1)
     return np.asarray(size.max(axis=shared, keepdims=True)) if shared else size

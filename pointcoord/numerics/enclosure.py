@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.numerics.double_double import largest, quick_two_sum, two_product, two_sum
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import LAST, NEXT, components_first, components_last
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -35,7 +36,8 @@ TINY = 1e-307  # a product loses less to underflow, by some 16 orders
 NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
 STEPS, FARTHEST = 256.0, 805  # of a table of angles, and how many of them reach beyond pi
-CYCLE, BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
+# Components of both factors of a vector product: of what is added, then of what is taken off.
+BOTH_WAYS = np.concatenate([NEXT, LAST]), np.concatenate([LAST, NEXT])
 
 
 @dataclass(frozen=True)
@@ -110,11 +112,11 @@ class Enclosed:
         expected = 2.0 * UNIT_ROUNDOFF * self.size + angle.radius[1]
         return Enclosed(self.high, self.low, both(self.radius[0] + outside, expected), self.size)
 
-    def take(self, places: Indices | list[int]) -> Enclosed:
-        """Elements of the last dimension."""
+    def take(self, places: Indices | list[int] | slice) -> Enclosed:
+        """Elements of the last dimension; of a slice a view."""
         # The numbers of a place lie side by side in memory, as those of a component do everywhere.
         parts = (self.high, self.low, self.radius, self.size)
-        return Enclosed(*(np.moveaxis(np.moveaxis(part, -1, 0)[places], 0, -1) for part in parts))
+        return Enclosed(*(components_last(components_first(part)[places]) for part in parts))
 
     def component(self, place: int) -> Enclosed:
         """One element of the last dimension."""
@@ -228,7 +230,9 @@ def dot(a: Enclosed, b: Enclosed) -> Enclosed:
 
 def cross(a: Enclosed, b: Enclosed) -> Enclosed:
     """Vector product over the last dimension of three."""
-    return a.take(CYCLE) * b.take(BACK) - a.take(BACK) * b.take(CYCLE)
+    # All six products at once: these arrays are so small that calls take most of the time.
+    products = a.take(BOTH_WAYS[0]) * b.take(BOTH_WAYS[1])
+    return products.take(slice(0, 3)) - products.take(slice(3, 6))
 
 
 def _less(square: Enclosed, *divisors: float) -> Enclosed:

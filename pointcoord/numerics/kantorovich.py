@@ -48,6 +48,7 @@ from pointcoord.numerics.double_double import doubled_residual
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
 
@@ -183,5 +184,6 @@ def applied(matrix: Array, vectors: Array) -> Array:
     """The product of each matrix, (..., n, n), with m vectors, (..., m, n)."""
     # As in `doubled_residual`, coordinate by coordinate.
     product = np.empty((matrix.shape[-2], *vectors.shape[:-1]))
-    np.matmul(matrix, vectors.swapaxes(-1, -2), out=np.moveaxis(product, 0, -2))
-    return np.moveaxis(product, 0, -1)
+    by_vector = components_last(product)
+    np.matmul(matrix, vectors.swapaxes(-1, -2), out=by_vector.swapaxes(-1, -2))
+    return by_vector

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from math import frexp
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +30,12 @@ Indices = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Product:
-    """c (y_a - y_b)(y_c - y_d), with left = (a, b) and right = (c, d)."""
+    """c (y_a - y_b)(y_c - y_d), with left = (a, b) and right = (c, d).
+
+    Attributes:
+        coefficient: a power of two with a sign, so that it rounds nothing; what else multiplies a product
+            is a coordinate.
+    """
 
     coefficient: float
     left: tuple[int, int]
@@ -205,7 +211,7 @@ class QuadraticMap:
             frozenset(
                 i
                 for p in row
-                if p.coefficient and p.left[0] != p.left[1] and p.right[0] != p.right[1]
+                if p.left[0] != p.left[1] and p.right[0] != p.right[1]
                 for i in (*p.left, *p.right)
             )
             for row in self.rows
@@ -217,10 +223,19 @@ class QuadraticMap:
         return structure_of(self)
 
     @property
-    def terms(self) -> tuple[Array, Indices, tuple[tuple[Indices, Indices], tuple[Indices, Indices]]]:
-        """Coefficients of all terms, where each row starts, and the ends of both factors' differences."""
-        coefficients, a, b, c, d, starts = self._terms
-        return coefficients, starts, ((a, b), (c, d))
+    def terms(self) -> tuple[Array, Indices]:
+        """Coefficients of all terms, and where each row starts."""
+        coefficients, *_, starts = self._terms
+        return coefficients, starts
+
+    @cached_property
+    def differences(self) -> tuple[tuple[Indices, Indices], tuple[Indices, Indices]]:
+        """Both ends of every difference, each once, and which of them are both factors of every term."""
+        _, a, b, c, d, _ = self._terms
+        ends, places = np.unique(
+            np.stack([np.concatenate([a, c]), np.concatenate([b, d])]), axis=1, return_inverse=True
+        )
+        return (ends[0], ends[1]), (places[: len(a)], places[len(a) :])
 
     def factors(self, y: Array) -> tuple[Array, Array]:
         """Both differences of every term, each of shape (..., terms)."""
@@ -433,12 +448,15 @@ def quadratic_map(rows: Sequence[Row], unknowns: int, size: int) -> QuadraticMap
     """Build a map and check that every row has a term and every coordinate exists.
 
     Raises:
-        ValueError: a row is empty, or a term names a coordinate outside 0 .. size - 1.
+        ValueError: a row is empty, a term names a coordinate outside 0 .. size - 1, or a coefficient is no
+            power of two.
     """
     for number, row in enumerate(rows):
         if not row:
             raise ValueError(f"row {number} has no terms")
         for product in row:
+            if abs(frexp(product.coefficient)[0]) != 0.5:
+                raise ValueError(f"row {number}: the coefficient of {product} is no power of two")
             if not all(0 <= i < size for i in (*product.left, *product.right)):
                 raise ValueError(f"row {number}: {product} names a coordinate outside 0..{size - 1}")
     return QuadraticMap(tuple(tuple(row) for row in rows), unknowns, size)

@@ -159,14 +159,14 @@ def _remaining(
 
 def _of_factors(system: QuadraticMap, off: Jet) -> tuple[Jet, Jet]:
     """How far the two factors of each term are off where the coordinates are, (P, terms)."""
-    _, _, ends = system.terms
-    (a, b), (c, d) = ends
-    return off.taken(a) + off.taken(b), off.taken(c) + off.taken(d)
+    (first, second), (left, right) = system.differences
+    each = off.taken(first) + off.taken(second)
+    return each.taken(left), each.taken(right)
 
 
 def _gathered(system: QuadraticMap, part: Array) -> Array:
     """Sums of magnitudes of terms, (..., terms), to (..., rows)."""
-    coefficients, starts, _ = system.terms
+    coefficients, starts = system.terms
     return np.add.reduceat(part * np.abs(coefficients), starts, axis=-1)
 
 

@@ -17,14 +17,12 @@ of a solver that places bodies.
 
 What that makes of the motion follows from C(y, t) = delta with a constant delta, |delta_i| <= rho_i:
 
-    C' dy   = delta
-    C' dy'  = -d(C' y' + C_t)                  the rate equations' dependence on the pose
-    C' dy'' = -d(C'' y' y' + C' y'' + ...)     with dy and dy'
+    C' dy   = delta,      C' dy'  = -(C')' dy,      C' dy'' = -2 (C')' dy' - (C')'' dy,
 
-and of every number q(y, y', y'') by its own derivative. The worst signs are taken: the sum over the rows i of
-|dq / d delta_i| rho_i. All of this is the reference's own text of its equations (`residual`, `jacobian`,
-`points_of`, `body_turns`, the angles), evaluated with dual numbers, of arrays
-instead of balls: a tolerance needs no 60 digits.
+with the rates of C' along the motion, and of every number q(y, y', y'') by its own derivative. The worst
+signs are taken: the sum over the rows i of |dq / d delta_i| rho_i. All of this is the reference's own text of
+its equations (`residual`, `jacobian`, `points_of`, `body_turns`, the angles), evaluated with dual numbers of
+arrays instead of balls: a tolerance needs no 60 digits.
 
 A number is also read from points that are themselves off by e, on bodies that turn with |omega| <= W and
 |alpha| <= A (V, B: the largest speed and acceleration against the chassis, L: the car's size, for what moves
@@ -74,12 +72,12 @@ from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.effect import Axes
 from validate.reference.effects.registry import effects_of
 from validate.reference.in_doubles import (
-    changes_of,
     floats_of,
     inverse_of,
     jacobian_of,
     known_in_doubles,
     local_places,
+    motion_of_a_miss,
     newton_step,
     order_of,
     unknown_jets_of,
@@ -199,7 +197,7 @@ class _Held:
         missed = off[:, None] * self._missed(places, matrix, values_only(known))
         # Missing a row by delta moves the unknowns by a column of the inverse.
         first = np.einsum("nij,nj->ijn", inverse, missed)
-        slopes = changes_of(jets, inverse, known, len(jets), first)
+        slopes = motion_of_a_miss(first, jets, inverse, known)
         change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]

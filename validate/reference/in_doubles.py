@@ -1,15 +1,14 @@
 r"""The equations at many instants at once, in doubles: poses that are known, their rates, and small changes.
 
 One text of the equations serves every kind of number (`equations`): here arrays over the instants, (N,), and
-duals of them whose slopes are (directions, N). From C(y, t) = 0 follow y' and y'', and by a parameter that
-the equations depend on, order by order, what it makes of y, y' and y'': each solves an equation with the one
-matrix C', and what stands on its right is C itself, evaluated with duals.
+duals of them whose slopes are (directions, N). From C(y, t) = 0 follow y' and y'', and what missing the
+equations makes of them: each solves an equation with the one matrix C'.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 from flint import arb
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
-from validate.reference.dual import Dual, slope_of, value_of
+from validate.reference.dual import Dual, value_of
 from validate.reference.equations import Equations, equations_in
 from validate.reference.jet import Jet
 from validate.reference.kinematics import with_rates
@@ -104,26 +103,26 @@ def unknown_jets_of(values: Sequence[Array], inverse: Array, known: Known) -> li
     return with_rates(values, known, solved)
 
 
-def changes_of(
-    jets: Sequence[Jet], inverse: Array, known: Known, directions: int, first: Array | None = None
-) -> Array:
-    """What each direction makes of the unknowns, by order, unknown, direction and instant.
+def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
+    """What equations that are missed by a constant make of the unknowns, by order, unknown, miss and instant.
 
-    C' dy = -dC, C' dy' = -d(C' y' + C_t) with dy, and so on: dC of what `known` has slopes of.
+    From C(y, t) = delta follows C' dy = delta at every instant, and so by differentiating
+
+        C' dy'  = -(C')' dy,        C' dy'' = -2 (C')' dy' - (C')'' dy.
 
     Args:
-        first: dy, (size, directions, N), where it is known already.
+        first: dy of each miss, (size, misses, N).
+        jets: the unknowns with their rates.
+        inverse: of C', (N, size, size).
     """
-    size, count = known.equations.size, len(inverse)
-    found = np.zeros((ORDERS, size, directions, count))
-    start = 0
-    if first is not None:
-        found[0], start = first, 1
-    for d in range(start, ORDERS):
-        rows = known.residual(with_slopes(jets, found))
-        moved = np.array([np.broadcast_to(slope_of(part_of(row, d)), (directions, count)) for row in rows])
-        found[d] = -np.einsum("nij,jkn->ikn", inverse, moved)
-    return found
+    turned, bent = (
+        jacobian_of(jets, known.numbers, known.equations, partial(part_of, order=order))
+        for order in (1, 2)
+    )
+    place = first.transpose(2, 0, 1)
+    rate = -inverse @ (turned @ place)
+    acceleration = -inverse @ (2.0 * (turned @ rate) + bent @ place)
+    return np.stack([place, rate, acceleration]).transpose(0, 2, 3, 1)
 
 
 def with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:

@@ -16,7 +16,7 @@ SYSTEM: QuadraticMap = quadratic_map(
     [
         (
             Product(1.0, (2, 0), (2, 1)),
-            Product(3.0, (2, ZERO), (ONE, ZERO)),
+            Product(4.0, (2, ZERO), (ONE, ZERO)),
             Product(-2.0, (1, ZERO), (0, 1)),
         ),
         (Product(1.0, (0, ZERO), (0, ONE)), Product(-1.0, (FIRST, ZERO), (ONE, ZERO))),

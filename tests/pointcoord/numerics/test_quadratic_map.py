@@ -163,7 +163,7 @@ def test_the_jacobian_moves_by_its_uncertainty_at_most_and_at_a_corner(seed: int
         assert (np.abs(system.jacobian(moved) - system.jacobian(y)) <= bound).all()
     # Of one product of four coordinates both differences move by two coordinates' worth.
     a, b, c, d = rng.permutation(SIZE)[:4].tolist()
-    one = quadratic_map([(Product(-3.0, (a, b), (c, d)),)], UNKNOWNS, SIZE)
+    one = quadratic_map([(Product(-4.0, (a, b), (c, d)),)], UNKNOWNS, SIZE)
     corner = y.copy()
     corner[:, [a, c]] += data[:, [a, c]]
     corner[:, [b, d]] -= data[:, [b, d]]
@@ -214,3 +214,6 @@ def test_row_without_terms_and_unknown_coordinate_are_refused() -> None:
     for bad in ((0, 4), (-1, 0)):
         with pytest.raises(ValueError, match=r"row 0.*outside 0\.\.3"):
             quadratic_map([(Product(1.0, bad, (2, 3)),)], 2, 4)
+    for coefficient in (3.0, 0.0, -0.75, float("nan")):
+        with pytest.raises(ValueError, match=r"row 0.*no power of two"):
+            quadratic_map([(Product(coefficient, (0, 1), (2, 3)),)], 2, 4)

@@ -173,7 +173,6 @@ def test_rows_that_cannot_be_paired_with_unknowns_are_one_block_of_everything() 
     ("product", "read"),
     [
         (Product(1.0, (0, 1), (1, 2)), {0, 1, 2}),
-        (Product(0.0, (0, 1), (1, 2)), set()),
         (Product(2.0, (0, 0), (1, 2)), set()),
         (Product(2.0, (0, 1), (2, 2)), set()),
     ],

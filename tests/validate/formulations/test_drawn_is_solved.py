@@ -91,6 +91,7 @@ def exact_pose(scene: Scene) -> Places:
     return {n: np.array([float(x) for x in place[0]]) for n, place in form.pose(angle, rack).items()}
 
 
+@searched
 @given(cars_of(DRAWN))
 def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(car: Car) -> None:
     note(repr(car))
@@ -113,6 +114,7 @@ def test_at_its_own_inputs_every_point_of_a_drawing_comes_back_by_all_mechanics(
         assert distance <= rounding, ("reference", point)
 
 
+@searched
 @given(cars_of(DRAWN), SHARES, SHARES)
 def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float, rack: float) -> None:
     note(repr(car))

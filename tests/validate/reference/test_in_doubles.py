@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -11,18 +10,16 @@ import pytest
 from reference_cars import ReferenceCar
 
 from validate.reference.design import Known, values_only
-from validate.reference.dual import Dual, slope_of
 from validate.reference.in_doubles import (
-    changes_of,
     inverse_of,
     jacobian_of,
     known_in_doubles,
     local_places,
+    motion_of_a_miss,
     newton_step,
     order_of,
     part_of,
     unknown_jets_of,
-    with_slopes,
 )
 from validate.reference.jet import Jet
 
@@ -81,37 +78,37 @@ def test_a_matrix_without_an_inverse_has_the_one_that_comes_nearest() -> None:
     ]
 
 
-@pytest.mark.parametrize("name", ["arm_angle", "rack"])
-def test_what_an_input_changes_is_the_proven_derivative(car: ReferenceCar, name: str) -> None:
-    proven, instant, design = car.sensitivities()[name, "value"], car.solve(car.inputs), car.design
-    laws = {n: np.array([[float(x) for x in law]] * 2) for n, law in car.inputs.items()}
-    places = {n: np.array([instant.position_as_float(n)] * 2) for n in design.names}
-    known = known_in_doubles(design, laws, 2)
+def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions_that_miss_it(
+    car: ReferenceCar,
+) -> None:
+    inputs, design = inputs_of(car, heave=True), car.design
+    instants = [car.solve(one) for one in inputs]
+    laws = {name: np.array([[float(x) for x in one[name]] for one in inputs]) for name in inputs[0]}
+    places = {name: np.array([one.position_as_float(name) for one in instants]) for name in design.names}
+    known = known_in_doubles(design, laws, 3)
     still = values_only(known)
     values = unknowns(car, places, still)
-    inverse = inverse_of(jacobian_of(list(values), still.numbers, still.equations))
-    jets = unknown_jets_of(list(values), inverse, known)
-    # The derivative of what the equations take for the input, by its own value.
-    step, which = 1e-6, list(design.mechanism.drives).index(name)
-    ahead, behind = (
-        known_in_doubles(design, {**laws, name: laws[name] + [sign * step, 0.0, 0.0]}, 2).numbers[which]
-        for sign in (1.0, -1.0)
-    )
-    slopes = [(part_of(ahead, d) - part_of(behind, d))[None] / (2.0 * step) for d in range(3)]
-    dual = Jet(*(Dual(part_of(known.numbers[which], d), slopes[d]) for d in range(3)))
-    changed = replace(known, numbers=[dual if i == which else w for i, w in enumerate(known.numbers)])
-    found = changes_of(jets, inverse, changed, 1)
-    assert found.shape == (3, design.mechanism.size, 1, 2)
-    points = changed.points_of(with_slopes(jets, found))
-    for d, quantity in enumerate(QUANTITIES):
-        exact = {n: np.array(getattr(proven, quantity)[n], dtype=float) for n in design.names}
-        largest = max(np.abs(v).max() for v in exact.values())
-        for n, vector in exact.items():
-            slope = [np.broadcast_to(slope_of(part_of(x, d)), (1, 2))[0] for x in points[n]]
-            # A central difference of numbers of the size of 1 over 1e-6 rounds to 1e-10.
-            np.testing.assert_allclose(
-                np.stack(slope, axis=-1) * float(design.unit), [vector] * 2, rtol=0.0, atol=1e-7 * largest
-            )
-    again = changes_of(jets, inverse, changed, 1, found[0])
-    np.testing.assert_allclose(again, found, rtol=1e-9, atol=1e-9 * np.abs(found).max())
-    assert np.array_equal(again[0], found[0])
+
+    def moving(missed: np.ndarray) -> tuple[list[Jet], np.ndarray]:
+        """The motion that misses each equation by so much, and the inverse of its Jacobian."""
+        solved = values
+        for _ in range(4):
+            inverse = inverse_of(jacobian_of(list(solved), still.numbers, still.equations))
+            less = np.einsum("nij,j->in", inverse, missed)
+            solved = solved - newton_step(solved, inverse, still) + less
+        inverse = inverse_of(jacobian_of(list(solved), still.numbers, still.equations))
+        return unknown_jets_of(list(solved), inverse, known), inverse
+
+    size = design.mechanism.size
+    jets, inverse = moving(np.zeros(size))
+    found = motion_of_a_miss(inverse.transpose(1, 2, 0), jets, inverse, known)
+    assert found.shape == (3, size, size, 3)
+    # A central difference leaves step^2 of the third derivative, and rounding over the step.
+    step = 1e-5
+    for row in range(size):
+        ahead, behind = (moving(sign * step * np.eye(size)[row])[0] for sign in (1.0, -1.0))
+        for d in range(3):
+            changes = [part_of(a, d) - part_of(b, d) for a, b in zip(ahead, behind, strict=True)]
+            exact = np.array([np.broadcast_to(change, 3) for change in changes]) / (2.0 * step)
+            largest = np.abs(found[d]).max()
+            np.testing.assert_allclose(found[d, :, row], exact, rtol=0.0, atol=1e-6 * largest)
