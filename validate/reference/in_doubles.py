@@ -116,8 +116,7 @@ def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: K
         inverse: of C', (N, size, size).
     """
     turned, bent = (
-        jacobian_of(jets, known.numbers, known.equations, partial(part_of, order=order))
-        for order in (1, 2)
+        jacobian_of(jets, known.numbers, known.equations, partial(part_of, order=order)) for order in (1, 2)
     )
     place = first.transpose(2, 0, 1)
     rate = -inverse @ (turned @ place)
