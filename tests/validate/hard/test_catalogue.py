@@ -16,12 +16,13 @@ from validate.adjudication.reference_solution import inputs_at, reference_instan
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
+from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import paper_car
-from validate.hard.case import FAILS, IF_ANY, RIGHT, Answer, Case, Expected, Trial
-from validate.hard.classify import judged_answer
+from validate.hard.case import FAILS, IF_ANY, RIGHT, Case, Expected, case
 from validate.hard.report import case_parts, results_data, summary_parts
 from validate.hard.run import as_expected, examine
-from validate.hard.trial import scene_case, try_scene
+from validate.hard.subjects import Subject
+from validate.hard.trial import Trial, try_scene
 from validate.output.document import json_text
 from validate.output.table import text_of
 
@@ -181,12 +182,18 @@ def test_a_crash_or_a_warning_is_a_wrong_answer_and_a_refusal_is_none(
     assert (answer.outcome, answer.reason) == (outcome, reason)
 
 
+def made(subject: Subject, value: float) -> dict[str, Any]:
+    """It is made."""
+    return {}
+
+
 def made_case(answers: dict[float, Answer], expected: Expected = RIGHT, name: str = "absolute") -> Case:
     """A case with given answers."""
-    return Case(
-        "made", "0. Made", "it is made", "a number", tuple(answers), {name: expected}, "none",
-        lambda value: Trial(value, (answers[value],), {"size": math.inf}),
-    )  # fmt: skip
+
+    def judged(_: Subject, value: float, trial: Trial) -> Trial:
+        return Trial(value, (answers[value],), {"size": math.inf})
+
+    return case(made, "a number", tuple(answers), {name: expected}, group="0. Made", judged=judged)
 
 
 def test_a_wrong_number_without_warning_is_never_expected_but_of_the_printed_formulas() -> None:
@@ -229,17 +236,17 @@ def test_the_verdict_says_how_many_answers_were_not_judged_and_in_which_cases() 
 
 
 def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -> None:
-    case = scene_case(
-        name="beyond",
-        group="0. Made",
-        why="it is made",
-        parameter="rack travel, mm",
-        values=(0.0, 131.0),
-        scene=lambda value: paper_car(rack=value),
-        expected={"pointcoord": FAILS, "absolute": RIGHT},
-        behaviour="none",
+    result = examine(
+        case(
+            lambda _, value: paper_car(rack=value),
+            "rack travel, mm",
+            (0.0, 131.0),
+            {"pointcoord": FAILS, "absolute": RIGHT},
+            name="beyond",
+            why="It is made.",
+            group="0. Made",
+        )
     )
-    result = examine(case)
     mended = replace(
         result.trials[1], answers=(Answer("pointcoord", "right", share=math.nan), result.trials[1].answers[1])
     )

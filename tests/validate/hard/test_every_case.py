@@ -16,10 +16,11 @@ import pytest
 from pointcoord import Scene
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.hard.case import Answer, Case
+from validate.hard.answer import Answer
+from validate.hard.case import Case
 from validate.hard.catalogue import CASES
-from validate.hard.family import SUBJECTS
 from validate.hard.run import as_expected, examine
+from validate.hard.subjects import SUBJECTS
 
 NAMES = [case.name for case in CASES]
 

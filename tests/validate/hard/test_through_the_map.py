@@ -13,24 +13,23 @@ from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
 from validate.hard.cars import paper_car
-from validate.hard.case import REFUSED, RIGHT, Case, decades
+from validate.hard.case import REFUSED, RIGHT, Case, case, decades
 from validate.hard.report import summary_parts
-from validate.hard.run import MAP, OURS, as_expected, examine
-from validate.hard.trial import scene_case
+from validate.hard.run import MAP, as_expected, examine
+from validate.hard.trial import OURS
 from validate.output.table import text_of
 
 
 def steered(far: Callable[[float], float], expected: str = OURS) -> Case:
     """A case that holds the rack somewhere while the arm turns."""
-    return scene_case(
+    return case(
+        lambda _, value: paper_car([1.5, 0.1], far(value), stop=0.2, samples=2),
+        "rack travel, mm",
+        decades(-6),
+        {expected: RIGHT},
         name="steered",
+        why="It is made.",
         group="0. Made",
-        why="it is made",
-        parameter="rack travel, mm",
-        values=decades(-6),
-        scene=lambda value: paper_car([1.5, 0.1], far(value), stop=0.2, samples=2),
-        expected={expected: RIGHT},
-        behaviour="right",
     )
 
 

@@ -6,14 +6,13 @@ the condition number with them. A value held inside an end has a pose, one beyon
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 from validate.hard.cars import SQUARE
-from validate.hard.case import REFUSED, Case, Expected, decades
-from validate.hard.family import NAMED, OTHERS, Content, Subject, hyphens
+from validate.hard.case import REFUSED, Case, Expected, Values, case, decades
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.trial import scene_case
+from validate.hard.subjects import NAMED, OTHERS, Content, Subject, hyphens
 
 # Down to where each model has to be right; nearer it may refuse with a reason.
 # pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which is at 1e-12 of the way
@@ -41,8 +40,8 @@ LAWS = {
 }
 
 
-def near_content(
-    subject: Subject, driven: str, ahead: bool, arm_angle: float | None, law: str, value: float
+def near_end(
+    driven: str, ahead: bool, arm_angle: float | None, law: str, subject: Subject, value: float
 ) -> Content:
     """The scene near an end of an input, or beyond it.
 
@@ -61,7 +60,7 @@ def near_content(
     return subject.absolute({**held, driven: way}, stop=1.0 if law == "moving" else None)
 
 
-def _cases(
+def _near(
     name: str,
     group: str,
     why: str,
@@ -69,47 +68,44 @@ def _cases(
     driven: str,
     ahead: bool,
     arm_angle: float | None = None,
-    values: tuple[float, ...] | None = None,
+    values: Values = (),
     newton: bool = False,
     laws: Sequence[str] = tuple(LAWS),
     suffix: str = "",
-) -> tuple[Case, ...]:
-    def case(law: str) -> Case:
-        beyond = law == "beyond"
-        expected = dict.fromkeys(NEAR_END, REFUSED) if beyond else NEAR_END
-        return scene_case(
-            name=f"{name}{f'-{law}' if len(laws) > 1 else ''}{suffix}",
-            group=group,
-            why=why + LAWS[law],
-            parameter="distance from the end, in parts of the input's range"
-            + (", beyond it" if beyond else ""),
+) -> Iterator[Case]:
+    for law in laws:
+        expected = dict.fromkeys(NEAR_END, REFUSED) if law == "beyond" else NEAR_END
+        yield case(
+            partial(near_end, driven, ahead, arm_angle, law),
+            f"distance from the end, in parts of the input's range{', beyond it' * (law == 'beyond')}",
             # A motion takes longest; with another car than the first few values must do.
-            values=values or (COARSE if law == "moving" and suffix else FULL),
-            scene=partial(near_content, NAMED[car], driven, ahead, arm_angle, law),
-            expected=expected | ({"pointcoord-newton": expected["pointcoord"]} if newton else {}),
+            values or (COARSE if law == "moving" and suffix else FULL),
+            expected | ({"pointcoord-newton": expected["pointcoord"]} if newton else {}),
+            NAMED[car],
+            name=f"{name}-{law}" if len(laws) > 1 else name,
+            suffix=suffix,
+            group=group,
+            why=f"{why}{LAWS[law]}.",
         )
 
-    return tuple(case(law) for law in laws)
 
-
-ARMS = (("paper", "", None), ("other", "-turned", None), ("short-arm", "-wishbone", SPARSE))
-RACKS = (
-    ("paper", "", SQUARE, "", None),
-    ("other", "-turned", SQUARE, "", None),
-    ("wishbone", "-wishbone", SQUARE, "", SPARSE),
-    ("paper", "", 1.25, "-arm-high", None),
-    ("paper", "", 1.9, "-arm-low", None),
-)
-UPPER_GROUP = "The knuckle's upper end out of reach"
-CASES: tuple[Case, ...] = (
+ARM, RACK = "The arm at its dead points", "Tie rod and steering arm in line"
+UPPER, EVERY = "The knuckle's upper end out of reach", "Inputs at their ends, of every mechanism"
+RUNS_OUT = "The ball joint is as near to the strut's top as it lies beside the axis: it has no more way"
+LOCKS = "Upper arm and kingpin of a double wishbone lie in one plane with the upper pivots"
+CASES = (
     *(
         case
-        for car, suffix, values in ARMS
+        for car, suffix, values in (
+            ("paper", "", ()),
+            ("other", "-turned", ()),
+            ("short-arm", "-wishbone", SPARSE),
+        )
         for ahead in WAYS
-        for case in _cases(
+        for case in _near(
             f"arm-{HIGHEST[ahead]}",
-            "The arm at its dead points",
-            f"the ball joint is {HIGHEST[ahead]} on its circle: its height says no more",
+            ARM,
+            f"The ball joint is {HIGHEST[ahead]} on its circle: its height says no more",
             car,
             "arm_angle",
             ahead,
@@ -119,12 +115,18 @@ CASES: tuple[Case, ...] = (
     ),
     *(
         case
-        for car, suffix, angle, where, values in RACKS
+        for car, suffix, angle, where, values in (
+            ("paper", "", SQUARE, "", ()),
+            ("other", "-turned", SQUARE, "", ()),
+            ("wishbone", "-wishbone", SQUARE, "", SPARSE),
+            ("paper", "", 1.25, "-arm-high", ()),
+            ("paper", "", 1.9, "-arm-low", ()),
+        )
         for ahead in WAYS
-        for case in _cases(
+        for case in _near(
             f"rack-{LEAST[ahead]}{where}",
-            "Tie rod and steering arm in line",
-            f"the rack is at its {LEAST[ahead]} travel at {angle:.4g} rad: "
+            RACK,
+            f"The rack is at its {LEAST[ahead]} travel at {angle:.4g} rad: "
             "tie rod and steering arm lie in line",
             car,
             "rack",
@@ -135,33 +137,15 @@ CASES: tuple[Case, ...] = (
             suffix=suffix,
         )
     ),
-    *_cases(
-        "slide-runs-out",
-        UPPER_GROUP,
-        "the ball joint is as near to the strut's top as it lies beside the axis: it has no more way",
-        "wide",
-        "arm_angle",
-        False,
-        values=FULL,
-        newton=True,
-    ),
-    *_cases(
-        "upper-arm-locks",
-        UPPER_GROUP,
-        "upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
-        "wishbone",
-        "arm_angle",
-        True,
-        values=COARSE[::2],
-        newton=True,
-    ),
+    *_near("slide-runs-out", UPPER, RUNS_OUT, "wide", "arm_angle", False, values=FULL, newton=True),
+    *_near("upper-arm-locks", UPPER, LOCKS, "wishbone", "arm_angle", True, values=COARSE[::2], newton=True),
     *(
         case
         for subject in OTHERS
         for driven, ahead in ends_of(subject)
-        for case in _cases(
+        for case in _near(
             f"{hyphens(driven)}-{LEAST[ahead]}",
-            "Inputs at their ends, of every mechanism",
+            EVERY,
             f"{driven} is at its {LEAST[ahead]} and goes no further, the other inputs as drawn",
             subject.name,
             driven,

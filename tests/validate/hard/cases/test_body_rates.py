@@ -8,9 +8,10 @@ import pytest
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import paper_car
-from validate.hard.case import Case, Trial
+from validate.hard.case import Case
 from validate.hard.cases.body_rates import CASES, PLANE_ANGLE
 from validate.hard.run import as_expected, examine
+from validate.hard.trial import Trial
 
 BY_NAME = {case.name: case for case in CASES}
 OURS = ("pointcoord", "pointcoord-newton", "absolute", "relative")

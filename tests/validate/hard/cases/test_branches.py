@@ -11,10 +11,9 @@ from pointcoord import Scene
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import paper_car
-from validate.hard.case import unexpected
 from validate.hard.cases.branches import CASES, DEGREE, MEETINGS, STARTS, flat_car
-from validate.hard.family import NAMED
 from validate.hard.last_values import reachable
+from validate.hard.subjects import NAMED
 from validate.hard.trial import try_scene
 
 BY_NAME = {case.name: case for case in CASES}
@@ -38,7 +37,7 @@ def test_branches_meet_where_the_reference_loses_its_pose(car: str) -> None:
 @pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("share", [1.0, 1e-6, 1e-11])
 def test_the_flat_drawing_stands_at_its_height_and_on_its_side(share: float, mirrored: bool) -> None:
-    p, whole = flat_car(share, mirrored), flat_car(1.0, False)
+    p, whole = flat_car(-share if mirrored else share), flat_car(1.0)
     a, b = (p[name] - p["lower_ball_joint"] for name in ("strut_lower", "tie_rod_inner"))
     normal = np.cross(a, b) / np.linalg.norm(np.cross(a, b))
     height, drawn = (float(normal @ (q["tie_rod_outer"] - q["lower_ball_joint"])) for q in (p, whole))
@@ -88,7 +87,7 @@ def test_a_jump_to_the_mirror_image_is_wrong(monkeypatch: pytest.MonkeyPatch) ->
 def test_of_several_assemblies_that_of_the_drawing_is_answered(where: str) -> None:
     case = BY_NAME[f"assemblies-counted-{where}"]
     trial = case.examine(case.values[0])
-    assert not unexpected(case, trial)
+    assert not case.unexpected(trial)
     # Both sides of the tie rod at least.
     assert 2.0 <= float(trial.facts["assemblies found, proven"]) <= DEGREE
     assert trial.facts["starts"] == STARTS

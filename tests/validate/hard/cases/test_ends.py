@@ -10,10 +10,10 @@ import pytest
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import CARS, SQUARE, scene_content
-from validate.hard.cases.ends import CASES, WAYS, near_content
-from validate.hard.family import NAMED, OTHERS, PAPER
+from validate.hard.cases.ends import CASES, WAYS, near_end
 from validate.hard.last_values import ends_of, last_value, reachable
 from validate.hard.run import as_expected, examine
+from validate.hard.subjects import NAMED, OTHERS, PAPER
 from validate.reference import InfeasibleError, Instant
 
 BY_NAME = {case.name: case for case in CASES}
@@ -31,7 +31,7 @@ ENDS: list[End] = [
 def pose(end: End, value: float, law: str = "held") -> Instant:
     """The reference near an end, or beyond it."""
     name, driven, ahead, arm_angle = end
-    scene = Scene.from_mapping(near_content(NAMED[name], driven, ahead, arm_angle, law, value))
+    scene = Scene.from_mapping(near_end(driven, ahead, arm_angle, law, NAMED[name], value))
     return reference_instant(scene, inputs_at(scene, 0.0))
 
 

@@ -12,15 +12,17 @@ from pointcoord import Scene
 from validate.cars.paper_car import PAPER
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.hard.cases.far import AWAY, far, heaved_back, moved_car, scaled_car
-from validate.hard.family import PAPER as STRUT
-from validate.hard.family import SOLVERS
+from validate.hard.case import SOLVERS
+from validate.hard.cases.far import AWAY, CASES, far_and_heaved_back, moved_car, scaled_car
+from validate.hard.subjects import PAPER as STRUT
+
+(FAR,) = (case for case in CASES if case.name == "far-from-the-origin")
 
 
 @pytest.mark.parametrize("distance", [1.0, 1e9, 1e12])
 def test_a_shift_of_the_car_is_exact_and_so_is_the_heave_that_brings_it_back(distance: float) -> None:
     points = moved_car(distance)["mechanism"]["points"]
-    content = heaved_back(STRUT, 1.0 / distance)
+    content = far_and_heaved_back(STRUT, 1.0 / distance)
     back = Fraction(content["inputs"]["heave"]["polynomial"][0])
     for name, place in PAPER.items():
         for axis in range(3):
@@ -31,7 +33,7 @@ def test_a_shift_of_the_car_is_exact_and_so_is_the_heave_that_brings_it_back(dis
 
 @pytest.mark.parametrize("value", [1e-3, 1e-6, 1e-9])
 def test_no_rate_knows_how_far_the_origin_is(value: float) -> None:
-    ratios = {n: float(fact) for n, fact in far(value).facts.items() if n.endswith("at home")}
+    ratios = {n: float(fact) for n, fact in FAR.examine(value).facts.items() if n.endswith("at home")}
     assert len(ratios) == 5 * len(SOLVERS)
     for name, ratio in ratios.items():
         # Errors of a few roundings differ by a few.
@@ -59,11 +61,11 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
             accuracy = solution.accuracy.with_claims({quantity: wider})
             return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
 
-    far(value)  # the car at home is solved before the model is replaced
+    FAR.examine(value)  # the car at home is solved before the model is replaced
     monkeypatch.setattr(
         "validate.hard.trial.formulation", lambda n: Losing() if n.endswith("newton") else formulation(n)
     )
-    answers = {answer.formulation: answer for answer in far(value).answers}
+    answers = {answer.formulation: answer for answer in FAR.examine(value).answers}
     assert answers["pointcoord-newton"].outcome == "wrong"
     assert "bounds of the car at home" in answers["pointcoord-newton"].reason
     assert answers["pointcoord"].outcome == "right"
@@ -71,7 +73,7 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
 
 @pytest.mark.parametrize("scale", [2.0**-19, 2.0**11])
 def test_a_car_scaled_by_a_power_of_two_moves_by_scaled_bits(scale: float) -> None:
-    content, whole = scaled_car(scale), scaled_car(1.0)
+    content, whole = scaled_car(STRUT, scale), scaled_car(STRUT, 1.0)
     for name, drawn in PAPER.items():
         assert content["mechanism"]["points"][name] == [scale * x for x in drawn]
     assert content["inputs"]["arm_angle"] == whole["inputs"]["arm_angle"]

@@ -14,7 +14,7 @@ from validate.hard.cars import BESIDE, CARS, drawn_angle, paper_car
 from validate.hard.cases import points as cases
 from validate.hard.cases.links import held_apart
 from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, motion_from, put
-from validate.hard.family import PAPER as STRUT
+from validate.hard.subjects import PAPER as STRUT
 from validate.reference import AmbiguousAssemblyError
 
 EPS = float(np.finfo(float).eps)
@@ -58,20 +58,20 @@ def test_a_parameter_leads_where_it_says(value: float) -> None:
         near = put(moved, from_=onto)(p, value)
         assert abs(length(near, moved, onto) - value * length(p, moved, onto)) < ROUNDING
         assert all(np.array_equal(near[name], p[name]) for name in p if name != moved)
-    rod, ends = cases.short_tie_rod(p, value), ("tie_rod_outer", "tie_rod_inner")
+    rod, ends = cases.tie_rod_short(p, value), ("tie_rod_outer", "tie_rod_inner")
     assert abs(length(rod, *ends) - value * length(p, *ends)) < ROUNDING
     thin, kingpin = cases.thin_knuckle(LOWER)(p, value), (OUTER, LOWER, "lower_ball_joint")
     assert abs(from_line(thin, *kingpin) - value * from_line(p, *kingpin)) < 2 * ROUNDING
-    near = cases.ball_joint_near_axis(beside, value)
+    near = cases.ball_joint_near_the_axis(beside, value)
     # An axis past a point at a distance across the line to the top passes it a little nearer.
     off = from_line(near, "lower_ball_joint", "strut_lower", "strut_top")
     assert off == pytest.approx(OFF * value, rel=3e-3, abs=1e-12)
-    through = cases.axis_near_tie_rod_end(beside, value)
+    through = cases.axis_through_the_tie_rod_end(beside, value)
     off = from_line(through, "tie_rod_outer", "strut_lower", "strut_top")
     assert off == pytest.approx(OFF * value, rel=0.1, abs=1e-12)
     # 100 mm across, over the height of strut_lower above the line of the others, some 50 mm.
-    assert sine_with_plane(cases.axis_in_the_triangle(beside, value)) <= 3.0 * value + 1e-15
-    assert 1.0 - sine_with_plane(cases.axis_across_the_triangle(beside, value)) <= value + 1e-15
+    assert sine_with_plane(cases.axis_in_the_knuckle_plane(beside, value)) <= 3.0 * value + 1e-15
+    assert 1.0 - sine_with_plane(cases.axis_across_the_knuckle_plane(beside, value)) <= value + 1e-15
     q = cases.slide_drawn_run_out(beside, value)
     axis, strut = q["strut_top"] - q["strut_lower"], q["strut_top"] - q["lower_ball_joint"]
     cosine = float(axis @ strut) / float(np.linalg.norm(axis) * np.linalg.norm(strut))
@@ -90,11 +90,11 @@ def test_a_long_tie_rod_is_as_long_as_the_value_says(value: float) -> None:
 @pytest.mark.parametrize(
     "draw",
     [
-        cases.ball_joint_near_axis,
-        cases.axis_in_the_triangle,
-        cases.axis_across_the_triangle,
-        cases.axis_near_tie_rod_end,
-        cases.axis_near_ball_joint,
+        cases.ball_joint_near_the_axis,
+        cases.axis_in_the_knuckle_plane,
+        cases.axis_across_the_knuckle_plane,
+        cases.axis_through_the_tie_rod_end,
+        cases.strut_lower_near_the_ball_joint,
         cases.thin_knuckle("strut_top"),
     ],
 )
