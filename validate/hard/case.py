@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from validate.hard.answer import Answer, Outcome
@@ -160,12 +161,17 @@ def case(
 
 def name_of(function: Callable[..., Any]) -> str:
     """What a case is called that a function makes."""
-    return hyphens(function.__name__)
+    return hyphens(_whole(function).__name__)
 
 
 def reason_of(function: Callable[..., Any]) -> str:
     """Why a case is hard that a function makes: the first paragraph of its text."""
-    return " ".join((function.__doc__ or "").partition("\n\n")[0].split())
+    return " ".join((_whole(function).__doc__ or "").partition("\n\n")[0].split())
+
+
+def _whole(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function of which this one is a part with some arguments given."""
+    return _whole(function.func) if isinstance(function, partial) else function
 
 
 def family(

@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.hard.cars import CARS, SQUARE, paper_car
+from validate.hard.cars import CARS, PAPER_CAR, SQUARE, scene_content
 from validate.hard.case import FAILS, RIGHT, SOLVERS, case, decades, family
 from validate.hard.subjects import SUBJECTS, Content, Subject, hyphens
 from validate.hard.trial import Trial
@@ -49,12 +49,12 @@ def largest_rates(_: Subject, value: float, trial: Trial) -> Trial:
 
 def arm_all_but_held(_: Subject, value: float) -> Content:
     """Points 5 and 7 stand almost still while the rack moves: the printed omega is 0/0."""
-    return paper_car([SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
+    return scene_content(PAPER_CAR, [SQUARE, value], [0.0, RACK_RATE, 25.0], stop=0.4)
 
 
 def omega_in_the_knuckle_plane(_: Subject, value: float) -> Content:
     """Omega lies in the plane of the knuckle's points: the divisor of the printed quotient is zero."""
-    return paper_car([PLANE_ANGLE + value, 1.0])
+    return scene_content(PAPER_CAR, [PLANE_ANGLE + value, 1.0])
 
 
 # Of the two suspensions that the catalogue began with, the one at rest leans every way, or is far off too.

@@ -23,8 +23,8 @@ import numpy as np
 
 from validate.adjudication.reference_solution import design_of, inputs_at
 from validate.cars.scene_content import Law, content_of
-from validate.hard.cars import SQUARE, drawn_angle, paper_car
-from validate.hard.case import REFUSED, RIGHT, Case, Expected, case, coarse, decades, expected_of, reason_of
+from validate.hard.cars import SQUARE, drawn_angle, scene_content
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, case, coarse, decades, expected_of
 from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
@@ -73,8 +73,12 @@ def flat_drawing(side: float, subject: Subject, share: float) -> Content:
     Of a wishbone the arm does: its upper ball joint is drawn near the plane of its pivots and the lower one.
     """
     if subject is PAPER:
-        points = {name: place.tolist() for name, place in flat_car(side * share).items()}
-        return paper_car(PAPER.drawn["arm_angle"], (0.0, 0.0, 20.0), points=points, stop=1.0, samples=3)
+        car, start, rack = (
+            subject.car.drawn_as(flat_car(side * share)),
+            subject.drawn["arm_angle"],
+            (0.0, 0.0, 20.0),
+        )
+        return scene_content(car, start, rack, stop=1.0, samples=3)
     car = subject.car.drawn_as(upper_arm_flat(assembled(subject.name), side * share))
     inputs: dict[str, Law] = {"arm_angle": (drawn_angle(car), 0.0, -0.02), "rack": 0.0}
     return content_of(car, inputs, stop=1.0, samples=3)
@@ -85,12 +89,10 @@ def crooked_drawing(_: Subject, share: float) -> Content:
 
     The strut's inner points lie off its line, by up to 100 mm to opposite sides.
     """
-    aside = 100.0 * share
-    points = {name: place.tolist() for name, place in assembled().items()}
-    points["strut_lower"][0] += aside
-    points["strut_rod_end"][0] -= aside
-    points["strut_rod_end"][1] += aside
-    return paper_car((PAPER.drawn["arm_angle"], 0.1), (0.0, 10.0), points=points, stop=1.0)
+    aside, points = 100.0 * share, assembled()
+    off = {"strut_lower": (aside, 0.0, 0.0), "strut_rod_end": (-aside, aside, 0.0)}
+    car = PAPER.car.drawn_as(points | {name: points[name] + way for name, way in off.items()})
+    return scene_content(car, (PAPER.drawn["arm_angle"], 0.1), (0.0, 10.0), stop=1.0)
 
 
 def far_start(driven: str, ahead: bool, subject: Subject, share: float) -> Content:
@@ -110,51 +112,6 @@ def whole_range(driven: str, subject: Subject, share: float) -> Content:
 
 
 _branch = partial(case, group="Branches")
-
-
-def _far_starts() -> Iterator[Case]:
-    starts = [
-        (subject, where, driven, ahead, values)
-        for subject, values in ((PAPER, FEW), (WISHBONE, FEW[::3]))
-        for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
-    ]
-    starts += [
-        (subject, hyphens(driven), driven, ahead, (1e-4,))
-        for subject in OTHERS
-        for driven, ahead in ends_of(subject)
-        if ahead
-    ]
-    parameter = "distance of the first instant from the end, in parts of half the range"
-    for subject, where, driven, ahead, values in starts:
-        scene = partial(far_start, driven, ahead)
-        yield _branch(
-            scene, parameter, values, CLEAR, subject, name=f"far-start-{where}", why=reason_of(far_start)
-        )
-
-
-def _whole_ranges() -> Iterator[Case]:
-    wholes = [
-        (subject, where, driven, values, also)
-        for subject, values, also in ((PAPER, FEW[1:], ()), (WISHBONE, FEW[2:], FEW[2:3]))
-        for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
-    ]
-    wholes += [
-        (subject, hyphens(driven), driven, (1e-4,), ())
-        for subject in OTHERS
-        for driven in subject.kinds
-        if {(driven, False), (driven, True)} <= set(ends_of(subject))
-    ]
-    for subject, where, driven, values, also in wholes:
-        yield _branch(
-            partial(whole_range, driven),
-            "distance of both instants from their ends, in parts of half the range",
-            values,
-            CLEAR,
-            subject,
-            name=f"whole-range-{where}",
-            why=reason_of(whole_range),
-            also_answered=also,
-        )
 
 
 # Poses near a singular one, or at the drawing, of which the assemblies are counted.
@@ -233,6 +190,8 @@ def counted(_: Subject, share: float, trial: Trial) -> Trial:
 NEAR_MEETING = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
 BEYOND, SHORT = (f"rack travel {where} the meeting, in parts of 10 mm" for where in ("beyond", "short of"))
 PASSING, MEETING = partial(through_the_meeting, 1.0), partial(through_the_meeting, -1.0)
+FAR_START = "distance of the first instant from the end, in parts of half the range"
+WHOLE = "distance of both instants from their ends, in parts of half the range"
 SIDES = (("", 1.0), ("-mirrored", -1.0))
 MIRROR = "The drawing is close to its mirror image in the plane of {}: rounding may choose."
 
@@ -321,8 +280,52 @@ CASES = (
         STRAIGHTENED,
         also_answered=(1.0,),
     ),
-    *_far_starts(),
-    *_whole_ranges(),
+    *(
+        _branch(
+            partial(far_start, driven, ahead), FAR_START, values, CLEAR, subject, name=f"far-start-{where}"
+        )
+        for subject, values in ((PAPER, FEW), (WISHBONE, FEW[::3]))
+        for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
+    ),
+    *(
+        _branch(
+            partial(far_start, driven, True),
+            FAR_START,
+            (1e-4,),
+            CLEAR,
+            subject,
+            name=f"far-start-{hyphens(driven)}",
+        )
+        for subject in OTHERS
+        for driven, ahead in ends_of(subject)
+        if ahead
+    ),
+    *(
+        _branch(
+            partial(whole_range, driven),
+            WHOLE,
+            values,
+            CLEAR,
+            subject,
+            name=f"whole-range-{where}",
+            also_answered=also,
+        )
+        for subject, values, also in ((PAPER, FEW[1:], ()), (WISHBONE, FEW[2:], FEW[2:3]))
+        for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
+    ),
+    *(
+        _branch(
+            partial(whole_range, driven),
+            WHOLE,
+            (1e-4,),
+            CLEAR,
+            subject,
+            name=f"whole-range-{hyphens(driven)}",
+        )
+        for subject in OTHERS
+        for driven in subject.kinds
+        if {(driven, False), (driven, True)} <= set(ends_of(subject))
+    ),
     *_flat_drawings(
         WISHBONE,
         "the upper arm",

@@ -23,7 +23,6 @@ from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import SQUARE
 from validate.hard.case import RIGHT, Expected, decades, family
-from validate.hard.cases.points import OUT_OF_PROPORTION
 from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, WISHBONE, Content, Subject
 from validate.hard.trial import Trial, Tried, solved
 
@@ -182,5 +181,4 @@ CASES = (
         name="sizes",
         why="By powers of ten, another mechanism.",
     ),
-    *OUT_OF_PROPORTION,
 )

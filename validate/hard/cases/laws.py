@@ -18,7 +18,7 @@ import numpy as np
 
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.input_rates import rates
-from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, SOLVERS, Case, Expected, decades, family, reason_of
+from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, SOLVERS, Case, Expected, decades, family
 from validate.hard.cases.ends import NEAR_END
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import HEAVING, SUBJECTS, Content, Subject, hyphens, moved_by
@@ -308,7 +308,6 @@ CASES = (
             tuple(1.0 / amplitude for amplitude in AMPLITUDES),
             subjects=HEAVING if driven == "heave" else [one for one in SUBJECTS if driven in one.kinds],
             name=f"cancelling-sine-{hyphens(driven)}",
-            why=reason_of(cancelling_sine),
         )
     ),
     *(case for power in POWERS for case in _cancelling_polynomials(power)),

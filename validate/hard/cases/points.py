@@ -451,3 +451,4 @@ BESIDE = tuple(
         suffix="",
     )
 )
+CASES = (*BESIDE, *NEAR, *OUT_OF_PROPORTION)

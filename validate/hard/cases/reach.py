@@ -28,9 +28,8 @@ from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
 from validate.hard.answer import Answer
 from validate.hard.case import Case, Values, case, decades, family
-from validate.hard.cases.ends import HIGHEST, LEAST, WAYS
-from validate.hard.last_values import LastValue, ends_of, last_value, reachable
-from validate.hard.subjects import HEAVING, NAMED, OTHERS, PAPER, Content, Subject, hyphens
+from validate.hard.last_values import LastValue, last_value, reachable
+from validate.hard.subjects import HEAVING, NAMED, PAPER, Content, Subject
 from validate.hard.trial import Trial
 from validate.reference import NoReferenceError
 
@@ -242,7 +241,8 @@ _beyond = partial(case, group="Reachable range", beyond=True, proven=False)
 WHOLE = {"angle": "the way from the end to the upright arm", "turn": "its range"}
 
 
-def _case(drive: Drive, name: str, where: str, values: Values) -> Case:
+def driven_beyond(drive: Drive, name: str, where: str, values: Values) -> Case:
+    """The case of an input driven beyond its end, or there at the first instant; `where` says what locks."""
     subject = drive.subject
     whole = WHOLE.get(subject.kinds[drive.driven], f"the {drive.driven}'s range")
     more = "" if drive.moving else ", and the first instant lies beyond"
@@ -276,29 +276,19 @@ def both(subject: Subject, overshoot: float) -> Content:
     return subject.absolute(goal(overshoot, subject))
 
 
+def arm_of(name: str) -> tuple[Callable[[float], float], Callable[[float], float]]:
+    """What a model's way is straight in, as a function of the arm angle, and back."""
+    return (float, float) if name in BY_ANGLE else (math.cos, math.acos)
+
+
 def moved_on(
     name: str, here: Inputs, end: Inputs, share: float, subject: Subject = PAPER
 ) -> dict[str, float | Fraction]:
     """The inputs a share of the whole way further on, on the way that a model takes to the end."""
-    start = subject.drawn
+    start, (to, back) = subject.drawn, arm_of(name)
     rack = Fraction(here["rack"]) + Fraction(share) * (Fraction(end["rack"]) - Fraction(start["rack"]))
-    if name in BY_ANGLE:
-        angle = here["arm_angle"] + share * (end["arm_angle"] - start["arm_angle"])
-    else:
-        across = math.cos(end["arm_angle"]) - math.cos(start["arm_angle"])
-        angle = math.acos(math.cos(here["arm_angle"]) + share * across)
-    return {"arm_angle": angle, "rack": rack}
-
-
-def share_of_way(name: str, here: Inputs, end: Inputs, subject: Subject = PAPER) -> tuple[float, float]:
-    """How far along the way the arm is, and how far the rack; equal if the place lies on it."""
-    start = subject.drawn
-
-    def measure(inputs: Inputs) -> float:
-        return inputs["arm_angle"] if name in BY_ANGLE else math.cos(inputs["arm_angle"])
-
-    arm = (measure(here) - measure(start)) / (measure(end) - measure(start))
-    return arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
+    arm = to(here["arm_angle"]) + share * (to(end["arm_angle"]) - to(start["arm_angle"]))
+    return {"arm_angle": back(arm), "rack": rack}
 
 
 def blocked_held(refusal: FormulationError, end: Inputs, subject: Subject = PAPER) -> Answer:
@@ -306,7 +296,10 @@ def blocked_held(refusal: FormulationError, end: Inputs, subject: Subject = PAPE
     name, here = refusal.formulation, getattr(refusal.reason, "reached", {})
     if set(here) < {"arm_angle", "rack"}:
         return Answer(name, "wrong", _does_not_say(refusal))
-    arm, rack = share_of_way(name, here, end, subject)
+    # How far along the way the arm is, and how far the rack: equal if the place lies on it.
+    start, (to, _) = subject.drawn, arm_of(name)
+    arm, end_of_arm = (to(inputs["arm_angle"]) - to(start["arm_angle"]) for inputs in (here, end))
+    arm, rack = arm / end_of_arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
     faults = []
     if abs(arm - rack) > SHARE:
         faults.append(
@@ -333,68 +326,7 @@ def heave_has_no_end(subject: Subject, value: float) -> Content:
     return subject.content(heave=(0.0, 1.0 / value), stop=1.0)
 
 
-# Every refusal is a whole motion towards a fold, so few values must do.
-EIGHT, FOUR, ENDS_ONLY = (*decades()[::2], 1e-11), decades()[::4], decades()[::12]
-# What the input is called, its ends, what lies in line there, and in words.
-OF_INPUT = {
-    "arm_angle": ("arm", HIGHEST, ARM, "The ball joint is {} on its circle"),
-    "rack": ("rack", LEAST, TIE_ROD, "Tie rod and steering arm lie in line"),
-}
-TURNED = ", in a car mirrored, turned and 4e6 mm from the origin"
-# The input, the car and what its name adds, whether moving, values, at which ends.
-ENDS = (
-    ("arm_angle", "paper", "", True, FOUR, WAYS),
-    ("rack", "paper", "", True, FOUR, WAYS),
-    ("arm_angle", "turned", "-turned", True, ENDS_ONLY, WAYS),
-    ("rack", "turned", "-turned", True, ENDS_ONLY, WAYS),
-    ("arm_angle", "short-arm", "-wishbone", True, ENDS_ONLY, WAYS),
-    ("rack", "wishbone", "-wishbone", True, ENDS_ONLY, WAYS),
-    ("rack", "wishbone-turned", "-wishbone-turned", True, (1e-6,), (True,)),
-    ("arm_angle", "paper", "", False, EIGHT, WAYS),
-    ("rack", "paper", "", False, EIGHT, WAYS),
-)
-# Name, where, of which car, at which end of the arm, what lies in line; values of a motion, and at a start.
-OF_ARM = (
-    ("slide-runs-out", "The strut's slide has no more way", "wide", False, SLIDE, FOUR, EIGHT),
-    (
-        "upper-arm-locks",
-        "Upper arm and kingpin come to lie in one plane with the upper pivots",
-        *("wishbone", True, UPPER_ARM, ENDS_ONLY, FOUR),
-    ),
-    (
-        "tie-rod-locks-the-arm",
-        "The arm turns until tie rod and steering arm lie in line",
-        *("wishbone", False, TIE_ROD, ENDS_ONLY, FOUR),
-    ),
-)
 CASES = (
-    *(
-        _case(
-            Drive(NAMED[car], driven, ahead, lock, moving),
-            f"{label}-{of[ahead]}{suffix}",
-            where.format(of[ahead]) + (TURNED if suffix.endswith("-turned") else ""),
-            values,
-        )
-        for driven, car, suffix, moving, values, ways in ENDS
-        for label, of, lock, where in (OF_INPUT[driven],)
-        for ahead in ways
-    ),
-    *(
-        _case(Drive(NAMED[car], "arm_angle", ahead, lock, moving), name, where, values)
-        for name, where, car, ahead, lock, *each in OF_ARM
-        for moving, values in zip((True, False), each, strict=True)
-    ),
-    *(
-        _case(
-            Drive(subject, driven, ahead, ANY, moving),
-            f"{hyphens(driven)}-{LEAST[ahead]}{subject.suffix}",
-            f"{driven} is at its {LEAST[ahead]}, the other inputs as drawn",
-            (1e-3,),
-        )
-        for subject in OTHERS
-        for driven, ahead in ends_of(subject)
-        for moving in (True, False)
-    ),
     *(
         _beyond(
             both,
@@ -405,7 +337,7 @@ CASES = (
             behaviour="refused, with the end of the way to 1e-9 of the way: a pose before it, none beyond",
             judged=blocked,
         )
-        for subject, values in ((PAPER, EIGHT), (NAMED["wishbone"], FOUR))
+        for subject, values in ((PAPER, (*decades()[::2], 1e-11)), (NAMED["wishbone"], decades()[::4]))
     ),
     *family(
         heave_has_no_end,

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from stand_in import stand_in
 
 from pointcoord import Scene
 from validate.cars.paper_car import PAPER
@@ -47,24 +48,19 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
     value = 1e-6
     lost = 4.0 * float(np.spacing(3.0 / value))  # of positions so far away, and of all made from them
 
-    class Losing:
-        name = "pointcoord-newton"
-
-        def solve(self, scene: Scene) -> Solution:
-            solution = formulation("pointcoord-newton").solve(scene)
-            arrays = dict(solution.numbers[quantity])
-            name = "knuckle" if "knuckle" in arrays else "tie_rod_outer"
-            arrays[name] = arrays[name] + lost
-            # It knows that digits are lost, and says so, so that its own bounds hold.
-            claims = solution.accuracy.claims[quantity]
-            wider = {n: claim + 1e3 * lost for n, claim in claims.items()}
-            accuracy = solution.accuracy.with_claims({quantity: wider})
-            return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
+    def losing(scene: Scene) -> Solution:
+        solution = formulation("pointcoord-newton").solve(scene)
+        arrays = dict(solution.numbers[quantity])
+        name = "knuckle" if "knuckle" in arrays else "tie_rod_outer"
+        arrays[name] = arrays[name] + lost
+        # It knows that digits are lost, and says so, so that its own bounds hold.
+        claims = solution.accuracy.claims[quantity]
+        wider = {n: claim + 1e3 * lost for n, claim in claims.items()}
+        accuracy = solution.accuracy.with_claims({quantity: wider})
+        return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
 
     FAR.examine(value)  # the car at home is solved before the model is replaced
-    monkeypatch.setattr(
-        "validate.hard.trial.formulation", lambda n: Losing() if n.endswith("newton") else formulation(n)
-    )
+    stand_in(monkeypatch, losing, "pointcoord-newton")
     answers = {answer.formulation: answer for answer in FAR.examine(value).answers}
     assert answers["pointcoord-newton"].outcome == "wrong"
     assert "bounds of the car at home" in answers["pointcoord-newton"].reason

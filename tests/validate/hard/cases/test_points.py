@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from validate.adjudication.reference_solution import inputs_at, reference_instan
 from validate.cars.car import as_tuples
 from validate.cars.paper_car import PAPER
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE, CARS, drawn_angle, paper_car
+from validate.hard.cars import BESIDE, CARS, PAPER_CAR, drawn_angle, scene_content
 from validate.hard.cases import points as cases
 from validate.hard.cases.links import held_apart
 from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, motion_from, put
@@ -113,7 +115,7 @@ def test_what_a_case_draws_closes(draw: cases.Draw, value: float) -> None:
 
 def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
     for rack in (-40.0, 0.0, 60.0):
-        scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
+        scene = Scene.from_mapping(scene_content(PAPER_CAR, 1.4, (rack, 30.0, 5.0), stop=0.1))
         inputs = inputs_at(scene, 0.0)
         expected = reference_instant(scene, inputs)
         assert reference_instant(scene, inputs, exact_sides=True).position == expected.position
@@ -135,4 +137,6 @@ def test_a_drawing_in_the_plane_of_its_tie_rod_is_ambiguous(lift: float) -> None
         "wheel_centre": (0.0, -80.0, 60.0),
     }
     with pytest.raises(AmbiguousAssemblyError, match="another assembly"):
-        reference_solution(Scene.from_mapping(paper_car(points=points)), exact_sides=lift == 0.0)
+        reference_solution(
+            Scene.from_mapping(scene_content(replace(PAPER_CAR, points=points))), exact_sides=lift == 0.0
+        )

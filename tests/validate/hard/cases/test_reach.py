@@ -12,7 +12,7 @@ import pytest
 from pointcoord import AssemblyError, Scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
+from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.cases.reach import (
     ARM,
     TIE_ROD,
@@ -107,7 +107,7 @@ def test_a_way_is_blocked_where_the_reference_loses_its_pose(
     change: Callable[[dict[str, float], dict[str, float]], dict[str, Any]], says: str
 ) -> None:
     end = goal(0.1)
-    scene = Scene.from_mapping(paper_car(end["arm_angle"], end["rack"]))
+    scene = Scene.from_mapping(scene_content(PAPER_CAR, end["arm_angle"], end["rack"]))
     with pytest.raises(FormulationError) as caught:
         formulation("absolute").solve(scene)
     refusal: Any = caught.value.reason
