@@ -24,7 +24,7 @@ import numpy as np
 from validate.adjudication.reference_solution import design_of, inputs_at
 from validate.cars.scene_content import Law, content_of
 from validate.hard.cars import SQUARE, drawn_angle, scene_content
-from validate.hard.case import REFUSED, RIGHT, Case, Expected, case, coarse, decades, expected_of
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, Values, case, coarse, decades, expected_of
 from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
@@ -112,6 +112,7 @@ def whole_range(driven: str, subject: Subject, share: float) -> Content:
 
 
 _branch = partial(case, group="Branches")
+_clear = partial(_branch, expected=CLEAR)
 
 
 # Poses near a singular one, or at the drawing, of which the assemblies are counted.
@@ -190,23 +191,38 @@ def counted(_: Subject, share: float, trial: Trial) -> Trial:
 NEAR_MEETING = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
 BEYOND, SHORT = (f"rack travel {where} the meeting, in parts of 10 mm" for where in ("beyond", "short of"))
 PASSING, MEETING = partial(through_the_meeting, 1.0), partial(through_the_meeting, -1.0)
-FAR_START = "distance of the first instant from the end, in parts of half the range"
+FAR = "distance of the first instant from the end, in parts of half the range"
 WHOLE = "distance of both instants from their ends, in parts of half the range"
+# Mechanism, what the name says of the input, the input, at which end, values.
+FAR_STARTS = (
+    (PAPER, "high", "arm_angle", False, FEW),
+    (PAPER, "rack", "rack", True, FEW),
+    (WISHBONE, "high", "arm_angle", False, FEW[::3]),
+    (WISHBONE, "rack", "rack", True, FEW[::3]),
+    *((one, hyphens(name), name, True, (1e-4,)) for one in OTHERS for name, up in ends_of(one) if up),
+)
+ALSO: Mapping[str, Values] = {"also_answered": FEW[2:3]}
+# Mechanism, what the name says of the input, the input, values, and where there is an answer as well.
+WHOLE_RANGES: tuple[tuple[Subject, str, str, Values, Mapping[str, Values]], ...] = (
+    (PAPER, "arm", "arm_angle", FEW[1:], {}),
+    (PAPER, "rack", "rack", FEW[1:], {}),
+    (WISHBONE, "arm", "arm_angle", FEW[2:], ALSO),
+    (WISHBONE, "rack", "rack", FEW[2:], ALSO),
+    *(
+        (one, hyphens(name), name, (1e-4,), {})
+        for one in OTHERS
+        for name in one.kinds
+        if {(name, False), (name, True)} <= set(ends_of(one))
+    ),
+)
 SIDES = (("", 1.0), ("-mirrored", -1.0))
 MIRROR = "The drawing is close to its mirror image in the plane of {}: rounding may choose."
 
 
 def _flat_drawings(subject: Subject, plane: str, parameter: str, values: tuple[float, ...]) -> Iterator[Case]:
     for label, side in SIDES:
-        yield _branch(
-            partial(flat_drawing, side),
-            parameter,
-            values,
-            CLEAR,
-            subject,
-            name=f"flat-drawing{label}",
-            why=MIRROR.format(plane),
-        )
+        scene, name = partial(flat_drawing, side), f"flat-drawing{label}"
+        yield _clear(scene, parameter, values, subject=subject, name=name, why=MIRROR.format(plane))
 
 
 # Turn of the drawing, rad, at which branches cross, or beyond which there is none.
@@ -281,50 +297,14 @@ CASES = (
         also_answered=(1.0,),
     ),
     *(
-        _branch(
-            partial(far_start, driven, ahead), FAR_START, values, CLEAR, subject, name=f"far-start-{where}"
-        )
-        for subject, values in ((PAPER, FEW), (WISHBONE, FEW[::3]))
-        for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
+        _clear(partial(far_start, driven, ahead), FAR, values, subject=subject, name=f"far-start-{where}")
+        for subject, where, driven, ahead, values in FAR_STARTS
     ),
     *(
-        _branch(
-            partial(far_start, driven, True),
-            FAR_START,
-            (1e-4,),
-            CLEAR,
-            subject,
-            name=f"far-start-{hyphens(driven)}",
+        _clear(
+            partial(whole_range, driven), WHOLE, values, subject=subject, name=f"whole-range-{where}", **more
         )
-        for subject in OTHERS
-        for driven, ahead in ends_of(subject)
-        if ahead
-    ),
-    *(
-        _branch(
-            partial(whole_range, driven),
-            WHOLE,
-            values,
-            CLEAR,
-            subject,
-            name=f"whole-range-{where}",
-            also_answered=also,
-        )
-        for subject, values, also in ((PAPER, FEW[1:], ()), (WISHBONE, FEW[2:], FEW[2:3]))
-        for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
-    ),
-    *(
-        _branch(
-            partial(whole_range, driven),
-            WHOLE,
-            (1e-4,),
-            CLEAR,
-            subject,
-            name=f"whole-range-{hyphens(driven)}",
-        )
-        for subject in OTHERS
-        for driven in subject.kinds
-        if {(driven, False), (driven, True)} <= set(ends_of(subject))
+        for subject, where, driven, values, more in WHOLE_RANGES
     ),
     *_flat_drawings(
         WISHBONE,

@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.cars.car import Car, unit
+from validate.cars.car import unit
 from validate.hard.cars import CARS, drawn_angle, drawn_at, scene_content
 from validate.hard.case import RIGHT, Case, Expected, Values, case, decades, name_of, reason_of
 from validate.hard.subjects import NAMED, Content, Subject
@@ -152,13 +152,6 @@ def slide_drawn_run_out(p: Points, value: float) -> Points:
     return {**p, LOWER: p[TOP] + 300.0 * axis, ROD_END: p[TOP] + 100.0 * axis}
 
 
-def motion_from(angle: float, car: Car, arm: Sequence[float], rack: Sequence[float]) -> Content:
-    """A motion of one second from an arm angle and no rack travel; rates in rad and mm over s, and half
-    accelerations.
-    """
-    return scene_content(car, (angle, *arm), (0.0, *rack), stop=1.0)
-
-
 class Row(NamedTuple):
     """A way to draw a car.
 
@@ -178,19 +171,20 @@ class Row(NamedTuple):
 
 
 def near(row: Row, subject: Subject, value: float) -> Content:
-    """By 0.1 rad and 20 mm in a second, with accelerations as large."""
+    """From no rack travel by 0.1 rad and 20 mm in a second, with accelerations as large."""
     there = subject.car.drawn_as(row.draw(assembled(subject.name), value))
     angle = subject.drawn["arm_angle"] if subject.name == "paper" else drawn_angle(there)
     share = value if row.shrinks else 1.0
-    return motion_from(angle, there, (0.05 * share,) * 2, (10.0 * share,) * 2)
+    arm, rack = 0.05 * share, 10.0 * share
+    return scene_content(there, (angle, arm, arm), (0.0, rack, rack), stop=1.0)
 
 
 def mixed(row: Row, subject: Subject, value: float) -> Content:
     """By 0.15 rad and 15 mm in a second."""
     there = subject.car.drawn_as(row.draw(assembled(subject.name), value))
     share = value if row.shrinks else 1.0
-    rates = (0.1 * share, 0.05 * share), (10.0 * share, 5.0 * share)
-    return motion_from(subject.drawn["arm_angle"], there, *rates)
+    arm = (subject.drawn["arm_angle"], 0.1 * share, 0.05 * share)
+    return scene_content(there, arm, (0.0, 10.0 * share, 5.0 * share), stop=1.0)
 
 
 def _table(

@@ -15,7 +15,7 @@ from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE, CARS, PAPER_CAR, drawn_angle, scene_content
 from validate.hard.cases import points as cases
 from validate.hard.cases.links import held_apart
-from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, motion_from, put
+from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, put
 from validate.hard.subjects import PAPER as STRUT
 from validate.reference import AmbiguousAssemblyError
 
@@ -106,7 +106,7 @@ def test_what_a_case_draws_closes(draw: cases.Draw, value: float) -> None:
     car = CARS["beside"].drawn_as(p)
     assert car.points == as_tuples(dict(p))
     solution = formulation("pointcoord").solve(
-        Scene.from_mapping(motion_from(drawn_angle(car), car, (0.0, 0.0), (0.0, 0.0)))
+        Scene.from_mapping(scene_content(car, (drawn_angle(car), 0.0), stop=1.0))
     )
     for name, place in p.items():
         # 1e4 roundings of 1000 mm: steering arms of a hundredth of the car's have a condition number of 1e3.
