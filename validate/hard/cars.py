@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -92,20 +92,6 @@ def scene_content(
     laws = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
     # Whatever is wrong with the car: that is for those who read the scene.
     return content_of(car, laws, **{"effects": tuple(EFFECTS), **settings})
-
-
-def paper_car(
-    arm_angle: Law = SQUARE,
-    rack: Law = 0.0,
-    heave: Law | None = None,
-    *,
-    points: Mapping[str, Sequence[float]] = PAPER,
-    closure: str = "collinear",
-    **settings: Any,
-) -> dict[str, Any]:
-    """The content of a scene of the paper's strut; settings as for `content_of`."""
-    car = Car({}, closure=closure).drawn_as({name: np.array(place) for name, place in points.items()})
-    return scene_content(car, arm_angle, rack, heave, **settings)
 
 
 def drawn_angle(car: Car) -> float:

@@ -1,56 +1,25 @@
-"""A hard case: why it is hard, a parameter that leads into it, and what has to come of it."""
+"""A hard case is a row: why it is hard, a scene made from one number that leads into it, what has to come.
+
+A family is such a row for every mechanism. The first is tried at every value of the parameter, the second at
+every fourth, all others at one: what is hard about a value is the same in each.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
-# right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
-# some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
-# unjudged: the reference could not be proven, which is a failure of the catalogue unless the case allows it.
-Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
+from validate.hard.answer import Answer, Outcome
+from validate.hard.subjects import BESIDE, PAPER, SUBJECTS, WISHBONE, Content, Subject, hyphens
+from validate.hard.trial import OURS, Trial, try_scene
 
-OURS = "pointcoord"
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What one formulation made of one value of the parameter.
-
-    Attributes:
-        formulation: its name.
-        outcome: held to the reference.
-        reason: of a refusal; else which quantity came closest to its bound, or exceeded it the most.
-        error: largest distance of a point from the reference, in the case's unit; None without numbers.
-        bound: largest bound that the formulation gives for it, in the same unit.
-        share: largest error of any quantity, rates and angles too, in parts of its bound.
-        condition: largest condition number.
-    """
-
-    formulation: str
-    outcome: Outcome
-    reason: str = ""
-    error: float | None = None
-    bound: float | None = None
-    share: float | None = None
-    condition: float | None = None
-
-
-@dataclass(frozen=True)
-class Trial:
-    """One value of a parameter, tried by every formulation of the case.
-
-    Attributes:
-        facts: what else was measured there, by name with its unit.
-        judge: holds the answer of another formulation for the same scene to the same reference; None where
-            there is no one scene, or nothing to hold an answer to.
-    """
-
-    value: float
-    answers: tuple[Answer, ...]
-    facts: Mapping[str, float | str] = field(default_factory=dict)
-    judge: Callable[[str], Answer] | None = field(default=None, compare=False, repr=False)
+SOLVERS = (OURS, "pointcoord-newton", "absolute", "relative")
+# Why a model may refuse a mechanism, or no reference be had of it.
+HARD: Mapping[str, str] = {"bricard": "one of its rows depends on the others at every pose"}
+SceneAt = Callable[[Subject, float], Content]
+Values = Sequence[float]
 
 
 @dataclass(frozen=True)
@@ -80,9 +49,17 @@ class Expected:
         return outcome in (("right",) if surely else self.outcomes)
 
 
-@dataclass(frozen=True)
+RIGHT = Expected(("right",))
+RIGHT_OR_REFUSED = Expected(("right", "refused"))
+REFUSED = Expected(("refused",))
+# Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
+IF_ANY = Expected(("right", "refused", "unjudged"))
+FAILS = Expected(("refused", "noted", "wrong"))
+
+
+@dataclass(frozen=True, kw_only=True)
 class Case:
-    """One entry of the catalogue.
+    """One row of the catalogue.
 
     Attributes:
         name: on the command line, words joined by hyphens.
@@ -90,13 +67,15 @@ class Case:
         why: one sentence that says why it is hard.
         parameter: what tends to the singular place, with its unit.
         values: of the parameter, evenly spaced in its logarithm.
+        scene: the content of the scene, of a mechanism and at a value.
+        subject: the mechanism.
         expected: by formulation; a case tries the formulations named here.
         behaviour: what is expected, in words.
-        examine: tries one value.
+        judged: the trial at a value, with what else is measured, or asked of its answers.
         unit: of error and bound.
-        content: of the scene at a value, of a case whose trial is one scene; for whoever has another solver
-            to try on it.
-        without_pose: whether some instants of that scene have no pose, at every value.
+        proven: see `try_scene`.
+        given: whether the scene can be given to another solver.
+        beyond: whether the scene has no pose at some instants, and `right` is a refusal that says so rightly.
         also_answered: values at which the scene has an answer although `expected` allows a refusal as well;
             they need not be among those that are tried.
     """
@@ -106,22 +85,133 @@ class Case:
     why: str
     parameter: str
     values: tuple[float, ...]
+    scene: SceneAt
+    subject: Subject
     expected: Mapping[str, Expected]
     behaviour: str
-    examine: Callable[[float], Trial]
+    judged: Callable[[Subject, float, Trial], Trial] | None = None
     unit: str = "mm"
-    content: Callable[[float], Mapping[str, Any]] | None = None
-    without_pose: bool = False
+    proven: bool = True
+    given: bool = True
+    beyond: bool = False
     also_answered: tuple[float, ...] = ()
+
+    def content(self, value: float) -> Content:
+        """Of the scene at a value."""
+        return self.scene(self.subject, value)
+
+    def examine(self, value: float) -> Trial:
+        """Try one value."""
+        trial = try_scene(value, self.content(value), tuple(self.expected), self.proven)
+        return trial if self.judged is None else self.judged(self.subject, value, trial)
+
+    def unexpected(self, trial: Trial) -> tuple[Answer, ...]:
+        """The answers of a trial that are not allowed."""
+        return tuple(a for a in trial.answers if not self.expected[a.formulation].met(trial.value, a.outcome))
+
+    @property
+    def without_pose(self) -> bool:
+        """Whether some instants of a scene that is given to others have no pose, at every value."""
+        return self.given and (self.beyond or all(one == REFUSED for one in self.expected.values()))
 
     @property
     def answered(self) -> tuple[float, ...]:
-        """The values at which the scene has an answer that any solver can be held to."""
-        if self.content is None or self.without_pose:
+        """The values at which the scene has an answer that any solver can be asked for."""
+        if not self.given or self.without_pose:
             return ()
         expected = self.expected.get(OURS) or next(iter(self.expected.values()))
         needed = (v for v in self.values if expected.met(v, "right") and not expected.met(v, "refused"))
         return tuple(dict.fromkeys((*needed, *self.also_answered)))
+
+
+def case(
+    scene: SceneAt,
+    parameter: str,
+    values: Values,
+    expected: Expected | Mapping[str, Expected] = RIGHT,
+    subject: Subject = PAPER,
+    *,
+    name: str = "",
+    why: str = "",
+    suffix: str | None = None,
+    behaviour: str = "",
+    **more: Any,
+) -> Case:
+    """A case, see `Case`.
+
+    Args:
+        expected: by formulation, or of each of `SOLVERS`.
+        name, why: the scene's own name, and the first paragraph of its text, if not given.
+        suffix: of the name; that of the mechanism if not given.
+        behaviour: where that is more than `expected` says.
+    """
+    every = dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected
+    return Case(
+        name=(name or name_of(scene)) + (subject.suffix if suffix is None else suffix),
+        why=why or reason_of(scene),
+        parameter=parameter,
+        values=tuple(values),
+        scene=scene,
+        subject=subject,
+        expected=every,
+        behaviour=behaviour or described(every),
+        **more,
+    )
+
+
+def name_of(function: Callable[..., Any]) -> str:
+    """What a case is called that a function makes."""
+    return hyphens(_whole(function).__name__)
+
+
+def reason_of(function: Callable[..., Any]) -> str:
+    """Why a case is hard that a function makes: the first paragraph of its text."""
+    return " ".join((_whole(function).__doc__ or "").partition("\n\n")[0].split())
+
+
+def _whole(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function of which this one is a part with some arguments given."""
+    return _whole(function.func) if isinstance(function, partial) else function
+
+
+def family(
+    scene: SceneAt,
+    parameter: str,
+    values: Values | Callable[[Subject], Values],
+    expected: Expected | Mapping[str, Expected] = RIGHT,
+    subjects: Sequence[Subject] = SUBJECTS,
+    *,
+    second: Values = (),
+    others: Values = (),
+    also_answered: Values | Callable[[Subject, float], bool] = (),
+    strict: bool = False,
+    **more: Any,
+) -> tuple[Case, ...]:
+    """A case for each of some mechanisms; see `case`.
+
+    Args:
+        values: that the first mechanism is tried at, or of each.
+        second, others: see `values_of`.
+        also_answered: see `Case`; or whether a value is one of them.
+        strict: whether as much is expected of mechanisms that are hard by nature.
+    """
+
+    def of(subject: Subject) -> Case:
+        own = tuple(values(subject) if callable(values) else values_of(subject, values, second, others))
+        also = [v for v in own if also_answered(subject, v)] if callable(also_answered) else also_answered
+        due = expected if strict else expected_of(subject, expected)
+        return case(scene, parameter, own, due, subject, also_answered=tuple(also), **more)
+
+    return tuple(map(of, subjects))
+
+
+def expected_of(
+    subject: Subject, expected: Expected | Mapping[str, Expected]
+) -> Expected | Mapping[str, Expected]:
+    """What formulations may make of a mechanism; of one that is hard by nature, never wrong numbers."""
+    if subject.name not in HARD:
+        return expected
+    return IF_ANY if isinstance(expected, Expected) else dict.fromkeys(expected, IF_ANY)
 
 
 def described(expected: Mapping[str, Expected]) -> str:
@@ -134,6 +224,22 @@ def described(expected: Mapping[str, Expected]) -> str:
     return "; ".join(f"{', '.join(names)}: {words}" for words, names in alike.items())
 
 
+def values_of(
+    subject: Subject, values: Values, second: Values = (), others: Values = ()
+) -> tuple[float, ...]:
+    """Those of a family's values that a mechanism is tried at.
+
+    Args:
+        second: in place of every fourth and the last for the second mechanism.
+        others: in place of the one amid them for all others.
+    """
+    if subject in (PAPER, BESIDE):
+        return tuple(values)
+    if subject is WISHBONE:
+        return tuple(second or coarse(tuple(values)))
+    return tuple(others or (values[len(values) // 2],))
+
+
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
     """One value per decade, going in: from 10^high down to 10^low."""
     return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
@@ -144,19 +250,6 @@ def coarse(values: tuple[float, ...]) -> tuple[float, ...]:
     return tuple(dict.fromkeys((*values[::4], values[-1])))
 
 
-def unexpected(case: Case, trial: Trial) -> tuple[Answer, ...]:
-    """The answers of a trial that the case does not allow."""
-    return tuple(a for a in trial.answers if not case.expected[a.formulation].met(trial.value, a.outcome))
-
-
-def wrong_without_warning(trial: Trial) -> tuple[Answer, ...]:
-    """Wrong numbers that their formulation gave as right; the printed formulas are there to be wrong."""
-    return tuple(a for a in trial.answers if a.outcome == "wrong" and a.formulation != "printed")
-
-
-RIGHT = Expected(("right",))
-RIGHT_OR_REFUSED = Expected(("right", "refused"))
-REFUSED = Expected(("refused",))
-# Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
-IF_ANY = Expected(("right", "refused", "unjudged"))
-FAILS = Expected(("refused", "noted", "wrong"))
+def counted(count: int) -> tuple[float, ...]:
+    """Numbers from 1 to a count, as values of a parameter."""
+    return tuple(float(n) for n in range(1, count + 1))

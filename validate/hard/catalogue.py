@@ -21,20 +21,11 @@ from validate.hard.cases import (
     turned,
 )
 
-CASES: tuple[Case, ...] = (
-    *ends.CASES,
-    *turned.CASES,
-    *body_rates.CASES,
-    *points.NEAR,
-    *far.CASES,
-    *laws.CASES,
-    *branches.CASES,
-    *reach.CASES,
-    *links.CASES,
-    *numbers.CASES,
-    *regressions.CASES,
-    *points.BESIDE,
+MODULES = (
+    *(ends, reach, turned, body_rates, points, far),
+    *(laws, branches, links, numbers, regressions),
 )
+CASES: tuple[Case, ...] = tuple(case for module in MODULES for case in module.CASES)
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:

@@ -16,7 +16,7 @@ from pointcoord import Scene
 from pointcoord.drawing_stands import End, reach_of
 from validate.adjudication.reference_solution import reference_instant
 from validate.hard.cars import drawn_at
-from validate.hard.family import Subject
+from validate.hard.subjects import Subject
 from validate.reference import Design, InfeasibleError, pose_exists
 from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR, reached

@@ -8,8 +8,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Any, get_args
 
-from validate.hard.case import OURS, Case, Outcome
+from validate.hard.answer import Outcome
+from validate.hard.case import Case
 from validate.hard.run import MAP, Examined, as_expected, counts, refusals
+from validate.hard.trial import OURS
 from validate.output.table import Part, Table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)

@@ -8,17 +8,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from validate.extras import MissingPackage
-from validate.hard.case import (
-    OURS,
-    REFUSED,
-    RIGHT_OR_REFUSED,
-    Answer,
-    Case,
-    Expected,
-    Trial,
-    unexpected,
-    wrong_without_warning,
-)
+from validate.hard.answer import Answer
+from validate.hard.case import REFUSED, RIGHT_OR_REFUSED, Case, Expected
+from validate.hard.trial import OURS, Trial, said
 
 # Every case that pointcoord has to solve is tried by a map of the inputs too.
 MAP = "pointcoord-map"
@@ -44,16 +36,12 @@ class Examined:
     @property
     def unexpected(self) -> tuple[tuple[float, Answer], ...]:
         """Answers that the case does not allow, each with its value."""
-        return tuple(
-            (trial.value, answer) for trial in self.trials for answer in unexpected(self.case, trial)
-        )
+        return tuple((trial.value, one) for trial in self.trials for one in self.case.unexpected(trial))
 
     @property
     def wrong(self) -> tuple[tuple[float, Answer], ...]:
         """Wrong numbers without a warning, but for the printed formulas, each with its value."""
-        return tuple(
-            (trial.value, answer) for trial in self.trials for answer in wrong_without_warning(trial)
-        )
+        return tuple((trial.value, one) for trial in self.trials for one in trial.wrong)
 
 
 def examine(case: Case) -> Examined:
@@ -74,39 +62,31 @@ def tried(case: Case, number: int) -> Trial:
         MissingPackage: a formulation of the case is not installed.
     """
     value = case.values[number]
-    trial = _tried(case, value)
-    by_map = OURS in case.expected and MAP not in case.expected and value in _few(case.values)
-    if trial.judge is None or not by_map:
-        return trial
-    return replace(trial, answers=(*trial.answers, trial.judge(MAP)))
-
-
-def examined(case: Case, trials: Sequence[Trial], seconds: float) -> Examined:
-    """A case with its trials, of which those by a map are to come to what a map may."""
-    if any(answer.formulation == MAP for trial in trials for answer in trial.answers):
-        case = replace(case, expected={**case.expected, MAP: _of_map(case)})
-    return Examined(case, tuple(trials), seconds)
-
-
-def _few(values: Sequence[float]) -> tuple[float, ...]:
-    """The one amid them and the last: each map takes longer than all else that a scene is tried by."""
-    return (values[len(values) // 2], values[-1])
-
-
-def _of_map(case: Case) -> Expected:
-    """A map may be refused, its effort being bounded; it answers only where the other method may."""
-    return RIGHT_OR_REFUSED if "right" in case.expected[OURS].outcomes else REFUSED
-
-
-def _tried(case: Case, value: float) -> Trial:
     try:
-        return case.examine(value)
+        trial = case.examine(value)
     except MissingPackage:
         raise
     # A trial that fails says nothing of the formulations; it is counted, and the run goes on.
     except Exception as error:
-        reason = f"the trial fails: {type(error).__name__}: {' '.join(str(error).split())}"
+        reason = f"the trial fails: {said(error)}"
         return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
+    # The value amid them and the last: each map takes longer than all else that a scene is tried by.
+    few = (case.values[len(case.values) // 2], case.values[-1])
+    by_map = OURS in case.expected and MAP not in case.expected and value in few
+    if trial.tried is None or not trial.tried.judges or not by_map:
+        return trial
+    return replace(trial, answers=(*trial.answers, trial.tried.answer(MAP)))
+
+
+def examined(case: Case, trials: Sequence[Trial], seconds: float) -> Examined:
+    """A case with its trials.
+
+    A map may be refused, its effort being bounded; it answers only where the other method may.
+    """
+    if any(answer.formulation == MAP for trial in trials for answer in trial.answers):
+        of_map: Expected = RIGHT_OR_REFUSED if "right" in case.expected[OURS].outcomes else REFUSED
+        case = replace(case, expected={**case.expected, MAP: of_map})
+    return Examined(case, tuple(trials), seconds)
 
 
 def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:

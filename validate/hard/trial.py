@@ -1,4 +1,4 @@
-"""A scene made from a value of a parameter, tried by formulations and held to the reference.
+"""A scene made from a value of a parameter, solved by formulations and compared with the reference.
 
 Every number that a formulation gives is compared: positions, velocities, accelerations, body rates and
 wheel angles at every instant, each against the formulation's own bound or tolerance (see `tolerance`).
@@ -7,8 +7,8 @@ wheel angles at every instant, each against the formulation's own bound or toler
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -19,121 +19,99 @@ from pointcoord.simulation import Task
 from validate.adjudication.reference_solution import reference_solution
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates, started
-from validate.formulations.protocol import Formulation, FormulationError, Solution
+from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.case import OURS, REFUSED, Answer, Case, Expected, Trial, described
-from validate.hard.classify import judged_answer
+from validate.hard.answer import Answer, judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
-Facts = Mapping[str, float | str]
-
-
-@dataclass(frozen=True)
-class Tried:
-    """A scene after its trial, for whatever else a case measures.
-
-    Attributes:
-        solutions: of the formulations that answered, by name.
-        reference: at the scene's instants; None if there is none.
-    """
-
-    scene: Scene
-    solutions: Mapping[str, Solution]
-    reference: Solution | None
-
-
-Measure = Callable[[Tried], Facts]
-
+OURS = "pointcoord"
 NOT_ASKED = NoReferenceError("not asked, as all refuse")
-
 # Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
 MAP_EFFORT = 1000
 
 
-def scene_case(
-    *,
-    name: str,
-    group: str,
-    why: str,
-    parameter: str,
-    values: Sequence[float],
-    scene: Callable[[float], Mapping[str, Any]],
-    expected: Mapping[str, Expected],
-    behaviour: str = "",
-    measure: Measure | None = None,
-    also_answered: tuple[float, ...] = (),
-    proven: bool = True,
-    judged: Callable[[float, Trial], Trial] | None = None,
-    given: bool = True,
-) -> Case:
-    """A case whose trial is one scene.
+@dataclass(frozen=True)
+class Tried:
+    """A scene after its trial, for whatever else a case asks of it.
 
-    Args:
-        scene: the content of the scene at a value of the parameter; see `scene_content`.
-        expected: by name of a formulation; these are tried.
-        behaviour: what is expected, where that is more than `expected` says.
-        measure: what else is measured on the solutions.
-        also_answered: see `Case`.
-        proven: see `try_scene`.
-        judged: the trial at a value, with what else is asked of its answers.
-        given: whether the scene can be given to another solver.
+    Attributes:
+        came: a formulation's solution, or why there is none, by name.
+        reference: at the scene's instants, or why there is none.
+        start: of all methods of pointcoord; None if each is to start by itself.
     """
 
-    def examine(value: float) -> Trial:
-        trial = try_scene(value, scene(value), tuple(expected), measure, proven)
-        return trial if judged is None else judged(value, trial)
+    scene: Scene
+    came: Mapping[str, Solution | Exception]
+    reference: Solution | Exception
+    start: Task | PointcoordError | None = None
 
-    return Case(
-        name,
-        group,
-        why,
-        parameter,
-        tuple(values),
-        expected,
-        behaviour or described(expected),
-        examine,
-        content=scene if given else None,
-        without_pose=given and all(one == REFUSED for one in expected.values()),
-        also_answered=also_answered,
-    )
+    @property
+    def solutions(self) -> Mapping[str, Solution]:
+        """Of the formulations that answered."""
+        return {name: one for name, one in self.came.items() if isinstance(one, Solution)}
+
+    @property
+    def known(self) -> Solution | None:
+        """The reference, if there is one."""
+        return self.reference if isinstance(self.reference, Solution) else None
+
+    @property
+    def judges(self) -> bool:
+        """Whether answers can be compared: there is a reference, or a proof that there is no pose."""
+        return isinstance(self.reference, Solution | InfeasibleError)
+
+    def answer(self, name: str) -> Answer:
+        """The answer of another formulation."""
+        return compared(self.scene, name, solved(name, self.scene, self.start), self.reference)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One value of a parameter, tried by every formulation of the case.
+
+    Attributes:
+        facts: what else was measured there, by name with its unit.
+        tried: the scene; None where it could not be read, or no other answer can be compared.
+    """
+
+    value: float
+    answers: tuple[Answer, ...]
+    facts: Mapping[str, float | str] = field(default_factory=dict)
+    tried: Tried | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def wrong(self) -> tuple[Answer, ...]:
+        """Wrong numbers that their formulation gave as right; the printed formulas are there to be wrong."""
+        return tuple(a for a in self.answers if a.outcome == "wrong" and a.formulation != "printed")
+
+    def noting(self, facts: Mapping[str, float | str]) -> Trial:
+        """With more facts."""
+        return replace(self, facts={**self.facts, **facts})
 
 
 def try_scene(
-    value: float,
-    content: Mapping[str, Any],
-    formulations: Sequence[str],
-    measure: Measure | None = None,
-    proven: bool = True,
+    value: float, content: Mapping[str, Any], formulations: Sequence[str], proven: bool = True
 ) -> Trial:
-    """Solve a scene by each formulation and hold the answers to the reference.
+    """Solve a scene by each formulation and compare the answers with the reference.
 
     A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. The
     drawings of hard cases are exact, so that the reference takes an unclear side from exact products.
 
     Args:
-        proven: whether the reference is asked even if all refuse, when nothing is to be held to it.
+        proven: whether the reference is asked even if all refuse, when nothing is compared with it.
     """
     try:
         scene = Scene.from_mapping(content)
     except SceneError as error:
-        refused = tuple(Answer(name, "refused", _told(error)) for name in formulations)
+        refused = tuple(Answer(name, "refused", said(error)) for name in formulations)
         return Trial(value, refused, {"reference": "not asked"})
     start = _started(scene) if OURS in formulations else None
-    tried = {name: solved(name, scene, start) for name in formulations}
-    solutions = {name: one for name, one in tried.items() if isinstance(one, Solution)}
-    reference = _reference(scene) if proven or solutions else NOT_ASKED
-    answers = tuple(_held(scene, name, one, reference) for name, one in tried.items())
-    said = _told(reference) if isinstance(reference, Exception) else "answers"
-    facts: dict[str, float | str] = {"reference": said}
-    if measure is not None:
-        known = None if isinstance(reference, Exception) else reference
-        facts |= measure(Tried(scene, solutions, known))
-    unknown = isinstance(reference, Exception) and not isinstance(reference, InfeasibleError)
-
-    def judge(name: str) -> Answer:
-        return _held(scene, name, solved(name, scene, start), reference)
-
-    return Trial(value, answers, facts, None if unknown else judge)
+    came = {name: solved(name, scene, start) for name in formulations}
+    any_answer = any(isinstance(one, Solution) for one in came.values())
+    reference = _reference(scene) if proven or any_answer else NOT_ASKED
+    answers = tuple(compared(scene, name, one, reference) for name, one in came.items())
+    facts = {"reference": said(reference) if isinstance(reference, Exception) else "answers"}
+    return Trial(value, answers, facts, Tried(scene, came, reference, start))
 
 
 def _started(scene: Scene) -> Task | PointcoordError | None:
@@ -146,70 +124,61 @@ def _started(scene: Scene) -> Task | PointcoordError | None:
         return None
 
 
-def solved(name: str, scene: Scene, start: Task | PointcoordError | None = None) -> Solution | Answer:
-    """A formulation's solution, or its refusal as an answer.
+def solved(name: str, scene: Scene, start: Task | PointcoordError | None = None) -> Solution | Exception:
+    """A formulation's solution, or why there is none: a warning is an error, and the run goes on.
 
     Args:
         start: of pointcoord, if it is at hand.
-
-    Any other error is a defect of the formulation, and so is a warning: its answer is wrong, and the run
-    goes on.
-
     Raises:
         MissingPackage: the formulation is not installed.
     """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            one = _with_bounded_effort(formulation(name))
-            return one.solve(scene, start) if isinstance(one, PointCoordinates) else one.solve(scene)
-    except FormulationError as error:
-        return Answer(name, "refused", _told(error.reason))
-    except SceneError as error:
-        return Answer(name, "refused", _told(error))
+            one = formulation(name)
+            if not isinstance(one, PointCoordinates):
+                return one.solve(scene)
+            if one.method is MAP:
+                # Given up early: thousands of hard cases have to be tried in little time.
+                one = replace(one, method=replace(MAP, map_effort=MAP_EFFORT))
+            return one.solve(scene, start)
     except MissingPackage:
         raise
     except Exception as error:
-        return Answer(name, "wrong", f"fails: {_told(error)}")
-
-
-def _with_bounded_effort(one: Formulation) -> Formulation:
-    """A map of hard cases is given up early: thousands of them have to be tried in little time."""
-    if isinstance(one, PointCoordinates) and one.method is MAP:
-        return replace(one, method=replace(MAP, map_effort=MAP_EFFORT))
-    return one
+        return error
 
 
 def _reference(scene: Scene) -> Solution | Exception:
     """The reference, or why there is none."""
     try:
         return reference_solution(scene, exact_sides=True)
-    except NoReferenceError as error:
-        return error
-    except (ValueError, ArithmeticError) as error:
+    except (NoReferenceError, ValueError, ArithmeticError) as error:
         # Inputs that overflow have no exact value to solve for.
         return error
 
 
-def _held(scene: Scene, name: str, one: Solution | Answer, reference: Solution | Exception) -> Answer:
-    """What a formulation came to, held to the reference or to the proof that there is no pose."""
-    if isinstance(one, Answer):
-        return one
+def compared(scene: Scene, name: str, came: Solution | Exception, reference: Solution | Exception) -> Answer:
+    """What a formulation came to, compared with the reference or with the proof that there is no pose.
+
+    An error other than a refusal is a defect of the formulation, and its answer is wrong.
+    """
+    if isinstance(came, FormulationError):
+        return Answer(name, "refused", said(came.reason))
+    if isinstance(came, SceneError):
+        return Answer(name, "refused", said(came))
+    if isinstance(came, Exception):
+        return Answer(name, "wrong", f"fails: {said(came)}")
     if isinstance(reference, InfeasibleError):
         return Answer(name, "wrong", f"answers where there is no pose: {reference}")
     if isinstance(reference, Exception):
-        return Answer(name, "unjudged", _told(reference))
-    return _judged(scene, one, reference)
-
-
-def _judged(scene: Scene, answer: Solution, reference: Solution) -> Answer:
+        return Answer(name, "unjudged", said(reference))
     try:
         with np.errstate(all="ignore"):
-            return judged_answer(scene, answer, reference)
+            return judged_answer(scene, came, reference)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
-        return Answer(answer.formulation, "unjudged", f"cannot be compared: {_told(error)}")
+        return Answer(name, "unjudged", f"cannot be compared: {said(error)}")
 
 
-def _told(error: Exception) -> str:
+def said(error: Exception) -> str:
     """An error's name and its message on one line."""
     return f"{type(error).__name__}: {' '.join(str(error).split())}"

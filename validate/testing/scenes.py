@@ -10,7 +10,7 @@ from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.wording import meant
 from validate.hard.case import Case
 from validate.hard.catalogue import CASES
-from validate.hard.family import BESIDE, SUBJECTS
+from validate.hard.subjects import BESIDE, SUBJECTS
 
 NEAR = 1e-3
 
@@ -118,10 +118,9 @@ def _taken(case: Case, values: Sequence[float], near: float | None) -> Iterator[
         if not (math.isfinite(near) and near > 0.0):
             raise ValueError(f"near={near!r} is no number above 0; give one such as {NEAR:g}, or None")
         values = [min(values, key=lambda v: abs(math.log(abs(v) / near)) if v else math.inf)]
-    if case.content is not None:
-        for value in values:
-            name = f"{case.name} at {value:g}"
-            yield name, Scene.from_mapping({**case.content(value), "title": name}, name)
+    for value in values:
+        name = f"{case.name} at {value:g}"
+        yield name, Scene.from_mapping({**case.content(value), "title": name}, name)
 
 
 def _of_kind(scenes: Mapping[str, Scene], suspension: str | None, closure: str | None) -> dict[str, Scene]:

@@ -9,28 +9,30 @@ from typing import Any
 
 import numpy as np
 import pytest
+from stand_in import stand_in
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import inputs_at, reference_instant, reference_solution
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard import trial
-from validate.hard.cars import paper_car
-from validate.hard.case import FAILS, IF_ANY, RIGHT, Answer, Case, Expected, Trial
-from validate.hard.classify import judged_answer
+from validate.hard.answer import Answer, judged_answer
+from validate.hard.cars import PAPER_CAR, scene_content
+from validate.hard.case import FAILS, IF_ANY, RIGHT, Case, Expected, case
 from validate.hard.report import case_parts, results_data, summary_parts
 from validate.hard.run import as_expected, examine
-from validate.hard.trial import scene_case, try_scene
+from validate.hard.subjects import Subject
+from validate.hard.trial import Trial, try_scene
 from validate.output.document import json_text
 from validate.output.table import text_of
 
 OURS = ("pointcoord", "absolute")
+MOVING = scene_content(PAPER_CAR, [1.5, 0.3], [0.0, 40.0], stop=0.2)
 
 
 @pytest.fixture(scope="module")
 def scene() -> Scene:
-    return Scene.from_mapping(paper_car([1.5, 0.3], [0.0, 40.0], stop=0.2))
+    return Scene.from_mapping(MOVING)
 
 
 @pytest.fixture(scope="module")
@@ -52,20 +54,10 @@ def planted(
     return replace(solution.with_numbers({quantity: arrays}), notes=notes)
 
 
-def stand_in(monkeypatch: pytest.MonkeyPatch, solve: Callable[[Scene], Solution]) -> None:
-    """Put something else in the place of every formulation."""
-
-    class Stand:
-        name = "stand-in"
-
-        def solve(self, scene: Scene) -> Solution:
-            return solve(scene)
-
-    monkeypatch.setattr(trial, "formulation", lambda name: Stand())
-
-
 def test_the_papers_car_is_right_by_both_models_with_error_bound_and_condition() -> None:
-    result = try_scene(1.0, paper_car([1.5, 0.3], [0.0, 40.0], stop=0.2), (*OURS, "pointcoord-newton"))
+    result = try_scene(
+        1.0, scene_content(PAPER_CAR, [1.5, 0.3], [0.0, 40.0], stop=0.2), (*OURS, "pointcoord-newton")
+    )
     assert [a.outcome for a in result.answers] == ["right"] * 3
     for answer in result.answers:
         assert answer.error is not None
@@ -128,7 +120,7 @@ def test_a_wide_claim_is_right_or_wrong_by_the_reference_however_wide_it_is(
 
 def test_what_is_zero_up_to_the_reference_s_own_proof_is_zero_and_nothing_else_is() -> None:
     """A chassis that heaves evenly: no point accelerates, and the reference says so up to its 60 digits."""
-    even = Scene.from_mapping(paper_car(heave=[0.0, 100.0], stop=1.0))
+    even = Scene.from_mapping(scene_content(PAPER_CAR, heave=[0.0, 100.0], stop=1.0))
     instants = [reference_instant(even, inputs_at(even, t)) for t in even.instants.tolist()]
     largest = max(abs(float(x)) for i in instants for a in i.acceleration.values() for x in a)
     assert largest < 1e-100
@@ -141,14 +133,17 @@ def test_any_answer_is_wrong_where_the_links_cannot_meet(
     monkeypatch: pytest.MonkeyPatch, solution: Solution
 ) -> None:
     stand_in(monkeypatch, lambda scene: solution)
-    (answer,) = try_scene(1.0, paper_car(rack=131.0), ("stand-in",)).answers
+    (answer,) = try_scene(1.0, scene_content(PAPER_CAR, rack=131.0), ("stand-in",)).answers
     assert answer.outcome == "wrong"
     assert "turns back at a fold" in answer.reason
 
 
 @pytest.mark.parametrize(
     ("content", "reason"),
-    [(paper_car(rack=131.0), "AssemblyError"), (paper_car(math.nan), "inputs.arm_angle.constant")],
+    [
+        (scene_content(PAPER_CAR, rack=131.0), "AssemblyError"),
+        (scene_content(PAPER_CAR, math.nan), "inputs.arm_angle.constant"),
+    ],
 )
 def test_a_refusal_is_no_wrong_number_and_keeps_its_reason(content: dict[str, Any], reason: str) -> None:
     result = try_scene(1.0, content, OURS)
@@ -177,16 +172,22 @@ def test_a_crash_or_a_warning_is_a_wrong_answer_and_a_refusal_is_none(
     error: Exception, outcome: str, reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stand_in(monkeypatch, failing(error))
-    (answer,) = try_scene(1.0, paper_car(), ("stand-in",)).answers
+    (answer,) = try_scene(1.0, scene_content(PAPER_CAR), ("stand-in",)).answers
     assert (answer.outcome, answer.reason) == (outcome, reason)
+
+
+def made(subject: Subject, value: float) -> dict[str, Any]:
+    """It is made."""
+    return {}
 
 
 def made_case(answers: dict[float, Answer], expected: Expected = RIGHT, name: str = "absolute") -> Case:
     """A case with given answers."""
-    return Case(
-        "made", "0. Made", "it is made", "a number", tuple(answers), {name: expected}, "none",
-        lambda value: Trial(value, (answers[value],), {"size": math.inf}),
-    )  # fmt: skip
+
+    def judged(_: Subject, value: float, trial: Trial) -> Trial:
+        return Trial(value, (answers[value],), {"size": math.inf})
+
+    return case(made, "a number", tuple(answers), {name: expected}, group="0. Made", judged=judged)
 
 
 def test_a_wrong_number_without_warning_is_never_expected_but_of_the_printed_formulas() -> None:
@@ -229,17 +230,17 @@ def test_the_verdict_says_how_many_answers_were_not_judged_and_in_which_cases() 
 
 
 def test_the_report_says_which_model_gives_up_first_and_json_has_no_infinity() -> None:
-    case = scene_case(
-        name="beyond",
-        group="0. Made",
-        why="it is made",
-        parameter="rack travel, mm",
-        values=(0.0, 131.0),
-        scene=lambda value: paper_car(rack=value),
-        expected={"pointcoord": FAILS, "absolute": RIGHT},
-        behaviour="none",
+    result = examine(
+        case(
+            lambda _, value: scene_content(PAPER_CAR, rack=value),
+            "rack travel, mm",
+            (0.0, 131.0),
+            {"pointcoord": FAILS, "absolute": RIGHT},
+            name="beyond",
+            why="It is made.",
+            group="0. Made",
+        )
     )
-    result = examine(case)
     mended = replace(
         result.trials[1], answers=(Answer("pointcoord", "right", share=math.nan), result.trials[1].answers[1])
     )

@@ -10,12 +10,23 @@ import pytest
 
 from validate.cli import main
 from validate.hard import catalogue
-from validate.hard.case import RIGHT, Answer, Case, Trial
+from validate.hard.answer import Answer
+from validate.hard.case import RIGHT, Case, case
+from validate.hard.trial import Trial
 
 
 def case_of(name: str, examine: Callable[[float], Trial], formulation: str = "absolute") -> Case:
     """A case of one value."""
-    return Case(name, "0. Made", "it is made", "a number", (1.0,), {formulation: RIGHT}, "none", examine)
+    return case(
+        lambda *_: {},
+        "a number",
+        (1.0,),
+        {formulation: RIGHT},
+        name=name,
+        why="It is made.",
+        group="0. Made",
+        judged=lambda _, value, trial: examine(value),
+    )
 
 
 def interrupted(value: float) -> Trial:
@@ -26,11 +37,11 @@ def interrupted(value: float) -> Trial:
 def made(monkeypatch: pytest.MonkeyPatch) -> None:
     """A catalogue of two small cases, of which one goes wrong."""
 
-    def case(name: str, formulation: str) -> Case:
+    def wrong(name: str, formulation: str) -> Case:
         answer = Answer(formulation, "wrong", "far off")
         return case_of(name, lambda value: Trial(value, (answer,)), formulation)
 
-    monkeypatch.setattr(catalogue, "CASES", (case("ours-fails", "pointcoord"), case("quiet", "absolute")))
+    monkeypatch.setattr(catalogue, "CASES", (wrong("ours-fails", "pointcoord"), wrong("quiet", "absolute")))
 
 
 def test_a_named_case_prints_a_row_per_formulation_and_per_value(capsys: pytest.CaptureFixture[str]) -> None:
@@ -38,7 +49,7 @@ def test_a_named_case_prints_a_row_per_formulation_and_per_value(capsys: pytest.
     out, err = capsys.readouterr()
     assert err == ""
     assert "== Body rates" in out
-    assert "omega-in-the-knuckle-plane: omega lies in the plane" in out
+    assert "omega-in-the-knuckle-plane: Omega lies in the plane" in out
     for name in ("pointcoord", "pointcoord-newton", "absolute", "printed"):
         # Once in the summary of the case, once for each of its 13 values, once in the counts.
         assert sum(name in line.split() for line in out.splitlines()) >= 15
@@ -76,9 +87,9 @@ def test_the_list_names_every_case_with_its_reason_and_tries_none(capsys: pytest
     assert main(["hard", "--list"]) == 0
     out, _ = capsys.readouterr()
     assert catalogue.CASES
-    for case in catalogue.CASES:
-        assert f"  {case.name}: {case.why}" in out.splitlines()
-        assert case.group in out.splitlines()
+    for one in catalogue.CASES:
+        assert f"  {one.name}: {one.why}" in out.splitlines()
+        assert one.group in out.splitlines()
 
 
 @pytest.mark.parametrize("name", ["at-rests", "AT-REST"])

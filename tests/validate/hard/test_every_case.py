@@ -12,14 +12,16 @@ from itertools import groupby
 
 import numpy as np
 import pytest
+from stand_in import stand_in
 
 from pointcoord import Scene
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.hard.case import Answer, Case
+from validate.hard.answer import Answer
+from validate.hard.case import Case
 from validate.hard.catalogue import CASES
-from validate.hard.family import SUBJECTS
 from validate.hard.run import as_expected, examine
+from validate.hard.subjects import SUBJECTS
 
 NAMES = [case.name for case in CASES]
 
@@ -74,63 +76,31 @@ def families() -> list[Case]:
     return list(found.values())
 
 
-class Moved:
-    """pointcoord, with one number of a quantity moved by a millionth of the largest of its kind."""
-
-    name = "pointcoord"
-
-    def __init__(self, quantity: str = "") -> None:
-        self.quantity = quantity
-        self.given: list[str] = []
-
-    def solve(self, scene: Scene) -> Solution:
-        solution = formulation(self.name).solve(scene)
-        self.given = [quantity for quantity, numbers in solution.numbers.items() if numbers]
-        if not self.quantity:
-            return solution
-        arrays = {n: np.array(a) for n, a in solution.numbers[self.quantity].items()}
-        largest = max(float(np.abs(a).max()) for a in arrays.values())
-        last = list(arrays)[-1]
-        arrays[last][(0,) * arrays[last].ndim] += 1e-6 * largest + 1e-9
-        return solution.with_numbers({self.quantity: arrays})
-
-
 @pytest.mark.parametrize("case", families(), ids=lambda case: case.name)
 def test_a_wrong_number_is_found_in_every_family_and_on_every_car(
     case: Case, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def answer_of(solver: Moved) -> Answer:
-        stand_in = {"pointcoord": solver}
-        monkeypatch.setattr("validate.hard.trial.formulation", lambda n: stand_in.get(n) or formulation(n))
+    """A number of a quantity is moved by a millionth of the largest of its kind."""
+    given: list[str] = []
+
+    def answer_of(quantity: str) -> Answer:
+        def moved(scene: Scene) -> Solution:
+            solution = formulation("pointcoord").solve(scene)
+            given[:] = [name for name, numbers in solution.numbers.items() if numbers]
+            if not quantity:
+                return solution
+            arrays = {n: np.array(a) for n, a in solution.numbers[quantity].items()}
+            largest = max(float(np.abs(a).max()) for a in arrays.values())
+            last = list(arrays)[-1]
+            arrays[last][(0,) * arrays[last].ndim] += 1e-6 * largest + 1e-9
+            return solution.with_numbers({quantity: arrays})
+
+        stand_in(monkeypatch, moved, "pointcoord")
         (answer,) = (a for a in case.examine(case.values[0]).answers if a.formulation == "pointcoord")
         return answer
 
-    honest = Moved()
-    assert answer_of(honest).outcome == "right"
-    for quantity in dict.fromkeys((honest.given[0], honest.given[-1])):
-        answer = answer_of(Moved(quantity))
+    assert answer_of("").outcome == "right"
+    for quantity in dict.fromkeys((given[0], given[-1])):
+        answer = answer_of(quantity)
         assert answer.outcome == "wrong"
         assert quantity.replace("_", " ") in answer.reason
-
-
-def test_numbers_made_up_where_there_is_no_pose_are_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every case beyond an end: the drawing's own pose, given as an answer, is found out."""
-
-    class MadeUp:
-        name = "pointcoord"
-
-        def solve(self, scene: Scene) -> Solution:
-            inputs = {"arm_angle": scene.inputs["arm_angle"].model_copy(update={"constant": 1.6})}
-            return formulation("pointcoord").solve(scene.model_copy(update={"inputs": scene.inputs | inputs}))
-
-    beyond = [
-        case
-        for case in CASES
-        if case.name.startswith(("arm-", "slide-", "upper-")) and "-beyond" in case.name
-    ]
-    assert {car_of(case) for case in beyond} >= {"", "-wishbone"}
-    monkeypatch.setattr("validate.hard.trial.formulation", lambda _: MadeUp())
-    for case in beyond:
-        (answer, *_) = case.examine(case.values[0]).answers
-        assert answer.outcome == "wrong", case.name
-        assert "no pose" in answer.reason

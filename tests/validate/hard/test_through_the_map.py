@@ -7,43 +7,36 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from stand_in import stand_in
 
 from pointcoord import Scene
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
-from validate.hard.cars import paper_car
-from validate.hard.case import REFUSED, RIGHT, Case, decades
+from validate.hard.cars import PAPER_CAR, scene_content
+from validate.hard.case import REFUSED, RIGHT, Case, case, decades
 from validate.hard.report import summary_parts
-from validate.hard.run import MAP, OURS, as_expected, examine
-from validate.hard.trial import scene_case
+from validate.hard.run import MAP, as_expected, examine
+from validate.hard.trial import OURS
 from validate.output.table import text_of
 
 
 def steered(far: Callable[[float], float], expected: str = OURS) -> Case:
     """A case that holds the rack somewhere while the arm turns."""
-    return scene_case(
+    return case(
+        lambda _, value: scene_content(PAPER_CAR, [1.5, 0.1], far(value), stop=0.2, samples=2),
+        "rack travel, mm",
+        decades(-6),
+        {expected: RIGHT},
         name="steered",
+        why="It is made.",
         group="0. Made",
-        why="it is made",
-        parameter="rack travel, mm",
-        values=decades(-6),
-        scene=lambda value: paper_car([1.5, 0.1], far(value), stop=0.2, samples=2),
-        expected={expected: RIGHT},
-        behaviour="right",
     )
 
 
 def map_instead(monkeypatch: pytest.MonkeyPatch, change: Callable[[Solution], Solution]) -> None:
-    """Put something in the place of the map, and leave the others."""
-
-    class Stand:
-        name = MAP
-
-        def solve(self, scene: Scene) -> Solution:
-            return change(replace(formulation(OURS).solve(scene), formulation=MAP))
-
-    monkeypatch.setattr(trial, "formulation", lambda name: Stand() if name == MAP else formulation(name))
+    """Put pointcoord's own solution in the place of the map's, changed."""
+    stand_in(monkeypatch, lambda scene: change(replace(formulation(OURS).solve(scene), formulation=MAP)), MAP)
 
 
 def test_the_value_amid_the_others_and_the_last_are_tried_and_are_right() -> None:
@@ -76,13 +69,10 @@ def test_what_the_map_answers_where_there_is_no_pose_is_wrong(monkeypatch: pytes
     honest = examine(beyond)
     assert {a.outcome for _, a in honest.answers(MAP)} == {"refused"}
     assert as_expected([honest])
-    drawn = formulation(OURS).solve(Scene.from_mapping(paper_car([1.5, 0.1], stop=0.2, samples=2)))
-
-    class MadeUp:
-        def solve(self, scene: Scene) -> Solution:
-            return drawn
-
-    monkeypatch.setattr(trial, "formulation", lambda name: MadeUp() if name == MAP else formulation(name))
+    drawn = formulation(OURS).solve(
+        Scene.from_mapping(scene_content(PAPER_CAR, [1.5, 0.1], stop=0.2, samples=2))
+    )
+    stand_in(monkeypatch, lambda scene: drawn, MAP)
     made_up = examine(beyond)
     assert {a.outcome for _, a in made_up.answers(MAP)} == {"wrong"}
     assert not as_expected([made_up])

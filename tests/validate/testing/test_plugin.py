@@ -13,9 +13,9 @@ import pytest
 from pointcoord import built_in_scenes, pytest_plugin
 from validate import WrongStates, assert_refuses
 from validate.adjudication.reference_solution import reference_solution
-from validate.hard.case import Case
+from validate.hard.case import HARD, Case
 from validate.hard.catalogue import CASES
-from validate.hard.family import HARD, SUBJECTS
+from validate.hard.subjects import SUBJECTS
 from validate.solvers.plain import given_to_solver
 from validate.testing.scenes import NOT_ASKED, impossible_scenes, scenes_to_try
 

@@ -17,33 +17,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from pointcoord import Scene
 from validate.adjudication.reference_solution import design_of, inputs_at
 from validate.cars.scene_content import Law, content_of
-from validate.hard.cars import SQUARE, drawn_angle, paper_car
-from validate.hard.case import REFUSED, RIGHT, Case, Expected, Trial, coarse, decades
-from validate.hard.cases.points import assembled, flat_upper_arm
-from validate.hard.family import (
-    NAMED,
-    OTHERS,
-    PAPER,
-    SOLVERS,
-    WISHBONE,
-    Content,
-    Subject,
-    expected_of,
-    hyphens,
-)
+from validate.hard.cars import SQUARE, drawn_angle, scene_content
+from validate.hard.case import REFUSED, RIGHT, Case, Expected, Values, case, coarse, decades, expected_of
+from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.trial import scene_case
+from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
+from validate.hard.trial import Trial
 from validate.reference import count_assemblies
 
-GROUP = "Branches"
 # Arm angle, rad, and rack travel, mm, at which the two sides of the tie rod just meet, by car: at less rack
 # travel the arm cannot pass this angle, at more it can.
 MEETINGS: Mapping[str, tuple[float, float]] = {
@@ -63,164 +50,98 @@ CLEAR = Expected(("right", "refused"), right_from=1e-6)
 STRAIGHTENED = Expected(("right", "refused"), right_to=0.1)
 
 
-def through_the_meeting(share: float, side: float, car: str = "paper") -> Content:
+def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
     """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
-    angle, rack = MEETINGS[car]
-    law = (angle + WIDE[car], -2.0 * WIDE[car])
-    inputs: dict[str, Law] = {"arm_angle": law, "rack": rack + side * 10.0 * share}
-    return NAMED[car].absolute(inputs, stop=1.0, samples=5)
+    (angle, rack), wide = MEETINGS[subject.name], WIDE[subject.name]
+    inputs: dict[str, Law] = {"arm_angle": (angle + wide, -2.0 * wide), "rack": rack + side * 10.0 * share}
+    return subject.absolute(inputs, stop=1.0, samples=5)
 
 
-def flat_car(share: float, mirrored: bool) -> dict[str, np.ndarray]:
+def flat_car(share: float) -> dict[str, np.ndarray]:
     """The tie rod's outer end near the plane of kingpin and rack, on its own side or on the other."""
     p = assembled()
     ball = p["lower_ball_joint"]
     normal = np.cross(p["strut_lower"] - ball, p["tie_rod_inner"] - ball)
     normal /= np.linalg.norm(normal)
     height = float((p["tie_rod_outer"] - ball) @ normal)
-    moved = (-share if mirrored else share) - 1.0
-    return {**p, "tie_rod_outer": p["tie_rod_outer"] + moved * height * normal}
+    return {**p, "tie_rod_outer": p["tie_rod_outer"] + (share - 1.0) * height * normal}
 
 
-def from_a_flat_drawing(share: float, mirrored: bool) -> Content:
-    """From a drawing where the rod is all but locked, the rack runs to where it is not."""
-    points = {name: place.tolist() for name, place in flat_car(share, mirrored).items()}
-    return paper_car(PAPER.drawn["arm_angle"], (0.0, 0.0, 20.0), points=points, stop=1.0, samples=3)
+def flat_drawing(side: float, subject: Subject, share: float) -> Content:
+    """From a drawing where the rack is all but locked it runs to where it is not.
 
-
-def from_a_flat_wishbone(share: float, mirrored: bool) -> Content:
-    """The upper ball joint drawn near the plane of its pivots and the lower one, from where the arm goes."""
-    car = WISHBONE.car.drawn_as(flat_upper_arm(assembled("wishbone"), -share if mirrored else share))
+    Of a wishbone the arm does: its upper ball joint is drawn near the plane of its pivots and the lower one.
+    """
+    if subject is PAPER:
+        car, start, rack = (
+            subject.car.drawn_as(flat_car(side * share)),
+            subject.drawn["arm_angle"],
+            (0.0, 0.0, 20.0),
+        )
+        return scene_content(car, start, rack, stop=1.0, samples=3)
+    car = subject.car.drawn_as(upper_arm_flat(assembled(subject.name), side * share))
     inputs: dict[str, Law] = {"arm_angle": (drawn_angle(car), 0.0, -0.02), "rack": 0.0}
     return content_of(car, inputs, stop=1.0, samples=3)
 
 
-def crooked(share: float) -> Content:
-    """The strut's inner points drawn off its line, by up to 100 mm to opposite sides."""
-    aside = 100.0 * share
-    points = {name: place.tolist() for name, place in assembled().items()}
-    points["strut_lower"][0] += aside
-    points["strut_rod_end"][0] -= aside
-    points["strut_rod_end"][1] += aside
-    return paper_car((PAPER.drawn["arm_angle"], 0.1), (0.0, 10.0), points=points, stop=1.0)
+def crooked_drawing(_: Subject, share: float) -> Content:
+    """The drawing is the start of the assembly, and stands far from it.
+
+    The strut's inner points lie off its line, by up to 100 mm to opposite sides.
+    """
+    aside, points = 100.0 * share, assembled()
+    off = {"strut_lower": (aside, 0.0, 0.0), "strut_rod_end": (-aside, aside, 0.0)}
+    car = PAPER.car.drawn_as(points | {name: points[name] + way for name, way in off.items()})
+    return scene_content(car, (PAPER.drawn["arm_angle"], 0.1), (0.0, 10.0), stop=1.0)
 
 
-def far_start(subject: Subject, driven: str, ahead: bool, share: float) -> Content:
-    """The first instant near the last value of an input, by a share of half its range, the others at home."""
+def far_start(driven: str, ahead: bool, subject: Subject, share: float) -> Content:
+    """The drawing is the start guess, and the first instant lies at the far end of the range.
+
+    It is a share of half the range from the last value of an input, the others at home.
+    """
     last = last_value(subject, driven, ahead)
     law = (last.beyond(-0.5 * share), (-0.01 if ahead else 0.01) * last.reach)
     return subject.absolute({**subject.home, driven: law}, stop=1.0, samples=2)
 
 
-def whole_range(subject: Subject, driven: str, share: float) -> Content:
-    """Two instants, near both ends of an input."""
+def whole_range(driven: str, subject: Subject, share: float) -> Content:
+    """Two instants, and between them the whole range of an input: one step could leap over it."""
     low, high = (last_value(subject, driven, ahead).beyond(-0.5 * share) for ahead in (False, True))
     return subject.absolute({**subject.home, driven: (high, low - high)}, stop=1.0, samples=2)
 
 
-def _case(
-    name: str,
-    why: str,
-    parameter: str,
-    scene: Callable[[float], Content],
-    values: tuple[float, ...],
-    expected: Expected = CLEAR,
-    also_answered: tuple[float, ...] = (),
-) -> Case:
-    return scene_case(
-        name=name,
-        group=GROUP,
-        why=why,
-        parameter=parameter,
-        values=values,
-        expected=dict.fromkeys(SOLVERS, expected),
-        scene=scene,
-        also_answered=also_answered,
-    )
-
-
-def _far_starts() -> Iterator[Case]:
-    starts = [
-        (subject, where, driven, ahead, values)
-        for subject, values in ((PAPER, FEW), (WISHBONE, FEW[::3]))
-        for where, driven, ahead in (("high", "arm_angle", False), ("rack", "rack", True))
-    ]
-    starts += [
-        (subject, hyphens(driven), driven, ahead, (1e-4,))
-        for subject in OTHERS
-        for driven, ahead in ends_of(subject)
-        if ahead
-    ]
-    for subject, where, driven, ahead, values in starts:
-        yield _case(
-            f"far-start-{where}{subject.suffix}",
-            "The drawing is the start guess, and the first instant lies at the far end of the range.",
-            "distance of the first instant from the end, in parts of half the range",
-            partial(far_start, subject, driven, ahead),
-            values,
-        )
-
-
-def _whole_ranges() -> Iterator[Case]:
-    wholes = [
-        (subject, where, driven, values, also)
-        for subject, values, also in ((PAPER, FEW[1:], ()), (WISHBONE, FEW[2:], FEW[2:3]))
-        for where, driven in (("arm", "arm_angle"), ("rack", "rack"))
-    ]
-    wholes += [
-        (subject, hyphens(driven), driven, (1e-4,), ())
-        for subject in OTHERS
-        for driven in subject.kinds
-        if {(driven, False), (driven, True)} <= set(ends_of(subject))
-    ]
-    for subject, where, driven, values, also in wholes:
-        yield _case(
-            f"whole-range-{where}{subject.suffix}",
-            "Two instants, and between them the whole range of an input: one step could leap over it.",
-            "distance of both instants from their ends, in parts of half the range",
-            partial(whole_range, subject, driven),
-            values,
-            also_answered=also,
-        )
+_branch = partial(case, group="Branches")
+_clear = partial(_branch, expected=CLEAR)
 
 
 # Poses near a singular one, or at the drawing, of which the assemblies are counted.
 STARTS = 1000
 DEGREE = 64  # of the polynomial of the collinear strut in the literature
 Pose = Callable[[Subject, float], tuple[float, float]]
+"""Arm angle, rad, and rack travel, mm, at a value of the parameter."""
 
 
-def near_greatest_rack(subject: Subject, share: float) -> tuple[float, float]:
-    """Arm angle and rack travel near the last value of the rack."""
-    return SQUARE, last_value(subject, "rack", True).beyond(-share)
-
-
-def near_lowest_arm(subject: Subject, share: float) -> tuple[float, float]:
-    """Arm angle and rack travel near the last value of the arm angle."""
-    return last_value(subject, "arm_angle", True).beyond(-share), 0.0
-
-
-def beside_meeting(subject: Subject, share: float) -> tuple[float, float]:
-    """Arm angle and rack travel where the two sides of the tie rod nearly meet."""
+def _beside_meeting(subject: Subject, share: float) -> tuple[float, float]:
     angle, rack = MEETINGS[subject.name]
     return angle, rack + 10.0 * share
 
 
-def beside_drawing(subject: Subject, share: float) -> tuple[float, float]:
-    """Arm angle and rack travel some ordinary way from those of the drawing, far from every singular pose."""
+def _beside_drawing(subject: Subject, share: float) -> tuple[float, float]:
     return subject.drawn["arm_angle"] - 0.2 * share, subject.drawn["rack"] + 30.0 * share
 
 
 MERGING = "Closed forms say how many assemblies a pose may have, and near a singular pose two of them merge."
+ORDINARY = "Of all assemblies of an ordinary pose, up to sixteen by closed forms, one is meant."
 NEAR = decades(-12, -1)[::3]
 FEWER = (1e-1, 1e-10)  # each value is a search from a thousand starts
 # Name, why, parameter, pose, values of the strut and of the wishbone.
 POSES: tuple[tuple[str, str, str, Pose, tuple[float, ...], tuple[float, ...]], ...] = (
     (
         "drawing",
-        "Of all assemblies of an ordinary pose, up to sixteen by closed forms, one is meant.",
+        ORDINARY,
         "arm and rack from the drawing, in parts of 0.2 rad and 30 mm; then at it",
-        beside_drawing,
+        _beside_drawing,
         (1.0, 0.1, 0.0),
         (1.0, 0.0),
     ),
@@ -228,7 +149,7 @@ POSES: tuple[tuple[str, str, str, Pose, tuple[float, ...], tuple[float, ...]], .
         "rack",
         MERGING,
         "distance from the greatest rack travel, in parts of its range",
-        near_greatest_rack,
+        lambda subject, share: (SQUARE, last_value(subject, "rack", True).beyond(-share)),
         NEAR,
         FEWER,
     ),
@@ -236,7 +157,7 @@ POSES: tuple[tuple[str, str, str, Pose, tuple[float, ...], tuple[float, ...]], .
         "arm",
         MERGING,
         "distance from the greatest arm angle, in parts of its range",
-        near_lowest_arm,
+        lambda subject, share: (last_value(subject, "arm_angle", True).beyond(-share), 0.0),
         NEAR,
         FEWER,
     ),
@@ -244,110 +165,65 @@ POSES: tuple[tuple[str, str, str, Pose, tuple[float, ...], tuple[float, ...]], .
         "meeting",
         MERGING,
         "rack travel beyond the meeting of two branches, in parts of 10 mm",
-        beside_meeting,
+        _beside_meeting,
         NEAR,
         (),
     ),
 )
 
 
-def _counting() -> Iterator[Case]:
-    for where, why, parameter, pose, *both in POSES:
-        for subject, values in zip((PAPER, WISHBONE), both, strict=True):
-            if not values:
-                continue
+def posed(pose: Pose, subject: Subject, share: float) -> Content:
+    """The mechanism at rest at a pose."""
+    return subject.absolute(dict(zip(subject.kinds, pose(subject, share), strict=True)))
 
-            def posed(share: float, pose: Pose = pose, subject: Subject = subject) -> Content:
-                return subject.absolute(dict(zip(subject.kinds, pose(subject, share), strict=True)))
 
-            def counted(share: float, trial: Trial, posed: Callable[[float], Content] = posed) -> Trial:
-                scene = Scene.from_mapping(posed(share))
-                listed = count_assemblies(design_of(scene), inputs_at(scene, 0.0), starts=STARTS)
-                facts: dict[str, float | str] = {
-                    "assemblies found, proven": float(len(listed.found)),
-                    "starts": float(listed.starts),
-                }
-                return replace(trial, facts={**trial.facts, **facts})
-
-            yield scene_case(
-                name=f"assemblies-counted-{where}{subject.suffix}",
-                group=GROUP,
-                why=why,
-                parameter=parameter,
-                values=values,
-                scene=posed,
-                expected=dict.fromkeys(SOLVERS, RIGHT if where == "drawing" else CLEAR),
-                behaviour="of all assemblies that a search finds, the one of the drawing",
-                judged=counted,
-            )
+def counted(_: Subject, share: float, trial: Trial) -> Trial:
+    """How many assemblies there are."""
+    if trial.tried is None:
+        return trial
+    scene = trial.tried.scene
+    listed = count_assemblies(design_of(scene), inputs_at(scene, 0.0), starts=STARTS)
+    return trial.noting(
+        {"assemblies found, proven": float(len(listed.found)), "starts": float(listed.starts)}
+    )
 
 
 NEAR_MEETING = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
 BEYOND, SHORT = (f"rack travel {where} the meeting, in parts of 10 mm" for where in ("beyond", "short of"))
-BRANCHES: tuple[Case, ...] = (
-    _case(
-        "branches-nearly-meet",
-        f"{NEAR_MEETING}, and a step may end on the other one.",
-        BEYOND,
-        partial(through_the_meeting, side=1.0),
-        EVEN,
-    ),
-    _case(
-        "branches-met",
-        f"{NEAR_MEETING} and meet, so that there is a gap that a large step may leap.",
-        SHORT,
-        partial(through_the_meeting, side=-1.0),
-        ODD,
-        REFUSED,
-    ),
-    _case(
-        "branches-nearly-meet-beside",
-        f"{NEAR_MEETING} in the car whose strut passes beside the ball joint as well.",
-        BEYOND,
-        partial(through_the_meeting, side=1.0, car="beside"),
-        FEW,
-    ),
-    _case(
-        "branches-met-beside",
-        f"{NEAR_MEETING} and meet, in the car whose strut passes beside the ball joint.",
-        SHORT,
-        partial(through_the_meeting, side=-1.0, car="beside"),
-        ODD[::2],
-        REFUSED,
-    ),
-    *(
-        _case(
-            f"flat-drawing{'-mirrored' if mirrored else ''}",
-            "The drawing is close to its mirror image in the plane of kingpin and rack: rounding may choose.",
-            "height of the tie rod's outer end over that plane, in parts of the paper's",
-            partial(from_a_flat_drawing, mirrored=mirrored),
-            decades(),
-        )
-        for mirrored in (False, True)
-    ),
-    _case(
-        "crooked-drawing",
-        "The drawing is the start of the assembly, and stands far from it.",
-        "the strut's inner points off its line, in parts of 100 mm",
-        crooked,
-        decades(),
-        STRAIGHTENED,
-        also_answered=(1.0,),
-    ),
-    *_far_starts(),
-    *_whole_ranges(),
-    *(
-        _case(
-            f"flat-drawing{'-mirrored' if mirrored else ''}-wishbone",
-            "The drawing is close to its mirror image in the plane of the upper arm: rounding may choose.",
-            "height of the upper ball joint over that plane, in parts of the car's",
-            partial(from_a_flat_wishbone, mirrored=mirrored),
-            coarse(decades()),
-        )
-        for mirrored in (False, True)
-    ),
-    *_counting(),
+PASSING, MEETING = partial(through_the_meeting, 1.0), partial(through_the_meeting, -1.0)
+FAR = "distance of the first instant from the end, in parts of half the range"
+WHOLE = "distance of both instants from their ends, in parts of half the range"
+# Mechanism, what the name says of the input, the input, at which end, values.
+FAR_STARTS = (
+    (PAPER, "high", "arm_angle", False, FEW),
+    (PAPER, "rack", "rack", True, FEW),
+    (WISHBONE, "high", "arm_angle", False, FEW[::3]),
+    (WISHBONE, "rack", "rack", True, FEW[::3]),
+    *((one, hyphens(name), name, True, (1e-4,)) for one in OTHERS for name, up in ends_of(one) if up),
 )
+ALSO: Mapping[str, Values] = {"also_answered": FEW[2:3]}
+# Mechanism, what the name says of the input, the input, values, and where there is an answer as well.
+WHOLE_RANGES: tuple[tuple[Subject, str, str, Values, Mapping[str, Values]], ...] = (
+    (PAPER, "arm", "arm_angle", FEW[1:], {}),
+    (PAPER, "rack", "rack", FEW[1:], {}),
+    (WISHBONE, "arm", "arm_angle", FEW[2:], ALSO),
+    (WISHBONE, "rack", "rack", FEW[2:], ALSO),
+    *(
+        (one, hyphens(name), name, (1e-4,), {})
+        for one in OTHERS
+        for name in one.kinds
+        if {(name, False), (name, True)} <= set(ends_of(one))
+    ),
+)
+SIDES = (("", 1.0), ("-mirrored", -1.0))
+MIRROR = "The drawing is close to its mirror image in the plane of {}: rounding may choose."
+
+
+def _flat_drawings(subject: Subject, plane: str, parameter: str, values: tuple[float, ...]) -> Iterator[Case]:
+    for label, side in SIDES:
+        scene, name = partial(flat_drawing, side), f"flat-drawing{label}"
+        yield _clear(scene, parameter, values, subject=subject, name=name, why=MIRROR.format(plane))
+
 
 # Turn of the drawing, rad, at which branches cross, or beyond which there is none.
 BY_NATURE = {
@@ -363,29 +239,105 @@ NEAR_THE_LINE = (
 )
 
 
-def _to_the_line(subject: Subject, turn: float, beyond: bool, moving: bool, value: float) -> Content:
+def to_the_line(beyond: bool, moving: bool, subject: Subject, value: float) -> Content:
     """A share of the way from the drawing short of a turn, or beyond it: at rest there, or there in 1 s."""
     (driven,) = subject.kinds
-    goal = turn * (1.0 - (-value if beyond else value))
+    goal = BY_NATURE[subject.name][0] * (1.0 - (-value if beyond else value))
     if moving:
         return subject.absolute({driven: [0.0, goal]}, stop=1.0, samples=3)
     return subject.absolute({driven: goal})
 
 
-CASES: tuple[Case, ...] = (
-    *BRANCHES,
+CASES = (
+    _branch(
+        PASSING,
+        BEYOND,
+        EVEN,
+        CLEAR,
+        name="branches-nearly-meet",
+        why=f"{NEAR_MEETING}, and a step may end on the other one.",
+    ),
+    _branch(
+        MEETING,
+        SHORT,
+        ODD,
+        REFUSED,
+        name="branches-met",
+        why=f"{NEAR_MEETING} and meet, so that there is a gap that a large step may leap.",
+    ),
+    _branch(
+        PASSING,
+        BEYOND,
+        FEW,
+        CLEAR,
+        NAMED["beside"],
+        name="branches-nearly-meet",
+        why=f"{NEAR_MEETING} in the car whose strut passes beside the ball joint as well.",
+    ),
+    _branch(
+        MEETING,
+        SHORT,
+        ODD[::2],
+        REFUSED,
+        NAMED["beside"],
+        name="branches-met",
+        why=f"{NEAR_MEETING} and meet, in the car whose strut passes beside the ball joint.",
+    ),
+    *_flat_drawings(
+        PAPER,
+        "kingpin and rack",
+        "height of the tie rod's outer end over that plane, in parts of the paper's",
+        decades(),
+    ),
+    _branch(
+        crooked_drawing,
+        "the strut's inner points off its line, in parts of 100 mm",
+        decades(),
+        STRAIGHTENED,
+        also_answered=(1.0,),
+    ),
     *(
-        scene_case(
-            name=f"{name}{subject.suffix}",
-            group="Mechanisms that are hard by nature",
+        _clear(partial(far_start, driven, ahead), FAR, values, subject=subject, name=f"far-start-{where}")
+        for subject, where, driven, ahead, values in FAR_STARTS
+    ),
+    *(
+        _clear(
+            partial(whole_range, driven), WHOLE, values, subject=subject, name=f"whole-range-{where}", **more
+        )
+        for subject, where, driven, values, more in WHOLE_RANGES
+    ),
+    *_flat_drawings(
+        WISHBONE,
+        "the upper arm",
+        "height of the upper ball joint over that plane, in parts of the car's",
+        coarse(decades()),
+    ),
+    *(
+        _branch(
+            partial(posed, pose),
+            parameter,
+            values,
+            RIGHT if where == "drawing" else CLEAR,
+            subject,
+            name=f"assemblies-counted-{where}",
+            why=why,
+            behaviour="of all assemblies that a search finds, the one of the drawing",
+            judged=counted,
+        )
+        for where, why, parameter, pose, *both in POSES
+        for subject, values in zip((PAPER, WISHBONE), both, strict=True)
+        if values
+    ),
+    *(
+        case(
+            partial(to_the_line, beyond, moving),
+            f"distance from it, in parts of the way from the drawing{', beyond' * beyond}",
+            (1e-2,) if beyond else (1e-1, 1e-4),
+            REFUSED if beyond else expected_of(subject, Expected(("right", "refused"), right_from=1e-3)),
+            subject,
+            name=name,
             why=f"{why} {BY_NATURE[subject.name][1]}",
-            parameter="distance from it, in parts of the way from the drawing"
-            + (", beyond" if beyond else ""),
-            values=(1e-2,) if beyond else (1e-1, 1e-4),
-            scene=partial(_to_the_line, subject, BY_NATURE[subject.name][0], beyond, moving),
-            expected=dict.fromkeys(SOLVERS, REFUSED)
-            if beyond
-            else expected_of(subject, Expected(("right", "refused"), right_from=1e-3)),
+            group="Mechanisms that are hard by nature",
             # Up to where branches cross the reference needs a minute and more of ever shorter steps.
             proven=not beyond,
         )

@@ -1,19 +1,21 @@
 """The ends of the inputs, where arm, tie rod or the knuckle's upper end lock: near each, and beyond it.
 
 An end is a fold: two assemblies meet there as the root of the distance, rates grow as its inverse root and
-the condition number with them. A value held inside an end has a pose, one beyond it has none.
+the condition number with them. A value held inside an end has a pose, one beyond it has none, and the refusal
+of what is driven beyond it is compared with the true end (see `reach`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
+from typing import NamedTuple
 
 from validate.hard.cars import SQUARE
-from validate.hard.case import REFUSED, Case, Expected, decades
-from validate.hard.family import NAMED, OTHERS, Content, Subject, hyphens
+from validate.hard.case import REFUSED, Case, Expected, Values, case, decades
+from validate.hard.cases.reach import ANY, ARM, SLIDE, TIE_ROD, UPPER_ARM, Drive, driven_beyond
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.trial import scene_case
+from validate.hard.subjects import NAMED, OTHERS, Content, Subject, hyphens
 
 # Down to where each model has to be right; nearer it may refuse with a reason.
 # pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which is at 1e-12 of the way
@@ -31,8 +33,6 @@ NEAR_END = dict.fromkeys(("pointcoord", "absolute", "relative"), Expected(("righ
 FULL = decades(-12, -1)
 COARSE = (*decades(-11, -1)[::2], 1e-2, 1e-12)
 SPARSE = (1e-1, 1e-4, 1e-8, 1e-12)
-WAYS = (False, True)
-HIGHEST, LEAST = ("highest", "lowest"), ("least", "greatest")  # the ball joint is highest at the least angle
 # How the input comes to its end, and what that adds to the reason.
 LAWS = {
     "held": "",
@@ -41,134 +41,160 @@ LAWS = {
 }
 
 
-def near_content(
-    subject: Subject, driven: str, ahead: bool, arm_angle: float | None, law: str, value: float
-) -> Content:
+class End(NamedTuple):
+    """An end of an input.
+
+    Attributes:
+        ahead: whether the upper one.
+        where: what happens there.
+        lock: what lies in line there.
+        group: of the cases near it.
+    """
+
+    driven: str
+    ahead: bool
+    where: str
+    lock: str = ANY
+    group: str = "Inputs at their ends, of every mechanism"
+
+
+def near_end(end: End, arm_angle: float | None, law: str, subject: Subject, value: float) -> Content:
     """The scene near an end of an input, or beyond it.
 
     Args:
-        ahead: whether the upper end.
         arm_angle: at which a rack is driven; the other inputs are as drawn.
         law: held near the end, moving from the middle of the range to there in one second, or held beyond.
     """
     held = dict(subject.drawn) | ({} if arm_angle is None else {"arm_angle": arm_angle})
-    last = last_value(subject, driven, ahead, held)
-    end = float(last.value)
-    across = -last.reach if ahead else last.reach
-    near = end + (-value if law == "beyond" else value) * across
-    middle = end + 0.5 * across
+    last = last_value(subject, end.driven, end.ahead, held)
+    at, across = float(last.value), -last.reach if end.ahead else last.reach
+    near = at + (-value if law == "beyond" else value) * across
+    middle = at + 0.5 * across
     way: float | Sequence[float] = [middle, near - middle] if law == "moving" else near
-    return subject.absolute({**held, driven: way}, stop=1.0 if law == "moving" else None)
+    return subject.absolute({**held, end.driven: way}, stop=1.0 if law == "moving" else None)
 
 
-def _cases(
+def _near(
     name: str,
-    group: str,
-    why: str,
-    car: str,
-    driven: str,
-    ahead: bool,
+    end: End,
+    subject: Subject,
+    suffix: str,
+    values: Values,
     arm_angle: float | None = None,
-    values: tuple[float, ...] | None = None,
-    newton: bool = False,
     laws: Sequence[str] = tuple(LAWS),
-    suffix: str = "",
-) -> tuple[Case, ...]:
-    def case(law: str) -> Case:
-        beyond = law == "beyond"
-        expected = dict.fromkeys(NEAR_END, REFUSED) if beyond else NEAR_END
-        return scene_case(
-            name=f"{name}{f'-{law}' if len(laws) > 1 else ''}{suffix}",
-            group=group,
-            why=why + LAWS[law],
-            parameter="distance from the end, in parts of the input's range"
-            + (", beyond it" if beyond else ""),
+) -> Iterator[Case]:
+    for law in laws:
+        expected = dict.fromkeys(NEAR_END, REFUSED) if law == "beyond" else NEAR_END
+        newton = {"pointcoord-newton": expected["pointcoord"]} if end.group == UPPER else {}
+        at = "" if arm_angle is None else f", the arm at {arm_angle:.4g} rad"
+        yield case(
+            partial(near_end, end, arm_angle, law),
+            f"distance from the end, in parts of the input's range{', beyond it' * (law == 'beyond')}",
             # A motion takes longest; with another car than the first few values must do.
-            values=values or (COARSE if law == "moving" and suffix else FULL),
-            scene=partial(near_content, NAMED[car], driven, ahead, arm_angle, law),
-            expected=expected | ({"pointcoord-newton": expected["pointcoord"]} if newton else {}),
+            values or (COARSE if law == "moving" and suffix else FULL),
+            expected | newton,
+            subject,
+            name=f"{name}-{law}" if len(laws) > 1 else name,
+            suffix=suffix,
+            group=end.group,
+            why=f"{end.where}{at}{LAWS[law]}.",
         )
 
-    return tuple(case(law) for law in laws)
+
+def _beyond(name: str, end: End, subject: Subject, suffix: str, moving: bool, values: Values) -> Case:
+    drive = Drive(subject, end.driven, end.ahead, end.lock, moving)
+    turned = ", in a car mirrored, turned and 4e6 mm from the origin" if suffix.endswith("-turned") else ""
+    return driven_beyond(drive, f"{name}{suffix}", end.where + turned, values)
 
 
-ARMS = (("paper", "", None), ("other", "-turned", None), ("short-arm", "-wishbone", SPARSE))
-RACKS = (
-    ("paper", "", SQUARE, "", None),
-    ("other", "-turned", SQUARE, "", None),
-    ("wishbone", "-wishbone", SQUARE, "", SPARSE),
-    ("paper", "", 1.25, "-arm-high", None),
-    ("paper", "", 1.9, "-arm-low", None),
+ARM_GROUP, RACK_GROUP = "The arm at its dead points", "Tie rod and steering arm in line"
+UPPER = "The knuckle's upper end out of reach"
+IN_LINE, ON_CIRCLE = (
+    "Tie rod and steering arm lie in line",
+    "The ball joint is {} on its circle, where height says no more",
 )
-UPPER_GROUP = "The knuckle's upper end out of reach"
-CASES: tuple[Case, ...] = (
-    *(
-        case
-        for car, suffix, values in ARMS
-        for ahead in WAYS
-        for case in _cases(
-            f"arm-{HIGHEST[ahead]}",
-            "The arm at its dead points",
-            f"the ball joint is {HIGHEST[ahead]} on its circle: its height says no more",
-            car,
-            "arm_angle",
-            ahead,
-            values=values,
-            suffix=suffix,
-        )
-    ),
-    *(
-        case
-        for car, suffix, angle, where, values in RACKS
-        for ahead in WAYS
-        for case in _cases(
-            f"rack-{LEAST[ahead]}{where}",
-            "Tie rod and steering arm in line",
-            f"the rack is at its {LEAST[ahead]} travel at {angle:.4g} rad: "
-            "tie rod and steering arm lie in line",
-            car,
-            "rack",
-            ahead,
-            angle,
-            values,
-            laws=("held",) if where else tuple(LAWS),
-            suffix=suffix,
-        )
-    ),
-    *_cases(
-        "slide-runs-out",
-        UPPER_GROUP,
-        "the ball joint is as near to the strut's top as it lies beside the axis: it has no more way",
-        "wide",
+ENDS = {
+    "arm-highest": End("arm_angle", False, ON_CIRCLE.format("highest"), ARM, ARM_GROUP),
+    "arm-lowest": End("arm_angle", True, ON_CIRCLE.format("lowest"), ARM, ARM_GROUP),
+    "rack-least": End("rack", False, IN_LINE, TIE_ROD, RACK_GROUP),
+    "rack-greatest": End("rack", True, IN_LINE, TIE_ROD, RACK_GROUP),
+    "slide-runs-out": End(
         "arm_angle",
         False,
-        values=FULL,
-        newton=True,
+        "The ball joint is as near to the strut's top as it lies beside the axis: the slide has no more way",
+        *(SLIDE, UPPER),
     ),
-    *_cases(
-        "upper-arm-locks",
-        UPPER_GROUP,
-        "upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
-        "wishbone",
+    "upper-arm-locks": End(
         "arm_angle",
         True,
-        values=COARSE[::2],
-        newton=True,
+        "Upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
+        *(UPPER_ARM, UPPER),
+    ),
+    "tie-rod-locks-the-arm": End(
+        "arm_angle", False, "The arm turns until tie rod and steering arm lie in line", TIE_ROD, UPPER
+    ),
+}
+ARMS, RACKS = ("arm-highest", "arm-lowest"), ("rack-least", "rack-greatest")
+# Ends, car, what the name adds; values, if not as usual; where the arm stands.
+NEAR: tuple[tuple[Sequence[str], str, str, Values, float | None], ...] = (
+    (ARMS, "paper", "", (), None),
+    (ARMS, "other", "-turned", (), None),
+    (ARMS, "short-arm", "-wishbone", SPARSE, None),
+    (RACKS, "paper", "", (), SQUARE),
+    (RACKS, "other", "-turned", (), SQUARE),
+    (RACKS, "wishbone", "-wishbone", SPARSE, SQUARE),
+    (RACKS, "paper", "-arm-high", (), 1.25),
+    (RACKS, "paper", "-arm-low", (), 1.9),
+    (("slide-runs-out",), "wide", "", FULL, None),
+    (("upper-arm-locks",), "wishbone", "", COARSE[::2], None),
+)
+# Every refusal is a whole motion towards a fold, so few values must do.
+EIGHT, FOUR, ENDS_ONLY = (*decades()[::2], 1e-11), decades()[::4], decades()[::12]
+# Ends, car, what the name adds; values of a motion beyond it, and of a first instant there.
+BEYOND: tuple[tuple[Sequence[str], str, str, Values, Values], ...] = (
+    ((*ARMS, *RACKS), "paper", "", FOUR, EIGHT),
+    ((*ARMS, *RACKS), "turned", "-turned", ENDS_ONLY, ()),
+    (ARMS, "short-arm", "-wishbone", ENDS_ONLY, ()),
+    (RACKS, "wishbone", "-wishbone", ENDS_ONLY, ()),
+    (RACKS[1:], "wishbone-turned", "-wishbone-turned", (1e-6,), ()),
+    (("slide-runs-out",), "wide", "", FOUR, EIGHT),
+    (("upper-arm-locks", "tie-rod-locks-the-arm"), "wishbone", "", ENDS_ONLY, FOUR),
+)
+OF_OTHERS = tuple(
+    (
+        f"{hyphens(driven)}-{size}",
+        End(driven, ahead, f"{driven} is at its {size}, the other inputs as drawn"),
+        subject,
+    )
+    for subject in OTHERS
+    for driven, ahead in ends_of(subject)
+    for size in (("least", "greatest")[ahead],)
+)
+
+CASES = (
+    *(
+        case
+        for names, car, suffix, values, arm_angle in NEAR
+        # Where the arm stands high or low the rack is only held.
+        for laws in (tuple(LAWS) if arm_angle in (None, SQUARE) else ("held",),)
+        for name in names
+        for case in _near(name, ENDS[name], NAMED[car], suffix, values, arm_angle, laws)
     ),
     *(
         case
-        for subject in OTHERS
-        for driven, ahead in ends_of(subject)
-        for case in _cases(
-            f"{hyphens(driven)}-{LEAST[ahead]}",
-            "Inputs at their ends, of every mechanism",
-            f"{driven} is at its {LEAST[ahead]} and goes no further, the other inputs as drawn",
-            subject.name,
-            driven,
-            ahead,
-            values=(1e-4,),
-            laws=("held", "beyond"),
-            suffix=subject.suffix,
-        )
+        for name, end, subject in OF_OTHERS
+        for case in _near(name, end, subject, subject.suffix, (1e-4,), laws=("held", "beyond"))
+    ),
+    *(
+        _beyond(name, ENDS[name], NAMED[car], suffix, moving, values)
+        for names, car, suffix, *both in BEYOND
+        for moving, values in zip((True, False), both, strict=True)
+        for name in names
+        if values
+    ),
+    *(
+        _beyond(name, end, subject, subject.suffix, moving, (1e-3,))
+        for name, end, subject in OF_OTHERS
+        for moving in (True, False)
     ),
 )

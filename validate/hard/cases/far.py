@@ -20,16 +20,14 @@ from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import reference_solution
 from validate.cars.car import moved, scaled
 from validate.formulations.protocol import Accuracy, Solution
+from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import SQUARE
-from validate.hard.case import RIGHT, Answer, Case, Expected, Trial, decades
-from validate.hard.cases.points import OUT_OF_PROPORTION
-from validate.hard.classify import judged_answer
-from validate.hard.family import BESIDE, SOLVERS, SUBJECTS, Content, Subject, family, values_of
-from validate.hard.trial import Tried, solved, try_scene
+from validate.hard.case import RIGHT, Expected, decades, family
+from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, WISHBONE, Content, Subject
+from validate.hard.trial import Trial, Tried, solved
 
 Array = NDArray[np.float64]
 
-GROUP = "Far from the origin, and mixed sizes"
 AWAY = (1.0, -1.0, 3.0)
 # A model subtracts an origin of its own that lies within a few sizes of the car, wherever the car is: its
 # own coordinates are up to 8 sizes instead of 1, and rounded so much more coarsely.
@@ -70,48 +68,41 @@ def errors(solution: Solution, reference: Solution) -> dict[str, float]:
     }
 
 
-def far_car(value: float, subject: Subject = SUBJECTS[0]) -> Content:
-    """The car moved by 1 mm over the parameter."""
+def far_from_the_origin(subject: Subject, value: float) -> Content:
+    """Far from the origin coordinates keep few digits of the car, and differences lose more."""
     return moved_car(1.0 / value, subject)
 
 
-def far(value: float, subject: Subject = SUBJECTS[0]) -> Trial:
-    """The moved car, each rate held to what the car at home may be off by."""
-    found: list[Tried] = []
-
-    def measure(tried: Tried) -> Mapping[str, float | str]:
-        found.append(tried)
-        if tried.reference is None:
-            return {}
-        ratios: dict[str, float | str] = {}
-        for name, solution in tried.solutions.items():
-            home = at_home(name, subject)[1]
-            for quantity, error in errors(solution, tried.reference).items():
-                text = f"error of {quantity.replace('_', ' ')} of {name}, times that at home"
-                ratios[text] = error / home[quantity] if home[quantity] else float(error > 0.0)
-        return ratios
-
-    trial = try_scene(value, far_car(value, subject), SOLVERS, measure)
-    answers = tuple(_as_at_home(answer, found[0], subject) for answer in trial.answers)
-    return replace(trial, answers=answers)
+def as_at_home(subject: Subject, value: float, trial: Trial) -> Trial:
+    """The trial of a moved car, each rate held to what the car at home may be off by."""
+    tried = trial.tried
+    if tried is None or tried.known is None:
+        return trial
+    ratios: dict[str, float | str] = {}
+    for name, solution in tried.solutions.items():
+        home = at_home(name, subject)[1]
+        for quantity, error in errors(solution, tried.known).items():
+            text = f"error of {quantity.replace('_', ' ')} of {name}, times that at home"
+            ratios[text] = error / home[quantity] if home[quantity] else float(error > 0.0)
+    answers = tuple(_as_at_home(a, tried, subject) if a.outcome == "right" else a for a in trial.answers)
+    return replace(trial, answers=answers).noting(ratios)
 
 
 def _as_at_home(answer: Answer, tried: Tried, subject: Subject) -> Answer:
-    """An answer that is right by its own bounds, held to those that the car has at home as well.
+    """An answer that is right by its own bounds, compared by those that the car has at home as well.
 
     Positions are allowed one rounding of a far coordinate more; then they are taken as true, and rates and
     angles are allowed nothing more than at home.
     """
-    if answer.outcome != "right" or tried.reference is None:
-        return answer
     solution, home = tried.solutions[answer.formulation], at_home(answer.formulation, subject)[0]
+    assert tried.known is not None  # else nothing is right
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
-    for away, position in ((farthest, places), (nearest, tried.reference.position)):
+    for away, position in ((farthest, places), (nearest, tried.known.position)):
         strict = replace(
             solution.with_numbers({"position": position}), accuracy=_held_to(home.accuracy, EPS * away)
         )
-        judged = judged_answer(tried.scene, strict, tried.reference)
+        judged = judged_answer(tried.scene, strict, tried.known)
         if judged.outcome != "right":
             reason = f"by the bounds of the car at home: {judged.reason}"
             return replace(answer, outcome="wrong", reason=reason)
@@ -130,75 +121,64 @@ def _held_to(home: Accuracy, rounding: float) -> Accuracy:
     return replace(home, claims={"position": widened("position", rounding), **rates})
 
 
-def scaled_car(scale: float, subject: Subject = SUBJECTS[0]) -> Content:
+def scaled_car(subject: Subject, scale: float) -> Content:
     """A car in motion, all lengths multiplied."""
     there, lengths = scaled(subject.car, scale), tuple(scale * x for x in MM)
     return subject.content(RAD, lengths, car=there, scale=scale, tolerance=1e-9 * scale, stop=0.4)
 
 
-def heaved_back(subject: Subject, value: float) -> Content:
-    """The car drawn far up, with a heave that brings it back to where it is at home."""
+def far_and_heaved_back(subject: Subject, value: float) -> Content:
+    """Drawn far up and heaved back, a car comes to stand near the origin by two far coordinates."""
     distance = 1.0 / value
     there = moved(subject.car, distance * np.array(subject.car.up))
     return subject.content(RAD, MM, (-distance, 20.0), car=there, stop=0.4)
 
 
-def _far_case(subject: Subject) -> Case:
-    whys = {
-        "paper": "Far from the origin coordinates keep few digits of the car, and differences lose more.",
-        "beside": "The same with the strut's axis beside the ball joint: one more difference of places.",
-        "wishbone": "The same of a double wishbone, whose knuckle has no direction of its own.",
-    }
-    return Case(
-        name=f"far-from-the-origin{subject.suffix}",
-        group=GROUP,
-        why=whys.get(subject.name, whys["paper"]),
-        parameter="1 mm over the distance along x; thrice as far along z",
-        values=values_of(subject, decades()),
-        expected={"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
-        behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
-        examine=partial(far, subject=subject),
-        content=partial(far_car, subject=subject),
-    )
+WHYS = {
+    BESIDE: "The same with the strut's axis beside the ball joint: one more difference of places.",
+    WISHBONE: "The same of a double wishbone, whose knuckle has no direction of its own.",
+}
+_far = partial(family, group="Far from the origin, and mixed sizes")
+_sizes = partial(_far, scaled_car, "size, in parts of a car of some 500 mm")
 
-
-_sizes = partial(
-    family,
-    group=GROUP,
-    parameter="size, in parts of a car of some 500 mm",
-    scene=lambda subject, scale: scaled_car(scale, subject),
-    expected=RIGHT,
-)
-
-CASES: tuple[Case, ...] = (
-    *(_far_case(subject) for subject in (SUBJECTS[0], BESIDE, *SUBJECTS[1:])),
-    *family(
-        name="far-and-heaved-back",
-        group=GROUP,
-        why="Drawn far up and heaved back, a car comes to stand near the origin by two far coordinates.",
-        parameter="1 mm over the distance along up, which the heave cancels",
-        values=decades(-9),
-        scene=heaved_back,
-        expected=RIGHT,
-        needs_heave=True,
+CASES = (
+    *(
+        case
+        for subject in (SUBJECTS[0], BESIDE, *SUBJECTS[1:])
+        for case in _far(
+            far_from_the_origin,
+            "1 mm over the distance along x; thrice as far along z",
+            decades(),
+            {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
+            [subject],
+            strict=True,
+            why=WHYS.get(subject, ""),
+            behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
+            judged=as_at_home,
+        )
+    ),
+    *_far(
+        far_and_heaved_back,
+        "1 mm over the distance along up, which the heave cancels",
+        decades(-9),
+        subjects=HEAVING,
     ),
     *_sizes(
+        tuple(2.0**k for k in range(11, -20, -3)),
+        subjects=SUBJECTS[:1],
         name="sizes-by-powers-of-two",
         why="Squares of small and large lengths differ by twice as many decades as the lengths.",
-        values=tuple(2.0**k for k in range(11, -20, -3)),
-        subjects=SUBJECTS[:1],
     ),
     *_sizes(
+        decades(-6, 4),
+        subjects=SUBJECTS[:1],
         name="sizes-by-powers-of-ten",
         why="As by powers of two, and every coordinate is rounded anew.",
-        values=decades(-6, 4),
-        subjects=SUBJECTS[:1],
     ),
     *_sizes(
+        decades(-6, 4),
+        subjects=(BESIDE, *SUBJECTS[1:]),
         name="sizes",
         why="By powers of ten, another mechanism.",
-        values=decades(-6, 4),
-        subjects=(BESIDE, *SUBJECTS[1:]),
     ),
-    *OUT_OF_PROPORTION,
 )

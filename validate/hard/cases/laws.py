@@ -18,11 +18,11 @@ import numpy as np
 
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.input_rates import rates
-from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, Case, Expected, Trial, decades
+from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, SOLVERS, Case, Expected, decades, family
 from validate.hard.cases.ends import NEAR_END
-from validate.hard.family import SOLVERS, SUBJECTS, Content, Subject, family, hyphens, moved_by
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.trial import Facts, Tried
+from validate.hard.subjects import HEAVING, SUBJECTS, Content, Subject, hyphens, moved_by
+from validate.hard.trial import Trial
 
 OURS = dict.fromkeys(SOLVERS, RIGHT)
 # A motion by series may take too many of them, or need steps below the rounding of time, and has to say
@@ -34,19 +34,25 @@ JUMP = BY_STEPS | {"pointcoord": Expected(("right", "refused"), right_from=1e-6)
 TURN = 2.0 * math.pi
 
 
-def _scaled(subject: Subject, rate: float) -> Content:
-    """The same way at any rate of an angle, rad/s, within its own time."""
+def slow_inputs(subject: Subject, rate: float) -> Content:
+    """The same way in ever longer time: rates lie far below the lengths."""
     return subject.content([-0.1, rate], [0.0, 100.0 * rate], stop=0.2 / rate)
 
 
-def _long_sine(subject: Subject, duration: float) -> Content:
-    """One swing a second."""
+def fast_inputs(subject: Subject, rate: float) -> Content:
+    """The same way in ever shorter time: rates and their squares lie far above the lengths."""
+    return slow_inputs(subject, rate)
+
+
+def long_sine(subject: Subject, duration: float) -> Content:
+    """A swing a second for ever longer: a motion by series needs some segments for each swing."""
     swing = {"amplitude": 0.2, "angular_frequency": TURN}
     other = {"amplitude": 30.0, "angular_frequency": 1.5 * TURN, "phase": 0.3}
     return subject.content({"sine": swing}, {"sine": other}, stop=duration, samples=4)
 
 
-def _phase(subject: Subject, turns: float) -> Content:
+def phase_of_many_turns(subject: Subject, turns: float) -> Content:
+    """Added to the angle, a large phase would swallow the digits of time."""
     wave = {"amplitude": 0.2, "angular_frequency": TURN, "phase": TURN * turns + 0.3}
     if "rad" in subject.units.values():
         return subject.content({"sine": wave}, [0.0, 20.0], stop=0.5)
@@ -57,22 +63,39 @@ def _phase(subject: Subject, turns: float) -> Content:
 STOPPING = (0.0, 0.0, 16.0, -32.0, 16.0)
 
 
-def _at_rest(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
+def _stopping(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
     """That way of every input, of some size, from one time to another."""
     laws = ([0.2 * size * c for c in STOPPING], [30.0 * size * c for c in STOPPING])
     return subject.content(*laws, start=start, stop=stop)
 
 
-def rate_rounding(tried: Tried) -> Facts:
+def start_from_rest(subject: Subject, value: float) -> Content:
+    """The inputs start from rest: rates tend to zero, accelerations do not."""
+    return _stopping(subject, 0.0, value)
+
+
+def come_to_rest(subject: Subject, value: float) -> Content:
+    """The inputs come to rest: rates tend to zero as a difference of large terms."""
+    return _stopping(subject, 1.0 - value, 1.0)
+
+
+def seen_at_rest_only(subject: Subject, size: float) -> Content:
+    """Every instant of the scene is one where the inputs rest for a moment, between which they move."""
+    return _stopping(subject, 0.0, 1.0, size)
+
+
+def rate_rounding(_: Subject, value: float, trial: Trial) -> Trial:
     """What a rate of the last input is off in doubles, where the reference takes it; 0 is no error."""
-    part, instants = list(tried.scene.inputs.values())[-1], tried.scene.instants
+    if trial.tried is None:
+        return trial
+    part, instants = list(trial.tried.scene.inputs.values())[-1], trial.tried.scene.instants
     slope = [k * Fraction(c) for k, c in enumerate(part.polynomial or ())][1:]
     given = rates(part, instants)[:, 1]
     worst = max(
         abs(Fraction(rate) - sum((c * Fraction(t) ** k for k, c in enumerate(slope)), Fraction(0)))
         for t, rate in zip(instants.tolist(), given.tolist(), strict=True)
     )
-    return {"rounding of a rate": float(worst), "largest rate": float(np.abs(given).max())}
+    return trial.noting({"rounding of a rate": float(worst), "largest rate": float(np.abs(given).max())})
 
 
 # Up, down and up again, with a sharp bend of the acceleration at each inner time.
@@ -84,20 +107,21 @@ def _table(times: Sequence[float], values: Sequence[float]) -> dict[str, Any]:
     return {"table": {"times": list(times), "values": list(values)}}
 
 
-def _about_a_kink(subject: Subject, value: float) -> Content:
+def kink_of_a_table(subject: Subject, value: float) -> Content:
+    """The third derivative jumps at a time of a spline."""
     laws = (_table(KNOTS, [size * bend for bend in BENDS]) for size in (0.1, 20.0))
     return subject.content(*laws, start=0.4 - value, stop=0.4 + value)
 
 
-def _close_knots(subject: Subject, value: float) -> Content:
-    """A smooth way through two times that are close together: only rounding lies between their values."""
+def close_times_of_a_table(subject: Subject, value: float) -> Content:
+    """Two times of a spline lie close together: rounding of their values is divided by their distance."""
     times = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0)
     laws = (_table(times, [size * math.sin(3.0 * t) for t in times]) for size in (0.1, 20.0))
     return subject.content(*laws, stop=1.0, samples=5)
 
 
-def _jerk(subject: Subject, value: float) -> Content:
-    """A jump within this time, of the first input alone: acceleration bends up and down again."""
+def jump_of_a_table(subject: Subject, value: float) -> Content:
+    """An input moves within a very short time: accelerations grow as its inverse square."""
     times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), next(iter(subject.units))
     step = 0.01 if subject.units[first] == "rad" else 1.0
     jump = moved_by(_table(times, [step if t > 0.5 else 0.0 for t in times]), subject.home[first])
@@ -120,29 +144,46 @@ def told_as_rough(subject: Subject, value: float, trial: Trial) -> Trial:
     return replace(trial, answers=answers)
 
 
-def _far_in_time(subject: Subject, start: float) -> Content:
+def far_in_time(subject: Subject, start: float) -> Content:
+    """Time itself has few digits left for the swing."""
     swings = ({"sine": {"amplitude": size, "angular_frequency": 1.0}} for size in (0.2, 20.0))
     return subject.content(*swings, start=start, stop=start + 1.0)
 
 
-def _heaving(subject: Subject, value: float) -> Content:
+def only_heave(subject: Subject, value: float) -> Content:
+    """The whole car moves while arm and rack rest: the knuckle must not turn."""
     wave = {"amplitude": 100.0 * value, "angular_frequency": 3.0}
     return subject.content(heave={"sine": wave}, stop=1.0)
 
 
-def _short(subject: Subject, value: float, start: float = 0.0) -> Content:
+def short_scene(subject: Subject, value: float, start: float = 0.0) -> Content:
+    """Every instant must stay inside a scene however short."""
     return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=start, stop=start + value, samples=4)
 
 
-def _before_a_lock(subject: Subject, value: float) -> Content:
-    """The motion would lock right after its end: at time 1, and it stops this much earlier."""
+def short_scene_late(subject: Subject, value: float) -> Content:
+    """A scene of a few roundings of its time."""
+    return short_scene(subject, value, 1.0)
+
+
+def stop_before_a_lock(subject: Subject, value: float) -> Content:
+    """The motion ends just before its links lock, and its law goes on beyond.
+
+    It would lock at time 1, and it stops this much earlier.
+    """
     driven, ahead = ("rack", False) if subject.level else ends_of(subject)[0]
     way = float(last_value(subject, driven, ahead).value) - subject.home[driven]
     return subject.content([0.0, way], [0.0, way], only=driven, stop=1.0 - value)
 
 
-def _tolerance(subject: Subject, value: float) -> Content:
+def fine_tolerance(subject: Subject, value: float) -> Content:
+    """A tolerance below what rounding allows."""
     return subject.content([-0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
+
+
+def loose_tolerance(subject: Subject, value: float) -> Content:
+    """A tolerance above the size of the car."""
+    return fine_tolerance(subject, value)
 
 
 # Sums whose terms all but cancel.
@@ -154,7 +195,7 @@ POWERS = (4, 6)
 MOST = 20
 
 
-def cancelling_sine(unit: str, value: float) -> dict[str, Any]:
+def _cancelling_sine(unit: str, value: float) -> dict[str, Any]:
     """An offset that all but cancels the swing at time 0, by the reciprocal of the amplitude."""
     (wanted, rate), amplitude = ORDINARY[unit], 1.0 / value
     wave = {
@@ -166,10 +207,11 @@ def cancelling_sine(unit: str, value: float) -> dict[str, Any]:
     return {"sine": wave}
 
 
-def _of_one_input(driven: str, subject: Subject, value: float) -> Content:
+def cancelling_sine(driven: str, subject: Subject, value: float) -> Content:
+    """A large swing is all but cancelled by its offset, and what is left drives the input."""
     if driven == "heave":
-        return subject.content(heave=cancelling_sine("mm", value), stop=0.5)
-    laws = (cancelling_sine(unit, value) for unit in ORDINARY)
+        return subject.content(heave=_cancelling_sine("mm", value), stop=0.5)
+    laws = (_cancelling_sine(unit, value) for unit in ORDINARY)
     return subject.content(*laws, only=driven, stop=0.5)
 
 
@@ -202,164 +244,70 @@ def _cancelling_polynomials(power: int) -> tuple[Case, ...]:
     ours = Expected(("right", "refused"), right_from(power))
     times = math.floor(math.log10(2.0 ** ((MOST + 1) * power)))
     return _laws(
+        partial(cancelling_polynomial, power),
+        "1 s over the start of a motion of 1 s",
+        tuple(2.0**-k for k in range(1, MOST + 1)),
+        {"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT, "relative": RIGHT},
         name=f"cancelling-polynomial-{power}",
-        why=f"16 (t - start)^{power}, multiplied out: terms up to 1e{times} times their sum",
-        parameter="1 s over the start of a motion of 1 s",
-        values=tuple(2.0**-k for k in range(1, MOST + 1)),
-        scene=partial(cancelling_polynomial, power),
-        expected={"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT, "relative": RIGHT},
+        why=f"16 (t - start)^{power}, multiplied out: terms up to 1e{times} times their sum.",
     )
 
 
 _laws = partial(family, group="Laws of the inputs")
-_right = partial(_laws, expected=OURS)
 RISING, FALLING, WITHIN = decades(0, 12)[::-1], decades(-12, 0), decades(-12, -1)
 BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
-ARM_RATE = "rate of the arm, rad/s"
+ARM_RATE, TOLERANCE = "rate of the arm, rad/s", "tolerance of the scene, mm"
+# The lock is at the end of the whole way.
+BEFORE_A_LOCK = NEAR_END | {"pointcoord-newton": NEAR_END["pointcoord"]}
 
-CASES: tuple[Case, ...] = (
-    *_right(
-        name="slow-inputs",
-        why="the same way in ever longer time: rates lie far below the lengths",
-        parameter=ARM_RATE,
-        values=FALLING,
-        scene=_scaled,
-    ),
-    *_right(
-        name="fast-inputs",
-        why="the same way in ever shorter time: rates and their squares lie far above the lengths",
-        parameter=ARM_RATE,
-        values=RISING,
-        scene=_scaled,
-    ),
+CASES = (
+    *_laws(slow_inputs, ARM_RATE, FALLING),
+    *_laws(fast_inputs, ARM_RATE, RISING),
     *_laws(
-        name="long-sine",
-        why="a swing a second for ever longer: a motion by series needs some segments for each swing",
-        parameter="duration, s",
-        values=(1.0, 1e3, 1e6),  # few: each refusal takes two thousand segments
-        scene=_long_sine,
-        expected=BY_STEPS,
+        long_sine,
+        "duration, s",
+        (1.0, 1e3, 1e6),  # few: each refusal takes two thousand segments
+        BY_STEPS,
         second=(1e3,),
         others=(1.0,),
         also_answered=(1e2,),  # few enough swings for any solver
     ),
-    *_right(
-        name="phase-of-many-turns",
-        why="added to the angle, a large phase would swallow the digits of time",
-        parameter="turns in the phase of a sine",
-        values=RISING,
-        scene=_phase,
-    ),
-    *_right(
-        name="start-from-rest",
-        why="the inputs start from rest: rates tend to zero, accelerations do not",
-        parameter="time since the start, s",
-        values=WITHIN,
-        scene=lambda subject, value: _at_rest(subject, 0.0, value),
-    ),
-    *_right(
-        name="come-to-rest",
-        why="the inputs come to rest: rates tend to zero as a difference of large terms",
-        parameter="time to the end, s",
-        values=WITHIN,
-        scene=lambda subject, value: _at_rest(subject, 1.0 - value, 1.0),
-        measure=rate_rounding,
-    ),
-    *_right(
-        name="seen-at-rest-only",
-        why="every instant of the scene is one where the inputs rest for a moment, between which they move",
-        parameter="size of the motion: 0.2 rad and 30 mm times this",
-        values=FALLING,
-        scene=lambda subject, size: _at_rest(subject, 0.0, 1.0, size),
-    ),
-    *_right(
-        name="kink-of-a-table",
-        why="the third derivative jumps at a time of a spline",
-        parameter="time before and after the kink, s",
-        values=WITHIN,
-        scene=_about_a_kink,
-    ),
-    *_right(
-        name="close-times-of-a-table",
-        why="two times of a spline lie close together: rounding of their values is divided by their distance",
-        parameter="distance of the times, s",
-        values=WITHIN,
-        scene=_close_knots,
-    ),
+    *_laws(phase_of_many_turns, "turns in the phase of a sine", RISING),
+    *_laws(start_from_rest, "time since the start, s", WITHIN),
+    *_laws(come_to_rest, "time to the end, s", WITHIN, judged=rate_rounding),
+    *_laws(seen_at_rest_only, "size of the motion: 0.2 rad and 30 mm times this", FALLING),
+    *_laws(kink_of_a_table, "time before and after the kink, s", WITHIN),
+    *_laws(close_times_of_a_table, "distance of the times, s", WITHIN),
     *_laws(
-        name="jump-of-a-table",
-        why="an input moves within a very short time: accelerations grow as its inverse square",
-        parameter="time of the jump, s",
-        values=WITHIN,
-        scene=_jerk,
+        jump_of_a_table,
+        "time of the jump, s",
+        WITHIN,
+        JUMP,
         behaviour="by series right, or refused as too rough, the input named; at its instants right",
-        expected=JUMP,
         judged=told_as_rough,
     ),
-    *_right(
-        name="far-in-time",
-        why="time itself has few digits left for the swing",
-        parameter="start of a second of a sine, s",
-        values=RISING,
-        scene=_far_in_time,
-    ),
-    *_right(
-        name="only-heave",
-        why="the whole car moves while arm and rack rest: the knuckle must not turn",
-        parameter="amplitude of the heave, 100 mm",
-        values=(*FALLING, 0.0),
-        scene=_heaving,
-        needs_heave=True,
-    ),
-    *_right(
-        name="short-scene",
-        why="every instant must stay inside a scene however short",
-        parameter="duration, s",
-        values=(*BY_25, 5e-324),
-        scene=_short,
-    ),
-    *_right(
-        name="short-scene-late",
-        why="a scene of a few roundings of its time",
-        parameter="duration after t = 1 s, s",
-        values=(*decades(-15, -1), 2.0**-52),
-        scene=partial(_short, start=1.0),
-    ),
+    *_laws(far_in_time, "start of a second of a sine, s", RISING),
+    *_laws(only_heave, "amplitude of the heave, 100 mm", (*FALLING, 0.0), subjects=HEAVING),
+    *_laws(short_scene, "duration, s", (*BY_25, 5e-324)),
+    *_laws(short_scene_late, "duration after t = 1 s, s", (*decades(-15, -1), 2.0**-52)),
     *_laws(
-        name="stop-before-a-lock",
-        why="the motion ends just before its links lock, and its law goes on beyond",
-        parameter="time left to the lock, s, of a way that takes one second",
-        values=WITHIN,
-        scene=_before_a_lock,
-        # As for `ends`: the lock is at the end of the whole way.
-        expected={**NEAR_END, "pointcoord-newton": NEAR_END["pointcoord"]},
-        subjects=[one for one in SUBJECTS if one.level or ends_of(one)],
+        stop_before_a_lock,
+        "time left to the lock, s, of a way that takes one second",
+        WITHIN,
+        BEFORE_A_LOCK,
+        [one for one in SUBJECTS if one.level or ends_of(one)],
     ),
-    *_right(
-        name="fine-tolerance",
-        why="a tolerance below what rounding allows",
-        parameter="tolerance of the scene, mm",
-        values=BY_25[1:],
-        scene=_tolerance,
-    ),
-    *_laws(
-        name="loose-tolerance",
-        why="a tolerance above the size of the car",
-        parameter="tolerance of the scene, mm",
-        values=tuple(1.0 / x for x in BY_25),
-        scene=_tolerance,
-        expected={**OURS, "pointcoord-as-asked": RIGHT},
-    ),
+    *_laws(fine_tolerance, TOLERANCE, BY_25[1:]),
+    *_laws(loose_tolerance, TOLERANCE, tuple(1.0 / x for x in BY_25), OURS | {"pointcoord-as-asked": RIGHT}),
     *(
         case
         for driven in dict.fromkeys(name for subject in SUBJECTS for name in (*subject.kinds, "heave"))
-        for case in _right(
+        for case in _laws(
+            partial(cancelling_sine, driven),
+            "1 rad or 1 mm over the amplitude",
+            tuple(1.0 / amplitude for amplitude in AMPLITUDES),
+            subjects=HEAVING if driven == "heave" else [one for one in SUBJECTS if driven in one.kinds],
             name=f"cancelling-sine-{hyphens(driven)}",
-            why="a large swing is all but cancelled by its offset, and what is left drives the input",
-            parameter="1 rad or 1 mm over the amplitude",
-            values=tuple(1.0 / amplitude for amplitude in AMPLITUDES),
-            scene=partial(_of_one_input, driven),
-            subjects=[one for one in SUBJECTS if driven in one.kinds or (driven == "heave" and one.heaves)],
         )
     ),
     *(case for power in POWERS for case in _cancelling_polynomials(power)),

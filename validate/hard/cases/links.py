@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,9 +22,22 @@ from pointcoord import Scene
 from validate.cars.car import Car, as_tuple
 from validate.cars.scene_content import content_of
 from validate.hard.cars import drawn_at
-from validate.hard.case import IF_ANY, REFUSED, Case, Expected, Trial, decades
-from validate.hard.family import BESIDE, SUBJECTS, Content, Kind, Subject, counted, family, values_of
+from validate.hard.case import (
+    IF_ANY,
+    REFUSED,
+    Case,
+    Expected,
+    Values,
+    counted,
+    decades,
+    family,
+    name_of,
+    reason_of,
+    values_of,
+)
 from validate.hard.last_values import last_value
+from validate.hard.subjects import BESIDE, SUBJECTS, Content, Kind, Subject
+from validate.hard.trial import Trial
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
@@ -156,23 +169,29 @@ Change = tuple[Content, frozenset[str], dict[str, str]]
 """A changed mechanism at rest, what an error has to name one of, and the change as facts."""
 
 
-def without(subject: Subject, number: float) -> Change:
-    """The mechanism without one of its pieces."""
+def link_missing(subject: Subject, number: float) -> Change:
+    """A point, or a body, is free to move although all inputs are held."""
     piece, tables = pieces(subject.plain)[int(number) - 1], tables_of(subject)
     piece.dropped(tables)
     return changed(subject, tables, subject.drawn), piece.names, {"missing": piece.words}
 
 
-def twice(subject: Subject, number: float) -> Change:
-    """Two points that are held apart, by a rod once more."""
+def link_twice(subject: Subject, number: float) -> Change:
+    """There are more rows than unknowns, and two of them say the same.
+
+    Two points that are held apart are held by a rod once more.
+    """
     pair, tables = held_apart(subject.plain)[int(number) - 1], tables_of(subject)
     tables["rods"][AGAIN] = list(pair)
     names = frozenset((AGAIN, *pair, *subject.kinds))
     return changed(subject, tables, subject.drawn), names, {"twice": " - ".join(pair)}
 
 
-def exchanged(subject: Subject, number: float) -> Change:
-    """A rod as often again as makes up for a piece that is missing: as many rows as unknowns."""
+def link_twice_for_another(subject: Subject, number: float) -> Change:
+    """There are as many rows as unknowns, but some say nothing new and some are missing.
+
+    A rod is there as often again as makes up for a piece that is missing.
+    """
     piece, tables = exchangeable(subject)[int(number) - 1], tables_of(subject)
     rod = next(name for name in tables["rods"] if name != piece.key)
     ends = tables["rods"][rod]
@@ -182,16 +201,16 @@ def exchanged(subject: Subject, number: float) -> Change:
     return changed(subject, tables, subject.drawn), piece.names | {rod, AGAIN}, facts
 
 
-def driven_twice(subject: Subject, gap: float) -> Change:
-    """The first input by two laws, whose values are `gap` apart."""
+def input_twice(subject: Subject, gap: float) -> Change:
+    """Two inputs drive one coordinate and contradict each other by less and less; at last they agree."""
     tables, first = tables_of(subject), next(iter(subject.kinds))
     tables["inputs"][AGAIN] = deepcopy(tables["inputs"][first])
     inputs = {**subject.drawn, AGAIN: subject.drawn[first] + gap}
     return changed(subject, tables, inputs), frozenset((AGAIN, first)), {}
 
 
-def contradictory(subject: Subject, share: float) -> Change:
-    """A driven link with another beside it that agrees as drawn, and at no other pose."""
+def contradictory_links(subject: Subject, share: float) -> Change:
+    """A further link agrees with the others as drawn and nowhere else."""
     return _with_third_link(subject, share, True), frozenset((AGAIN, PIVOT, *subject.kinds)), {}
 
 
@@ -217,8 +236,8 @@ def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
     return changed(subject, tables, inputs if driven else subject.drawn, {PIVOT: as_tuple(pivot)})
 
 
-def held(subject: Subject, share: float) -> Content:
-    """The other link in place of the first input: one assembly, or too near to none."""
+def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
+    """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
     return _with_third_link(subject, share, False)
 
 
@@ -244,40 +263,42 @@ def _with_length(subject: Subject) -> Subject:
     return Subject(f"{subject.name}-{rod}", car, kinds, effects=("velocity",))
 
 
-def overlong(subject: Subject, share: float) -> Content:
-    """The last rod longer than it can be by this share of itself."""
+def link_too_long(subject: Subject, share: float) -> Content:
+    """A rod is made longer than its ends can be apart, by less and less."""
     other = _with_length(subject)
     longest = last_value(other, LENGTH, True).value
     return other.absolute({**other.drawn, LENGTH: float(longest * (1 + Fraction(share)))})
 
 
-def _family(
-    name: str,
-    why: str,
+def _content(change: Callable[[Subject, float], Change], subject: Subject, value: float) -> Content:
+    return change(subject, value)[0]
+
+
+def _told(change: Callable[[Subject, float], Change], subject: Subject, value: float, trial: Trial) -> Trial:
+    _, names, facts = change(subject, value)
+    return named(replace(trial, facts=facts) if facts else trial, names)
+
+
+def _changes(
+    change: Callable[[Subject, float], Change],
     parameter: str,
     behaviour: str,
-    change: Callable[[Subject, float], Change],
-    values: Sequence[float] | Callable[[Subject], tuple[float, ...]],
+    values: Values | Callable[[Subject], Values],
     subjects: Sequence[Subject],
     expected: Expected = REFUSED,
+    name: str = "",
 ) -> tuple[Case, ...]:
     """Changes of mechanisms, of which pointcoord has to name what is at fault."""
-
-    def judged(subject: Subject, value: float, trial: Trial) -> Trial:
-        _, names, facts = change(subject, value)
-        return named(trial if not facts else replace(trial, facts=facts), names)
-
-    return family(
-        name=name,
-        group=GROUP,
-        why=why,
-        parameter=parameter,
+    return _links(
+        partial(_content, change),
+        parameter,
+        values,
+        dict.fromkeys(SOLVERS, expected),
+        subjects,
+        name=name or name_of(change),
+        why=reason_of(change),
         behaviour=behaviour,
-        values=values,
-        scene=lambda subject, value: change(subject, value)[0],
-        expected=dict.fromkeys(SOLVERS, expected),
-        subjects=subjects,
-        judged=judged,
+        judged=partial(_told, change),
         given=False,
     )
 
@@ -292,85 +313,62 @@ def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject]
     return values
 
 
+_links = partial(family, group=GROUP)
 PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
+FREE = "refused; pointcoord names what is missing, or what is free without it"
 EVERY = (*SUBJECTS, BESIDE)
 WITH_RODS = [subject for subject in SUBJECTS if subject.plain["rods"]]
+PIECES = _numbers(lambda subject: pieces(subject.plain))
 
-CASES: tuple[Case, ...] = (
-    *(
-        case
-        for name, subjects in (("link-missing", SUBJECTS), ("constraint-missing", (BESIDE,)))
-        for case in _family(
-            name,
-            "A point, or a body, is free to move although all inputs are held.",
-            PIECE,
-            "refused; pointcoord names what is missing, or what is free without it",
-            without,
-            _numbers(lambda subject: pieces(subject.plain)),
-            subjects,
-        )
-    ),
-    *_family(
-        "link-twice",
-        "There are more rows than unknowns, and two of them say the same.",
+CASES = (
+    *_changes(link_missing, PIECE, FREE, PIECES, SUBJECTS),
+    *_changes(link_missing, PIECE, FREE, PIECES, [BESIDE], name="constraint-missing"),
+    *_changes(
+        link_twice,
         "number of the pair of points that are held apart",
         "right without it, or refused; pointcoord names one of the two, or the inputs that are too many then",
-        twice,
         _numbers(lambda subject: held_apart(subject.plain)),
         [one for one in EVERY if held_apart(one.plain)],
         IF_ANY,
     ),
-    *_family(
-        "link-twice-for-another",
-        "There are as many rows as unknowns, but some say nothing new and some are missing.",
+    *_changes(
+        link_twice_for_another,
         PIECE,
         "refused; pointcoord names what is missing or there twice",
-        exchanged,
         _numbers(exchangeable),
         [one for one in EVERY if exchangeable(one)],
     ),
-    *_family(
-        "input-twice",
-        "Two inputs drive one coordinate and contradict each other by less and less; at last they agree.",
+    *_changes(
+        input_twice,
         "difference of their values, rad or mm",
         "refused, by pointcoord before there are values; it names one of them",
-        driven_twice,
         (*decades(), 0.0),
         WITH_RODS,
     ),
-    *_family(
-        "contradictory-links",
-        "A further link agrees with the others as drawn and nowhere else.",
+    *_changes(
+        contradictory_links,
         PIVOT_AT,
         "refused as soon as anything moves; pointcoord names the further link, or the inputs",
-        contradictory,
         # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
-        # nearer to another than this is that one again, as in `link-twice`.
+        # nearer to another than this is that one again, as in `link_twice`.
         decades(low=-11),
         WITH_RODS,
     ),
-    *family(
-        name="link-too-long",
-        group=GROUP,
-        why="A rod is made longer than its ends can be apart, by less and less.",
-        parameter="what it is too long by, in parts of the longest that closes",
-        values=decades(),
-        scene=overlong,
-        expected=dict.fromkeys(SOLVERS, REFUSED),
-        subjects=[one for one in WITH_RODS if one.name not in ANY_LENGTH],
+    *_links(
+        link_too_long,
+        "what it is too long by, in parts of the longest that closes",
+        decades(),
+        dict.fromkeys(SOLVERS, REFUSED),
+        [one for one in WITH_RODS if one.name not in ANY_LENGTH],
     ),
-    *family(
-        name="arm-held-by-a-third-link",
-        group=GROUP,
-        why="A further link in place of an input holds the mechanism, by less and less; "
-        "at last it is a copy.",
-        parameter=f"{PIVOT_AT}; then a copy of it",
-        values=(*decades(), 0.0),
-        scene=held,
-        expected=dict.fromkeys(SOLVERS, HELD),
+    *_links(
+        arm_held_by_a_third_link,
+        f"{PIVOT_AT}; then a copy of it",
+        (*decades(), 0.0),
+        dict.fromkeys(SOLVERS, HELD),
         # What is held by a link in place of its only input is driven by none.
-        subjects=[one for one in WITH_RODS if len(one.kinds) > 1],
+        [one for one in WITH_RODS if len(one.kinds) > 1],
         given=False,
     ),
 )

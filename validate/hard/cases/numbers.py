@@ -27,11 +27,10 @@ from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
-from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Answer, Case, Expected, Trial
+from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Case, Expected, counted, family
 from validate.hard.cases.links import GROUP, held_apart
-from validate.hard.classify import judged_answer
-from validate.hard.family import BESIDE, SUBJECTS, Content, Subject, counted, family
-from validate.hard.trial import solved
+from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, Content, Subject
+from validate.hard.trial import Trial, compared, solved
 
 Array = NDArray[np.float64]
 LEAST = math.ulp(0.0)  # 5e-324
@@ -91,20 +90,21 @@ def _some(subject: Subject, count: int, step: int = 1) -> tuple[float, ...]:
     return numbers[:: step if subject is SUBJECTS[0] else 7 * step]
 
 
-# Name, why, the number, what has to come of it.
-NUMBERS: tuple[tuple[str, str, object, Expected], ...] = (
-    ("not-a-number", "A NaN spreads through everything that it meets.", math.nan, REFUSED),
-    ("infinity", "An infinity makes a NaN of every difference.", math.inf, REFUSED),
-    ("minus-infinity", "An infinity of the other sign passes every check for too large.", -math.inf, REFUSED),
-    ("huge", "The square of 1e308 overflows.", 1e308, RIGHT_OR_REFUSED),
-    ("minus-huge", "The square of -1e308 overflows.", -1e308, RIGHT_OR_REFUSED),
-    ("tiny", "The square of 1e-308 is 0.", 1e-308, RIGHT_OR_REFUSED),
-    ("denormal", "Below the smallest normal number digits are lost, down to none.", LEAST, RIGHT_OR_REFUSED),
+_numbers = partial(family, group=GROUP, strict=True)
+# Name, the number, what has to come of it, why.
+NUMBERS: tuple[tuple[str, object, Expected, str], ...] = (
+    ("not-a-number", math.nan, REFUSED, "A NaN spreads through everything that it meets."),
+    ("infinity", math.inf, REFUSED, "An infinity makes a NaN of every difference."),
+    ("minus-infinity", -math.inf, REFUSED, "An infinity of the other sign passes every check for too large."),
+    ("huge", 1e308, RIGHT_OR_REFUSED, "The square of 1e308 overflows."),
+    ("minus-huge", -1e308, RIGHT_OR_REFUSED, "The square of -1e308 overflows."),
+    ("tiny", 1e-308, RIGHT_OR_REFUSED, "The square of 1e-308 is 0."),
+    ("denormal", LEAST, RIGHT_OR_REFUSED, "Below the smallest normal number digits are lost, down to none."),
     (
         "whole-number-too-large",
-        "A whole number of 401 digits fits no floating-point number.",
         10**400,
         REFUSED,
+        "A whole number of 401 digits fits no floating-point number.",
     ),
 )
 # Places where such a number leaves an ordinary motion: a phase is taken modulo a turn, and what is small
@@ -114,34 +114,25 @@ SMALL = (PHASE, "inputs.heave.table.values.3", "mechanism.points.lower_ball_join
 HARMLESS = {"huge": (PHASE,), "minus-huge": (PHASE,), "tiny": SMALL, "denormal": SMALL}
 
 
-def _with_place(trial: Trial, place: str) -> Trial:
-    return replace(trial, facts={**trial.facts, "place": place})
-
-
 def _number_case(
-    subject: Subject, name: str, why: str, number: object, expected: Expected
+    subject: Subject, name: str, number: object, expected: Expected, why: str
 ) -> tuple[Case, ...]:
-    def scene(one: Subject, value: float) -> Content:
-        return with_number(content(one), _place_at(one, value), number)
+    def place(value: float) -> str:
+        return told(_place_at(subject, value))
 
-    def is_harmless(one: Subject, value: float) -> bool:
-        return told(_place_at(one, value)) in HARMLESS.get(name, ())
-
-    return family(
-        name=name,
-        group=GROUP,
-        why=why,
-        parameter="number of the place in the scene",
+    return _numbers(
+        lambda one, value: with_number(content(one), _place_at(one, value), number),
+        "number of the place in the scene",
         # A scene with a tiny number is solved, which takes time: every third place must do.
-        values=partial(_some, count=len(places(subject)), step=3 if name == "tiny" else 1),
-        scene=scene,
-        expected=expected,
-        subjects=[subject],
-        strict=True,
-        judged=lambda one, value, trial: _with_place(trial, told(_place_at(one, value))),
+        partial(_some, count=len(places(subject)), step=3 if name == "tiny" else 1),
+        expected,
+        [subject],
+        name=name,
+        why=why,
+        judged=lambda one, value, trial: trial.noting({"place": place(value)}),
         # What has to be refused is no scene, and cannot be given to a solver.
         given=expected != REFUSED,
-        also_answered=is_harmless,
+        also_answered=lambda one, value: place(value) in HARMLESS.get(name, ()),
     )
 
 
@@ -183,23 +174,20 @@ def _pair_case(
     every: bool = False,
     given: bool = True,
 ) -> tuple[Case, ...]:
-    def judged(one: Subject, value: float, trial: Trial) -> Trial:
-        onto, moved = pairs[int(value) - 1]
-        return _with_place(trial, f"{moved} on {onto}")
+    def pair(value: float) -> Pair:
+        return pairs[int(value) - 1]
 
-    return family(
+    return _numbers(
+        partial(in_one_place, pairs),
+        "number of the pair of points",
+        lambda one: counted(len(pairs)) if every else _some(one, len(pairs)),
+        expected,
+        [subject],
         name=name,
-        group=GROUP,
         why=why,
-        parameter="number of the pair of points",
-        values=lambda one: counted(len(pairs)) if every else _some(one, len(pairs)),
-        scene=partial(in_one_place, pairs),
-        expected=expected,
-        subjects=[subject],
-        strict=True,
-        judged=judged,
+        judged=lambda one, value, trial: trial.noting({"place": "{1} on {0}".format(*pair(value))}),
         given=given,
-        also_answered=lambda one, value: given and pairs[int(value) - 1] in SOUND,
+        also_answered=lambda one, value: given and pair(value) in SOUND,
     )
 
 
@@ -260,11 +248,13 @@ def displaced(trial: Trial, heave: dict[str, Any], subject: Subject = SUBJECTS[0
     scene, plain = (Scene.from_mapping(heaved(h, subject)) for h in (heave, None))
     law = rates(scene.inputs["heave"], scene.instants)
     reference = added(reference_solution(plain), law, scene.mechanism.up)
-    answers = []
-    for answer in trial.answers:
-        one = solved(answer.formulation, scene) if answer.outcome == "unjudged" else answer
-        answers.append(one if isinstance(one, Answer) else judged_answer(scene, one, reference))
-    return Trial(trial.value, tuple(answers), {**trial.facts, "reference": "that without heave, displaced"})
+    answers = tuple(
+        compared(scene, one.formulation, solved(one.formulation, scene), reference)
+        if one.outcome == "unjudged"
+        else one
+        for one in trial.answers
+    )
+    return replace(trial, answers=answers).noting({"reference": "that without heave, displaced"})
 
 
 def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
@@ -287,53 +277,39 @@ def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], away: Array
 def _heave_case(
     subject: Subject, name: str, why: str, every: tuple[Heave, ...], expected: Expected
 ) -> tuple[Case, ...]:
-    def law_at(value: float) -> dict[str, Any]:
-        return law(*every[int(value) - 1])
+    def at(value: float) -> Heave:
+        return every[int(value) - 1]
 
     def judged(one: Subject, value: float, trial: Trial) -> Trial:
-        place, number = every[int(value) - 1]
-        trial = _with_place(displaced(trial, law_at(value), one), told(place))
-        return replace(trial, facts={**trial.facts, "number": f"{number:g}"})
+        place, number = at(value)
+        return displaced(trial, law(place, number), one).noting(
+            {"place": told(place), "number": f"{number:g}"}
+        )
 
     def is_harmless(one: Subject, value: float) -> bool:
         """A phase is taken modulo a turn, and what is small is as good as 0."""
-        place, number = every[int(value) - 1]
+        place, number = at(value)
         return expected != REFUSED and (place[-1] == "phase" or abs(number) < 1.0)
 
-    return family(
+    return _numbers(
+        lambda one, value: heaved(law(*at(value)), one),
+        "number of the place and what stands there",
+        counted(len(every)),
+        expected,
+        [subject],
         name=name,
-        group=GROUP,
         why=why,
-        parameter="number of the place and what stands there",
-        values=counted(len(every)),
-        scene=lambda one, value: heaved(law_at(value), one),
-        expected=expected,
-        subjects=[subject],
-        strict=True,
         judged=judged,
         given=expected != REFUSED,
         also_answered=is_harmless,
     )
 
 
-def _heave_cases(subject: Subject) -> Iterator[Case]:
-    yield from _heave_case(
-        subject,
-        "heave-not-finite",
-        "A displacement of the whole car that is no number makes none of every place.",
-        _each(NOT_FINITE),
-        REFUSED,
-    )
-    yield from _heave_case(
-        subject,
-        "heave-huge-or-tiny",
-        "Heave meets no constraint that would refuse it, and its rates overflow before it does.",
-        (*_each(EXTREME), *((("sine", "angular_frequency"), number) for number in FREQUENCIES)),
-        RIGHT_OR_REFUSED,
-    )
+NO_NUMBER = "A displacement of the whole car that is no number makes none of every place."
+OVERFLOWS = "Heave meets no constraint that would refuse it, and its rates overflow before it does."
+HUGE_OR_TINY = (*_each(EXTREME), *((("sine", "angular_frequency"), number) for number in FREQUENCIES))
 
-
-CASES: tuple[Case, ...] = (
+CASES = (
     *(case for subject in SUBJECTS for case in _cases(subject)),
     *_pair_case(
         BESIDE,
@@ -342,5 +318,12 @@ CASES: tuple[Case, ...] = (
         PAIRS_BESIDE,
         every=True,
     ),
-    *(case for subject in SUBJECTS if subject.heaves for case in _heave_cases(subject)),
+    *(
+        case
+        for subject in HEAVING
+        for case in (
+            *_heave_case(subject, "heave-not-finite", NO_NUMBER, _each(NOT_FINITE), REFUSED),
+            *_heave_case(subject, "heave-huge-or-tiny", OVERFLOWS, HUGE_OR_TINY, RIGHT_OR_REFUSED),
+        )
+    ),
 )

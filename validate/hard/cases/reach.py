@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 
@@ -26,18 +26,16 @@ from validate.adjudication.reference_solution import inputs_at, reference_instan
 from validate.cars.scene_content import Law
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
-from validate.formulations.registry import formulation
-from validate.hard.case import RIGHT, Answer, Case, Trial, decades
-from validate.hard.cases.ends import HIGHEST, LEAST, WAYS
-from validate.hard.family import NAMED, OTHERS, SOLVERS, Content, Subject, family, hyphens
-from validate.hard.last_values import LastValue, ends_of, last_value, reachable
-from validate.hard.trial import Facts
-from validate.reference import InfeasibleError, NoReferenceError
+from validate.hard.answer import Answer
+from validate.hard.case import Case, Values, case, decades, family
+from validate.hard.last_values import LastValue, last_value, reachable
+from validate.hard.subjects import HEAVING, NAMED, PAPER, Content, Subject
+from validate.hard.trial import Trial
+from validate.reference import NoReferenceError
 
-GROUP = "Reachable range"
 SHARE = 1e-9  # of the range, or of the way: how exactly its end must be found
 SAMPLES = 5
-Values = Mapping[str, float]
+Inputs = Mapping[str, float]
 Locks = Callable[[tuple[str, ...]], bool]
 """Whether the links that limit a motion, the strongest first, are those that lie in line."""
 
@@ -95,7 +93,7 @@ class Drive:
         return last_value(self.subject, self.driven, self.ahead, self.home)
 
     @property
-    def home(self) -> Values:
+    def home(self) -> Inputs:
         """Inputs from which it starts; without a motion the drawing's own, so that only one input differs."""
         return self.subject.home if self.moving else self.subject.drawn
 
@@ -106,7 +104,7 @@ class Drive:
             return float(abs(Fraction(np.pi if self.ahead else 0.0) - self.end.value))
         return self.end.reach
 
-    def content(self, overshoot: float) -> Content:
+    def content(self, _: Subject, overshoot: float) -> Content:
         """Of the scene that asks for an overshoot, in parts of the room."""
         goal = self.end.beyond(overshoot * self.room / self.end.reach)
         if self.subject.kinds[self.driven] == "angle":
@@ -120,27 +118,24 @@ class Drive:
 
 
 def refused(
-    overshoot: float, scene: Scene, judge: Callable[[FormulationError], Answer], facts: Facts
+    trial: Trial, facts: Mapping[str, float | str], judge: Callable[[FormulationError], Answer]
 ) -> Trial:
-    """Ask every solver for what it cannot reach, and judge each refusal."""
+    """The trial of what no solver can reach, each refusal judged; others find nothing to answer there."""
+    tried = trial.tried
+    if tried is None:
+        return trial
 
-    def answer(name: str) -> Answer:
-        try:
-            formulation(name).solve(scene)
-        except FormulationError as error:
-            return judge(error)
-        except Exception as error:
-            return Answer(name, "wrong", f"fails: {type(error).__name__}: {error}")
-        # The last instant should have no pose.
-        try:
-            reference_instant(scene, inputs_at(scene, scene.time.stop))
-        except InfeasibleError as error:
-            return Answer(name, "wrong", f"answers beyond the end: {error}")
-        except NoReferenceError as error:
-            return Answer(name, "unjudged", f"{type(error).__name__}: {error}")
-        return Answer(name, "unjudged", "the overshoot was lost in rounding: there is a pose")
+    def answer(one: Answer) -> Answer:
+        came = tried.came[one.formulation]
+        if isinstance(came, FormulationError):
+            return judge(came)
+        if one.outcome == "right":
+            return replace(
+                one, outcome="unjudged", reason="the overshoot was lost in rounding: there is a pose"
+            )
+        return one
 
-    return Trial(overshoot, tuple(answer(name) for name in SOLVERS), facts)
+    return Trial(trial.value, tuple(map(answer, trial.answers)), facts)
 
 
 def _with_faults(refusal: FormulationError, faults: list[str], **sizes: float) -> Answer:
@@ -160,22 +155,24 @@ def _does_not_say(refusal: FormulationError) -> str:
     return f"does not say how far it came: {type(reason).__name__}: {reason}"
 
 
-def examine(drive: Drive, overshoot: float) -> Trial:
-    """Ask every solver for a value beyond the end."""
-    scene = Scene.from_mapping(drive.content(overshoot))
+def judged(drive: Drive, _: Subject, overshoot: float, trial: Trial) -> Trial:
+    """The trial of a value beyond the end."""
+    if trial.tried is None:
+        return trial
+    scene = trial.tried.scene
     asked = rates(scene.inputs[drive.driven], np.array([scene.time.stop]))[0, 0]
     facts: dict[str, float | str] = {
         "end [mm or rad]": float(drive.end.value),
         "asked for [mm or rad]": float(asked),
         "in line": drive.lock,
     }
-    return refused(overshoot, scene, lambda refusal: refusal_held(refusal, scene, drive), facts)
+    return refused(trial, facts, lambda refusal: refusal_held(refusal, scene, drive))
 
 
 def refusal_held(refusal: FormulationError, scene: Scene, drive: Drive) -> Answer:
     """A refusal held to the true end."""
     reason, driven = refusal.reason, drive.driven
-    reached: Values = getattr(reason, "reached", {})
+    reached: Inputs = getattr(reason, "reached", {})
     if driven not in reached:
         return Answer(refusal.formulation, "wrong", _does_not_say(refusal))
     end = drive.end
@@ -188,14 +185,14 @@ def refusal_held(refusal: FormulationError, scene: Scene, drive: Drive) -> Answe
     return _with_faults(refusal, faults, error=error, bound=bound, share=error / bound)
 
 
-def _faults_of_words(reason: Exception, reached: Values, drive: Drive) -> Iterator[str]:
+def _faults_of_words(reason: Exception, reached: Inputs, drive: Drive) -> Iterator[str]:
     """What an error does not say, or says wrongly."""
     driven, end = drive.driven, drive.end
     for other, held in drive.home.items():
         # The held input takes no part; it comes back through a cosine and its inverse.
         if other != driven and abs(reached[other] - held) > SHARE * max(1.0, abs(held)):
             yield f"{other} is said to stop at {reached[other]!r}, and is held at {held!r}"
-    wanted: Values = getattr(reason, "wanted", getattr(reason, "inputs", {}))
+    wanted: Inputs = getattr(reason, "wanted", getattr(reason, "inputs", {}))
     outward = 1.0 if drive.ahead else -1.0
     if not outward * (wanted[driven] - float(end.value)) > -SHARE * end.reach:
         yield f"the value asked for, {wanted[driven]!r}, lies before the end"
@@ -240,28 +237,27 @@ def fault_of_kept(refusal: FormulationError, scene: Scene, end: float, driven: s
     return ""
 
 
-def _case(drive: Drive, name: str, where: str, values: tuple[float, ...]) -> Case:
-    whole = {
-        "angle": "the way from the end to the upright arm",
-        "turn": "its range",
-        "length": f"the {drive.driven}'s range",
-    }
+_beyond = partial(case, group="Reachable range", beyond=True, proven=False)
+WHOLE = {"angle": "the way from the end to the upright arm", "turn": "its range"}
+
+
+def driven_beyond(drive: Drive, name: str, where: str, values: Values) -> Case:
+    """The case of an input driven beyond its end, or there at the first instant; `where` says what locks."""
+    subject = drive.subject
+    whole = WHOLE.get(subject.kinds[drive.driven], f"the {drive.driven}'s range")
     more = "" if drive.moving else ", and the first instant lies beyond"
-    return Case(
+    return _beyond(
+        drive.content,
+        f"overshoot beyond the last value, in parts of {whole}",
+        values,
+        subject=subject,
         name=f"{'reach' if drive.moving else 'start-beyond'}-{name}",
-        group=GROUP,
+        suffix="",
         why=f"{where}{more}; beyond it there is no pose, and at it two assemblies meet.",
-        parameter=f"overshoot beyond the last value, in parts of {whole[drive.subject.kinds[drive.driven]]}",
-        values=values,
-        expected=dict.fromkeys(SOLVERS, RIGHT),
-        behaviour=(
-            "refused, with the last value to 1e-9 of the range, the input, what was asked for, the right "
-            "motion up to there and (pointcoord) the links in line; absolute names no links"
-        ),
-        examine=partial(examine, drive),
-        unit=drive.subject.units[drive.driven],
-        content=drive.content,
-        without_pose=True,
+        behaviour="refused, with the last value to 1e-9 of the range, the input, what was asked for, the "
+        "right motion up to there and (pointcoord) the links in line; absolute names no links",
+        judged=partial(judged, drive),
+        unit=subject.units[drive.driven],
     )
 
 
@@ -270,159 +266,84 @@ BY_ANGLE = ("absolute", "relative")
 ARM_AT = 1.3  # rad: where the arm is to be, besides the rack beyond its end
 
 
-def goal(overshoot: float, car: str = "paper") -> dict[str, float]:
+def goal(overshoot: float, subject: Subject = PAPER) -> dict[str, float]:
     """An arm angle well inside its range, and a rack travel beyond what it can be at any such angle."""
-    return {"arm_angle": ARM_AT, "rack": last_value(NAMED[car], "rack", True).beyond(0.5 + overshoot)}
+    return {"arm_angle": ARM_AT, "rack": last_value(subject, "rack", True).beyond(0.5 + overshoot)}
+
+
+def both(subject: Subject, overshoot: float) -> Content:
+    """Arm and rack go from the drawing to the first instant together, and lock on the way."""
+    return subject.absolute(goal(overshoot, subject))
+
+
+def arm_of(name: str) -> tuple[Callable[[float], float], Callable[[float], float]]:
+    """What a model's way is straight in, as a function of the arm angle, and back."""
+    return (float, float) if name in BY_ANGLE else (math.cos, math.acos)
 
 
 def moved_on(
-    name: str, here: Values, end: Values, share: float, car: str = "paper"
+    name: str, here: Inputs, end: Inputs, share: float, subject: Subject = PAPER
 ) -> dict[str, float | Fraction]:
     """The inputs a share of the whole way further on, on the way that a model takes to the end."""
-    start = NAMED[car].drawn
+    start, (to, back) = subject.drawn, arm_of(name)
     rack = Fraction(here["rack"]) + Fraction(share) * (Fraction(end["rack"]) - Fraction(start["rack"]))
-    if name in BY_ANGLE:
-        angle = here["arm_angle"] + share * (end["arm_angle"] - start["arm_angle"])
-    else:
-        across = math.cos(end["arm_angle"]) - math.cos(start["arm_angle"])
-        angle = math.acos(math.cos(here["arm_angle"]) + share * across)
-    return {"arm_angle": angle, "rack": rack}
+    arm = to(here["arm_angle"]) + share * (to(end["arm_angle"]) - to(start["arm_angle"]))
+    return {"arm_angle": back(arm), "rack": rack}
 
 
-def share_of_way(name: str, here: Values, end: Values, car: str = "paper") -> tuple[float, float]:
-    """How far along the way the arm is, and how far the rack; equal if the place lies on it."""
-    start = NAMED[car].drawn
-
-    def measure(values: Values) -> float:
-        return values["arm_angle"] if name in BY_ANGLE else math.cos(values["arm_angle"])
-
-    arm = (measure(here) - measure(start)) / (measure(end) - measure(start))
-    return arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
-
-
-def blocked_held(refusal: FormulationError, end: Values, car: str = "paper") -> Answer:
+def blocked_held(refusal: FormulationError, end: Inputs, subject: Subject = PAPER) -> Answer:
     """Whether a refusal names the place where its own way ends."""
     name, here = refusal.formulation, getattr(refusal.reason, "reached", {})
     if set(here) < {"arm_angle", "rack"}:
         return Answer(name, "wrong", _does_not_say(refusal))
-    arm, rack = share_of_way(name, here, end, car)
+    # How far along the way the arm is, and how far the rack: equal if the place lies on it.
+    start, (to, _) = subject.drawn, arm_of(name)
+    arm, end_of_arm = (to(inputs["arm_angle"]) - to(start["arm_angle"]) for inputs in (here, end))
+    arm, rack = arm / end_of_arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
     faults = []
     if abs(arm - rack) > SHARE:
         faults.append(
             f"what is reached does not lie on the way: the arm at {arm!r} of it, the rack at {rack!r}"
         )
-    if not reachable(NAMED[car], moved_on(name, here, end, -SHARE, car)):
+    if not reachable(subject, moved_on(name, here, end, -SHARE, subject)):
         faults.append("there is no pose just before what is reached")
-    if reachable(NAMED[car], moved_on(name, here, end, SHARE, car)):
+    if reachable(subject, moved_on(name, here, end, SHARE, subject)):
         faults.append("there is a pose just beyond what is reached")
     return _with_faults(refusal, faults)
 
 
-def _blocked(car: str, values: tuple[float, ...]) -> Case:
-    def content(overshoot: float) -> Content:
-        return NAMED[car].absolute(goal(overshoot, car))
-
-    def blocked(overshoot: float) -> Trial:
-        end, scene = goal(overshoot, car), Scene.from_mapping(content(overshoot))
-        return refused(overshoot, scene, lambda refusal: blocked_held(refusal, end, car), {})
-
-    return Case(
-        name=f"start-beyond-both{NAMED[car].suffix}",
-        group=GROUP,
-        why="Arm and rack go from the drawing to the first instant together, and lock on the way.",
-        parameter="rack travel beyond one and a half of its range, in parts of it",
-        values=values,
-        expected=dict.fromkeys(SOLVERS, RIGHT),
-        behaviour="refused, with the end of the way to 1e-9 of the way: a pose before it, none beyond",
-        examine=blocked,
-        content=content,
-        without_pose=True,
-    )
+def blocked(subject: Subject, overshoot: float, trial: Trial) -> Trial:
+    """The trial of a first instant beyond what both inputs can reach together."""
+    end = goal(overshoot, subject)
+    return refused(trial, {}, lambda refusal: blocked_held(refusal, end, subject))
 
 
-# Every refusal is a whole motion towards a fold, so few values must do.
-EIGHT, FOUR, ENDS_ONLY = (*decades()[::2], 1e-11), decades()[::4], decades()[::12]
-TURNED = ", in a car mirrored, turned and 4e6 mm from the origin"
+def heave_has_no_end(subject: Subject, value: float) -> Content:
+    """The chassis carries all points, so heave alone has no last value; only digits are lost.
+
+    Heave takes no part in any constraint: it is added to what was solved, the drawing itself.
+    """
+    return subject.content(heave=(0.0, 1.0 / value), stop=1.0)
 
 
-def _ends(
-    driven: str, car: str, suffix: str, values: tuple[float, ...], more: str = "", moving: bool = True
-) -> tuple[Case, ...]:
-    """Both ends of an arm or a rack."""
-    if driven == "arm_angle":
-        label, of, lock, where = "arm", HIGHEST, ARM, "The ball joint is {} on its circle"
-    else:
-        label, of, lock, where = "rack", LEAST, TIE_ROD, "Tie rod and steering arm lie in line"
-    return tuple(
-        _case(
-            Drive(NAMED[car], driven, ahead, lock, moving),
-            f"{label}-{of[ahead]}{suffix}",
-            where.format(of[ahead]) + more,
+CASES = (
+    *(
+        _beyond(
+            both,
+            "rack travel beyond one and a half of its range, in parts of it",
             values,
+            subject=subject,
+            name="start-beyond-both",
+            behaviour="refused, with the end of the way to 1e-9 of the way: a pose before it, none beyond",
+            judged=blocked,
         )
-        for ahead in WAYS
-    )
-
-
-# Name, where, of which car and input, at which end, values of a motion and of a first instant.
-BOTH = (
-    ("slide-runs-out", "The strut's slide has no more way", "wide", False, SLIDE, FOUR, EIGHT),
-    (
-        "upper-arm-locks",
-        "Upper arm and kingpin come to lie in one plane with the upper pivots",
-        "wishbone",
-        True,
-        UPPER_ARM,
-        ENDS_ONLY,
-        FOUR,
+        for subject, values in ((PAPER, (*decades()[::2], 1e-11)), (NAMED["wishbone"], decades()[::4]))
     ),
-    (
-        "tie-rod-locks-the-arm",
-        "The arm turns until tie rod and steering arm lie in line",
-        "wishbone",
-        False,
-        TIE_ROD,
-        ENDS_ONLY,
-        FOUR,
-    ),
-)
-CASES: tuple[Case, ...] = (
-    *_ends("arm_angle", "paper", "", FOUR),
-    *_ends("rack", "paper", "", FOUR),
-    *_ends("arm_angle", "turned", "-turned", ENDS_ONLY, TURNED),
-    *_ends("rack", "turned", "-turned", ENDS_ONLY, TURNED),
-    *_ends("arm_angle", "short-arm", "-wishbone", ENDS_ONLY),
-    *_ends("rack", "wishbone", "-wishbone", ENDS_ONLY),
-    *_ends("rack", "wishbone-turned", "-wishbone-turned", (1e-6,), TURNED)[1:],
-    *_ends("arm_angle", "paper", "", EIGHT, moving=False),
-    *_ends("rack", "paper", "", EIGHT, moving=False),
-    *(
-        _case(Drive(NAMED[car], "arm_angle", ahead, lock, moving), name, where, values)
-        for name, where, car, ahead, lock, *both in BOTH
-        for moving, values in zip((True, False), both, strict=True)
-    ),
-    *(
-        _case(
-            Drive(subject, driven, ahead, ANY, moving),
-            f"{hyphens(driven)}-{LEAST[ahead]}{subject.suffix}",
-            f"{driven} is at its {LEAST[ahead]}, the other inputs as drawn",
-            (1e-3,),
-        )
-        for subject in OTHERS
-        for driven, ahead in ends_of(subject)
-        for moving in (True, False)
-    ),
-    _blocked("paper", EIGHT),
-    _blocked("wishbone", FOUR),
     *family(
-        name="heave-has-no-end",
-        group=GROUP,
-        why="The chassis carries all points, so heave alone has no last value; only digits are lost.",
-        parameter="1 mm over the heave",
-        values=decades(),
-        scene=lambda subject, value: subject.content(heave=(0.0, 1.0 / value), stop=1.0),
-        # Heave takes no part in any constraint: it is added to what was solved, the drawing itself.
-        expected=RIGHT,
-        needs_heave=True,
+        heave_has_no_end,
+        "1 mm over the heave",
+        decades(),
+        subjects=HEAVING,
+        group="Reachable range",
     ),
 )

@@ -26,9 +26,9 @@ from validate.cars.car import Car, any_rotation, rotation, turned
 from validate.cars.paper_car import EFFECTS
 from validate.cars.scene_content import content_of
 from validate.hard.cars import PAPER_CAR, SQUARE, UPRIGHT_CAR, Array, drawn_angle, drawn_at
-from validate.hard.case import FAILS, REFUSED, RIGHT, Case, Expected, decades
-from validate.hard.family import OF_PARTS, SOLVERS, SUBJECTS, Content, Subject, family
-from validate.hard.trial import Tried, scene_case
+from validate.hard.case import FAILS, REFUSED, RIGHT, SOLVERS, Expected, case, decades, family
+from validate.hard.subjects import OF_PARTS, SUBJECTS, Content, Subject
+from validate.hard.trial import Trial
 
 AXES = "xyz"
 Turn = Callable[[float], Array]
@@ -38,6 +38,7 @@ ALWAYS = "pointcoord and the absolute model are right however the car is turned"
 # The condition number stays below the inverse of the rounding unit down to 1e-14, with some digits left at
 # 1e-8: positions and velocities, which have no other erratum, must be right there. At 0 two rows are lost.
 PRINTED = Expected(("right", "refused", "noted"), 1e-8)
+RIGHTS = dict.fromkeys(SOLVERS, RIGHT)
 
 
 def quarter_turn_less(axis: int, value: float) -> Array:
@@ -61,122 +62,132 @@ def flat_turn(value: float) -> Array:
     return rotation(0, math.cos(angle), math.sin(angle))
 
 
-def strut_rise(tried: Tried) -> dict[str, float | str]:
+def strut_rise(_: Subject, value: float, trial: Trial) -> Trial:
     """How flat the strut stands: the z component of its direction."""
-    if tried.reference is None:
-        return {}
-    along = tried.reference.position["strut_top"][0] - tried.reference.position["lower_ball_joint"][0]
-    return {"z component of the strut's direction": float(abs(along[2]) / np.linalg.norm(along))}
+    if trial.tried is None or trial.tried.known is None:
+        return trial
+    place = trial.tried.known.position
+    along = place["strut_top"][0] - place["lower_ball_joint"][0]
+    return trial.noting(
+        {"z component of the strut's direction": float(abs(along[2]) / np.linalg.norm(along))}
+    )
 
 
-def _all_moving(turn: Turn, subject: Subject, value: float) -> Content:
+def all_moving(turn: Turn, subject: Subject, value: float) -> Content:
     """All inputs move, with all rates."""
     return subject.content([-0.1, 0.4], [0.0, 40.0], car=turned(subject.car, turn(value)), stop=0.5)
 
 
-def _held(car: Car, turn: Turn, value: float) -> Content:
+def held(car: Callable[[], Car], turn: Turn, _: Subject, value: float) -> Content:
     """Positions and velocities in the drawing: all that the printed rows get right elsewhere."""
-    inputs = {"arm_angle": [drawn_angle(car), SPIN], "rack": [0.0, 0.0]}
-    return content_of(turned(car, turn(value)), inputs, effects=("velocity",))
+    inputs = {"arm_angle": [drawn_angle(car()), SPIN], "rack": [0.0, 0.0]}
+    return content_of(turned(car(), turn(value)), inputs, effects=("velocity",))
 
 
-def _moving(turn: Turn, effects: tuple[str, ...], value: float) -> Content:
+def moving(turn: Turn, effects: tuple[str, ...], _: Subject, value: float) -> Content:
     """Arm and rack of the paper's car move, with all rates, or with those that eq. (23) leaves alone."""
     inputs = {"arm_angle": [SQUARE - 0.1, SPIN], "rack": [0.0, 40.0]}
     return content_of(turned(PAPER_CAR, turn(value)), inputs, stop=0.5, effects=effects)
 
 
-def _along_y(value: float) -> Array:
+def along_y(value: float) -> Array:
+    """The turn about z by this."""
     return rotation(2, math.cos(value), math.sin(value))
 
 
-_turned = partial(family, group="Turned cars", expected=RIGHT)
-_flat = partial(scene_case, group="The strut flat", measure=strut_rise)
-LEVEL = "the assembled strut comes to lie at right angles to z, where each pair of printed rows is one"
+_turned = partial(family, group="Turned cars")
+_flat = partial(case, group="The strut flat", judged=strut_rise)
 SINE = "sine of the strut's angle with the horizontal plane"
+_level = partial(
+    _flat,
+    why="The assembled strut comes to lie at right angles to z, where each pair of printed rows is one.",
+    parameter=SINE,
+)
 # What becomes of an upright strut, and of the printed rows, after a turn about each axis.
 FLAT = (
-    "a strut that stands exactly upright lies exactly flat after a quarter turn",
+    "A strut that stands exactly upright lies exactly flat after a quarter turn.",
     PRINTED,
     "are right until the strut is exactly flat, and give up there",
 )
 UPRIGHT = (
-    "a strut that stands exactly upright stays so when turned about z: for comparison",
+    "A strut that stands exactly upright stays so when turned about z: for comparison.",
     RIGHT,
     "are right as well",
 )
+QUARTERS = tuple(
+    (letter, partial(quarter_turn_less, axis), f"90 degrees about {letter} less this, rad; then exactly 90")
+    for axis, letter in enumerate(AXES)
+)
 
-CASES: tuple[Case, ...] = (
+CASES = (
     *(
         case
-        for axis, letter in enumerate(AXES)
+        for letter, turn, parameter in QUARTERS
         for case in _turned(
+            partial(all_moving, turn),
+            parameter,
+            VALUES,
             name=f"quarter-turn-about-{letter}",
-            why="the car comes to lie along other axes of the frame, and coordinates change places",
-            parameter=f"90 degrees about {letter} less this, rad; then exactly 90",
-            values=VALUES,
-            scene=partial(_all_moving, partial(quarter_turn_less, axis)),
+            why="The car comes to lie along other axes of the frame, and coordinates change places.",
         )
     ),
     *_turned(
-        name="turned-at-random",
-        why="no axis of the car lies along an axis of the frame, so nothing cancels by chance",
-        parameter="number of a random rotation",
-        values=tuple(float(seed) for seed in range(1, 13)),
-        scene=partial(_all_moving, lambda seed: any_rotation(int(seed))),
+        partial(all_moving, lambda seed: any_rotation(int(seed))),
+        "number of a random rotation",
+        tuple(float(seed) for seed in range(1, 13)),
         subjects=(*SUBJECTS, *OF_PARTS),
+        name="turned-at-random",
+        why="No axis of the car lies along an axis of the frame, so nothing cancels by chance.",
     ),
     *(
         _flat(
+            partial(moving, turn, ("velocity",)),
+            parameter,
+            VALUES,
+            {"printed": RIGHT},
             name=f"quarter-turn-about-{letter}-printed",
-            why="the whole car is turned, which changes nothing about its mechanism, "
-            "and the paper's strut still rises",
-            parameter=f"90 degrees about {letter} less this, rad; then exactly 90",
-            values=VALUES,
-            scene=partial(_moving, partial(quarter_turn_less, axis), ("velocity",)),
-            expected={"printed": RIGHT},
+            why="The whole car is turned, which changes nothing about its mechanism, "
+            "and the paper's strut still rises.",
         )
-        for axis, letter in enumerate(AXES)
+        for letter, turn, parameter in QUARTERS
     ),
     *(
         _flat(
-            name=f"upright-strut-turned-about-{AXES[axis]}",
+            partial(held, lambda: UPRIGHT_CAR, turn),
+            parameter,
+            VALUES,
+            {**dict.fromkeys(("pointcoord", "absolute", "relative"), RIGHT), "printed": printed},
+            name=f"upright-strut-turned-about-{letter}",
             why=why,
-            parameter=f"90 degrees about {AXES[axis]} less this, rad; then exactly 90",
-            values=VALUES,
-            scene=partial(_held, UPRIGHT_CAR, partial(quarter_turn_less, axis)),
-            expected={"pointcoord": RIGHT, "absolute": RIGHT, "relative": RIGHT, "printed": printed},
             behaviour=f"{ALWAYS}; the printed rows {shown}",
         )
-        for axis, (why, printed, shown) in enumerate((FLAT, FLAT, UPRIGHT))
+        for (letter, turn, parameter), (why, printed, shown) in zip(
+            QUARTERS, (FLAT, FLAT, UPRIGHT), strict=True
+        )
     ),
-    _flat(
-        name="strut-nearly-flat",
-        why=LEVEL,
-        parameter=SINE,
+    _level(
+        partial(held, straight_car, flat_turn),
         values=VALUES,
-        scene=lambda value: _held(straight_car(), flat_turn, value),
-        expected={**dict.fromkeys(SOLVERS, RIGHT), "printed": PRINTED},
+        expected=RIGHTS | {"printed": PRINTED},
+        name="strut-nearly-flat",
         behaviour=f"{ALWAYS}; the printed rows have a condition number that grows as 1 over this, "
         "and give up at 0",
     ),
     # The motion turns the strut by some hundredths of a radian, so it passes the horizontal on its way.
-    _flat(
-        name="strut-passes-flat",
-        why=LEVEL,
-        parameter=SINE,
+    _level(
+        partial(moving, flat_turn, tuple(EFFECTS)),
         values=(*decades(-12, -2)[::5], 0.0),
-        scene=partial(_moving, flat_turn, tuple(EFFECTS)),
-        expected={**dict.fromkeys(SOLVERS, RIGHT), "printed": FAILS},
+        expected=RIGHTS | {"printed": FAILS},
+        name="strut-passes-flat",
         behaviour=f"{ALWAYS}; the printed rows cannot follow",
     ),
     _flat(
+        partial(held, lambda: turned(UPRIGHT_CAR, quarter_turn_less(0, 0.0)), along_y),
+        "angle of the strut with the y axis, rad",
+        decades(),
+        RIGHTS | {"printed": REFUSED},
         name="strut-exactly-flat",
-        why="the strut is drawn at right angles to z to the last bit, along no axis: two printed rows lost",
-        parameter="angle of the strut with the y axis, rad",
-        values=decades(-12, 0),
-        scene=partial(_held, turned(UPRIGHT_CAR, quarter_turn_less(0, 0.0)), _along_y),
-        expected={**dict.fromkeys(SOLVERS, RIGHT), "printed": REFUSED},
+        why="The strut is drawn at right angles to z to the last bit, along no axis: two printed rows lost.",
         behaviour=f"{ALWAYS}; the printed rows are refused as singular",
     ),
 )

@@ -7,10 +7,11 @@ import pytest
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.hard.cars import paper_car
-from validate.hard.case import Case, Trial
+from validate.hard.cars import PAPER_CAR, scene_content
+from validate.hard.case import Case
 from validate.hard.cases.body_rates import CASES, PLANE_ANGLE
 from validate.hard.run import as_expected, examine
+from validate.hard.trial import Trial
 
 BY_NAME = {case.name: case for case in CASES}
 OURS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
@@ -39,7 +40,7 @@ def test_the_printed_omega_loses_its_digits_and_ours_keeps_them(name: str) -> No
 
 def across_the_plane(arm_angle: float) -> float:
     """Sine of the angle of the true omega with the plane of the knuckle's points; the rack is held."""
-    scene = Scene.from_mapping(paper_car([arm_angle, 1.0]))
+    scene = Scene.from_mapping(scene_content(PAPER_CAR, [arm_angle, 1.0]))
     pose = reference_instant(scene, inputs_at(scene, 0.0))
     knuckle = ("lower_ball_joint", "tie_rod_outer", "strut_lower")
     first, second, third = (np.array(pose.position_as_float(name)) for name in knuckle)

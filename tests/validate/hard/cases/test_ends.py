@@ -10,15 +10,16 @@ import pytest
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import CARS, SQUARE, scene_content
-from validate.hard.cases.ends import CASES, WAYS, near_content
-from validate.hard.family import NAMED, OTHERS, PAPER
+from validate.hard.cases.ends import CASES, End, near_end
 from validate.hard.last_values import ends_of, last_value, reachable
 from validate.hard.run import as_expected, examine
+from validate.hard.subjects import NAMED, OTHERS, PAPER
 from validate.reference import InfeasibleError, Instant
 
 BY_NAME = {case.name: case for case in CASES}
-End = tuple[str, str, bool, float | None]
-ENDS: list[End] = [
+WAYS = (False, True)
+CarEnd = tuple[str, str, bool, float | None]
+ENDS: list[CarEnd] = [
     *((car, "arm_angle", up, None) for car in ("paper", "other", "short-arm") for up in WAYS),
     *((car, "rack", up, SQUARE) for car in ("paper", "other", "wishbone") for up in WAYS),
     ("wide", "arm_angle", False, None),
@@ -28,15 +29,15 @@ ENDS: list[End] = [
 ]
 
 
-def pose(end: End, value: float, law: str = "held") -> Instant:
+def pose(end: CarEnd, value: float, law: str = "held") -> Instant:
     """The reference near an end, or beyond it."""
     name, driven, ahead, arm_angle = end
-    scene = Scene.from_mapping(near_content(NAMED[name], driven, ahead, arm_angle, law, value))
+    scene = Scene.from_mapping(near_end(End(driven, ahead, ""), arm_angle, law, NAMED[name], value))
     return reference_instant(scene, inputs_at(scene, 0.0))
 
 
 @pytest.mark.parametrize("end", ENDS, ids=str)
-def test_an_end_separates_poses_from_none_to_a_trillionth_of_the_range(end: End) -> None:
+def test_an_end_separates_poses_from_none_to_a_trillionth_of_the_range(end: CarEnd) -> None:
     assert pose(end, 1e-12).condition > 1e5
     with pytest.raises(InfeasibleError):
         pose(end, 1e-12, "beyond")

@@ -7,20 +7,23 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from stand_in import stand_in
 
 from pointcoord import Scene
 from validate.cars.paper_car import PAPER
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.hard.cases.far import AWAY, far, heaved_back, moved_car, scaled_car
-from validate.hard.family import PAPER as STRUT
-from validate.hard.family import SOLVERS
+from validate.hard.case import SOLVERS
+from validate.hard.cases.far import AWAY, CASES, far_and_heaved_back, moved_car, scaled_car
+from validate.hard.subjects import PAPER as STRUT
+
+(FAR,) = (case for case in CASES if case.name == "far-from-the-origin")
 
 
 @pytest.mark.parametrize("distance", [1.0, 1e9, 1e12])
 def test_a_shift_of_the_car_is_exact_and_so_is_the_heave_that_brings_it_back(distance: float) -> None:
     points = moved_car(distance)["mechanism"]["points"]
-    content = heaved_back(STRUT, 1.0 / distance)
+    content = far_and_heaved_back(STRUT, 1.0 / distance)
     back = Fraction(content["inputs"]["heave"]["polynomial"][0])
     for name, place in PAPER.items():
         for axis in range(3):
@@ -31,7 +34,7 @@ def test_a_shift_of_the_car_is_exact_and_so_is_the_heave_that_brings_it_back(dis
 
 @pytest.mark.parametrize("value", [1e-3, 1e-6, 1e-9])
 def test_no_rate_knows_how_far_the_origin_is(value: float) -> None:
-    ratios = {n: float(fact) for n, fact in far(value).facts.items() if n.endswith("at home")}
+    ratios = {n: float(fact) for n, fact in FAR.examine(value).facts.items() if n.endswith("at home")}
     assert len(ratios) == 5 * len(SOLVERS)
     for name, ratio in ratios.items():
         # Errors of a few roundings differ by a few.
@@ -45,25 +48,20 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
     value = 1e-6
     lost = 4.0 * float(np.spacing(3.0 / value))  # of positions so far away, and of all made from them
 
-    class Losing:
-        name = "pointcoord-newton"
+    def losing(scene: Scene) -> Solution:
+        solution = formulation("pointcoord-newton").solve(scene)
+        arrays = dict(solution.numbers[quantity])
+        name = "knuckle" if "knuckle" in arrays else "tie_rod_outer"
+        arrays[name] = arrays[name] + lost
+        # It knows that digits are lost, and says so, so that its own bounds hold.
+        claims = solution.accuracy.claims[quantity]
+        wider = {n: claim + 1e3 * lost for n, claim in claims.items()}
+        accuracy = solution.accuracy.with_claims({quantity: wider})
+        return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
 
-        def solve(self, scene: Scene) -> Solution:
-            solution = formulation("pointcoord-newton").solve(scene)
-            arrays = dict(solution.numbers[quantity])
-            name = "knuckle" if "knuckle" in arrays else "tie_rod_outer"
-            arrays[name] = arrays[name] + lost
-            # It knows that digits are lost, and says so, so that its own bounds hold.
-            claims = solution.accuracy.claims[quantity]
-            wider = {n: claim + 1e3 * lost for n, claim in claims.items()}
-            accuracy = solution.accuracy.with_claims({quantity: wider})
-            return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
-
-    far(value)  # the car at home is solved before the model is replaced
-    monkeypatch.setattr(
-        "validate.hard.trial.formulation", lambda n: Losing() if n.endswith("newton") else formulation(n)
-    )
-    answers = {answer.formulation: answer for answer in far(value).answers}
+    FAR.examine(value)  # the car at home is solved before the model is replaced
+    stand_in(monkeypatch, losing, "pointcoord-newton")
+    answers = {answer.formulation: answer for answer in FAR.examine(value).answers}
     assert answers["pointcoord-newton"].outcome == "wrong"
     assert "bounds of the car at home" in answers["pointcoord-newton"].reason
     assert answers["pointcoord"].outcome == "right"
@@ -71,7 +69,7 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(
 
 @pytest.mark.parametrize("scale", [2.0**-19, 2.0**11])
 def test_a_car_scaled_by_a_power_of_two_moves_by_scaled_bits(scale: float) -> None:
-    content, whole = scaled_car(scale), scaled_car(1.0)
+    content, whole = scaled_car(STRUT, scale), scaled_car(STRUT, 1.0)
     for name, drawn in PAPER.items():
         assert content["mechanism"]["points"][name] == [scale * x for x in drawn]
     assert content["inputs"]["arm_angle"] == whole["inputs"]["arm_angle"]

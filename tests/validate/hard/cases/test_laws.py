@@ -10,9 +10,10 @@ import pytest
 from pointcoord import Scene
 from validate.formulations.input_rates import rates
 from validate.formulations.registry import formulation
-from validate.hard.case import Answer, Trial
+from validate.hard.answer import Answer
 from validate.hard.cases import laws
-from validate.hard.family import PAPER
+from validate.hard.subjects import PAPER
+from validate.hard.trial import Trial
 
 BY_NAME = {case.name: case for case in laws.CASES}
 
@@ -25,7 +26,7 @@ def test_a_million_swings_are_right_by_a_map_and_at_their_instants() -> None:
 def test_the_same_way_at_any_rate_has_the_same_poses() -> None:
     """Time only scales: positions at the same shares of the duration are those of the rate of 1."""
     fast, slow = (
-        formulation("pointcoord").solve(Scene.from_mapping(laws._scaled(PAPER, rate)))
+        formulation("pointcoord").solve(Scene.from_mapping(laws.slow_inputs(PAPER, rate)))
         for rate in (2.0**40, 2.0**-40)
     )
     for name in fast.position:
@@ -44,9 +45,7 @@ def test_the_way_of_the_stopping_law_is_at_rest_at_its_three_instants() -> None:
 @pytest.mark.parametrize("driven", ["arm_angle", "rack", "heave"])
 @pytest.mark.parametrize("amplitude", laws.AMPLITUDES)
 def test_what_is_left_of_a_large_swing_is_an_ordinary_input(driven: str, amplitude: float) -> None:
-    content = BY_NAME[f"cancelling-sine-{driven.replace('_', '-')}"].content
-    assert content is not None
-    scene = Scene.from_mapping(content(1.0 / amplitude))
+    scene = Scene.from_mapping(laws.cancelling_sine(driven, PAPER, 1.0 / amplitude))
     value, rate, _ = rates(scene.inputs[driven], np.array([0.0]))[0]
     off, speed = laws.ORDINARY[PAPER.units.get(driven, "mm")]
     wanted = PAPER.home.get(driven, 0.0) + off

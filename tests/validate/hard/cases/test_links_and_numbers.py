@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -12,12 +11,13 @@ from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant, reference_solution
 from validate.cars.paper_car import PAPER as TABLE_1
 from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
-from validate.hard.case import Answer, Trial, unexpected
+from validate.hard.answer import Answer
+from validate.hard.case import HARD
 from validate.hard.cases import links, numbers
-from validate.hard.family import HARD, PAPER, SUBJECTS, WISHBONE, Subject
-from validate.hard.trial import solved, try_scene
+from validate.hard.subjects import PAPER, SUBJECTS, WISHBONE, Subject
+from validate.hard.trial import Trial, solved
 from validate.reference import InfeasibleError
 
 LINK_CASES = {case.name: case for case in links.CASES}
@@ -69,15 +69,6 @@ def shared_by(subject: Subject, piece: links.Piece) -> int:
     return sum(piece.point in points for name, points in bodies if name != piece.key)
 
 
-@pytest.mark.parametrize("name", ["link-missing", "link-twice", "link-twice-for-another", "input-twice"])
-@pytest.mark.parametrize("subject", [PAPER, WISHBONE], ids=lambda one: one.name)
-def test_every_piece_that_is_missing_or_there_twice_is_told_by_name(name: str, subject: Subject) -> None:
-    case = LINK_CASES[f"{name}{subject.suffix}"]
-    for value in case.values:
-        trial = case.examine(value)
-        assert not unexpected(case, trial), trial
-
-
 def test_a_refusal_that_names_nothing_of_what_is_at_fault_is_wrong() -> None:
     told = Trial(1.0, (Answer("pointcoord", "refused", "MechanismError: free: x of strut_rod_end"),))
     assert links.named(told, frozenset(("strut_rod_end",))).answers == told.answers
@@ -103,7 +94,7 @@ def test_a_further_link_of_a_moving_arm_would_have_to_change_its_length(share: f
 @pytest.mark.parametrize("subject", [PAPER, WISHBONE], ids=lambda one: one.name)
 def test_a_rod_is_too_long_from_where_it_stops_closing(subject: Subject) -> None:
     for share, closes in ((-1e-9, True), (1e-9, False)):
-        scene = Scene.from_mapping(links.overlong(subject, share))
+        scene = Scene.from_mapping(links.link_too_long(subject, share))
         inputs = inputs_at(scene, 0.0)
         if closes:
             reference_instant(scene, inputs)
@@ -140,23 +131,6 @@ def test_points_that_are_linked_are_those_that_cannot_be_in_one_place() -> None:
     linked, others = (numbers.pairs_of(PAPER, apart) for apart in (True, False))
     assert len(linked) + len(others) == 45
     assert {("lower_arm_front", "lower_arm_rear"), ("tie_rod_outer", "tie_rod_inner")} < set(linked)
-    for number in range(1, len(linked) + 1):
-        trial = NUMBER_CASES["link-without-length"].examine(float(number))
-        assert not unexpected(NUMBER_CASES["link-without-length"], trial), trial.facts["place"]
-
-
-def test_a_model_that_answers_a_number_that_is_none_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Blind:
-        name = "absolute"
-
-        def solve(self, scene: Scene) -> object:
-            solution = formulation("absolute").solve(Scene.from_mapping(paper_car()))
-            bad = {name: np.full_like(place, math.nan) for name, place in solution.position.items()}
-            return solution.with_numbers({"position": bad})
-
-    monkeypatch.setattr("validate.hard.trial.formulation", lambda _: Blind())
-    trial = try_scene(1.0, paper_car(), ("absolute",))
-    assert trial.answers[0].outcome == "wrong"
 
 
 def test_every_number_of_every_law_of_heave_is_tried() -> None:
@@ -183,7 +157,7 @@ def test_a_wrong_place_far_away_is_found_out(monkeypatch: pytest.MonkeyPatch) ->
     unjudged = Trial(1.0, (Answer("absolute", "unjudged"),))
     scene = Scene.from_mapping(numbers.heaved(law))
     plain = solved("absolute", Scene.from_mapping(numbers.heaved(None)))
-    assert not isinstance(plain, Answer)
+    assert isinstance(plain, Solution)
     law_there = rates(scene.inputs["heave"], scene.instants)
     for factor, outcome in ((1.0, "right"), (1.0 + 1e-14, "wrong")):
         answer = numbers.added(plain, factor * law_there, scene.mechanism.up)

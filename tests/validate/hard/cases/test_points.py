@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,11 +12,11 @@ from validate.adjudication.reference_solution import inputs_at, reference_instan
 from validate.cars.car import as_tuples
 from validate.cars.paper_car import PAPER
 from validate.formulations.registry import formulation
-from validate.hard.cars import BESIDE, CARS, drawn_angle, paper_car
+from validate.hard.cars import BESIDE, CARS, PAPER_CAR, drawn_angle, scene_content
 from validate.hard.cases import points as cases
 from validate.hard.cases.links import held_apart
-from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, motion_from, put
-from validate.hard.family import PAPER as STRUT
+from validate.hard.cases.points import LOWER, OFF, OUTER, assembled, put
+from validate.hard.subjects import PAPER as STRUT
 from validate.reference import AmbiguousAssemblyError
 
 EPS = float(np.finfo(float).eps)
@@ -58,20 +60,20 @@ def test_a_parameter_leads_where_it_says(value: float) -> None:
         near = put(moved, from_=onto)(p, value)
         assert abs(length(near, moved, onto) - value * length(p, moved, onto)) < ROUNDING
         assert all(np.array_equal(near[name], p[name]) for name in p if name != moved)
-    rod, ends = cases.short_tie_rod(p, value), ("tie_rod_outer", "tie_rod_inner")
+    rod, ends = cases.tie_rod_short(p, value), ("tie_rod_outer", "tie_rod_inner")
     assert abs(length(rod, *ends) - value * length(p, *ends)) < ROUNDING
     thin, kingpin = cases.thin_knuckle(LOWER)(p, value), (OUTER, LOWER, "lower_ball_joint")
     assert abs(from_line(thin, *kingpin) - value * from_line(p, *kingpin)) < 2 * ROUNDING
-    near = cases.ball_joint_near_axis(beside, value)
+    near = cases.ball_joint_near_the_axis(beside, value)
     # An axis past a point at a distance across the line to the top passes it a little nearer.
     off = from_line(near, "lower_ball_joint", "strut_lower", "strut_top")
     assert off == pytest.approx(OFF * value, rel=3e-3, abs=1e-12)
-    through = cases.axis_near_tie_rod_end(beside, value)
+    through = cases.axis_through_the_tie_rod_end(beside, value)
     off = from_line(through, "tie_rod_outer", "strut_lower", "strut_top")
     assert off == pytest.approx(OFF * value, rel=0.1, abs=1e-12)
     # 100 mm across, over the height of strut_lower above the line of the others, some 50 mm.
-    assert sine_with_plane(cases.axis_in_the_triangle(beside, value)) <= 3.0 * value + 1e-15
-    assert 1.0 - sine_with_plane(cases.axis_across_the_triangle(beside, value)) <= value + 1e-15
+    assert sine_with_plane(cases.axis_in_the_knuckle_plane(beside, value)) <= 3.0 * value + 1e-15
+    assert 1.0 - sine_with_plane(cases.axis_across_the_knuckle_plane(beside, value)) <= value + 1e-15
     q = cases.slide_drawn_run_out(beside, value)
     axis, strut = q["strut_top"] - q["strut_lower"], q["strut_top"] - q["lower_ball_joint"]
     cosine = float(axis @ strut) / float(np.linalg.norm(axis) * np.linalg.norm(strut))
@@ -90,11 +92,11 @@ def test_a_long_tie_rod_is_as_long_as_the_value_says(value: float) -> None:
 @pytest.mark.parametrize(
     "draw",
     [
-        cases.ball_joint_near_axis,
-        cases.axis_in_the_triangle,
-        cases.axis_across_the_triangle,
-        cases.axis_near_tie_rod_end,
-        cases.axis_near_ball_joint,
+        cases.ball_joint_near_the_axis,
+        cases.axis_in_the_knuckle_plane,
+        cases.axis_across_the_knuckle_plane,
+        cases.axis_through_the_tie_rod_end,
+        cases.strut_lower_near_the_ball_joint,
         cases.thin_knuckle("strut_top"),
     ],
 )
@@ -104,7 +106,7 @@ def test_what_a_case_draws_closes(draw: cases.Draw, value: float) -> None:
     car = CARS["beside"].drawn_as(p)
     assert car.points == as_tuples(dict(p))
     solution = formulation("pointcoord").solve(
-        Scene.from_mapping(motion_from(drawn_angle(car), car, (0.0, 0.0), (0.0, 0.0)))
+        Scene.from_mapping(scene_content(car, (drawn_angle(car), 0.0), stop=1.0))
     )
     for name, place in p.items():
         # 1e4 roundings of 1000 mm: steering arms of a hundredth of the car's have a condition number of 1e3.
@@ -113,7 +115,7 @@ def test_what_a_case_draws_closes(draw: cases.Draw, value: float) -> None:
 
 def test_exact_signs_are_those_of_the_reference_where_the_reference_can_tell() -> None:
     for rack in (-40.0, 0.0, 60.0):
-        scene = Scene.from_mapping(paper_car(1.4, (rack, 30.0, 5.0), stop=0.1))
+        scene = Scene.from_mapping(scene_content(PAPER_CAR, 1.4, (rack, 30.0, 5.0), stop=0.1))
         inputs = inputs_at(scene, 0.0)
         expected = reference_instant(scene, inputs)
         assert reference_instant(scene, inputs, exact_sides=True).position == expected.position
@@ -135,4 +137,6 @@ def test_a_drawing_in_the_plane_of_its_tie_rod_is_ambiguous(lift: float) -> None
         "wheel_centre": (0.0, -80.0, 60.0),
     }
     with pytest.raises(AmbiguousAssemblyError, match="another assembly"):
-        reference_solution(Scene.from_mapping(paper_car(points=points)), exact_sides=lift == 0.0)
+        reference_solution(
+            Scene.from_mapping(scene_content(replace(PAPER_CAR, points=points))), exact_sides=lift == 0.0
+        )

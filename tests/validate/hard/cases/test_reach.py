@@ -12,7 +12,7 @@ import pytest
 from pointcoord import AssemblyError, Scene
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
-from validate.hard.cars import paper_car
+from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.cases.reach import (
     ARM,
     TIE_ROD,
@@ -23,7 +23,7 @@ from validate.hard.cases.reach import (
     moved_on,
     refusal_held,
 )
-from validate.hard.family import PAPER
+from validate.hard.subjects import PAPER
 
 PAPER_RACK = Drive(PAPER, "rack", True, TIE_ROD)
 
@@ -65,7 +65,7 @@ def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
 def test_a_refusal_that_says_something_wrong_is_wrong(
     change: Callable[[FormulationError], FormulationError], says: str
 ) -> None:
-    scene = Scene.from_mapping(PAPER_RACK.content(1e-3))
+    scene = Scene.from_mapping(PAPER_RACK.content(PAPER, 1e-3))
     refusal = refused(scene)
     assert refusal_held(refusal, scene, PAPER_RACK).outcome == "right"
     answer = refusal_held(change(refusal), scene, PAPER_RACK)
@@ -75,7 +75,7 @@ def test_a_refusal_that_says_something_wrong_is_wrong(
 
 @pytest.mark.parametrize("solver", ["pointcoord", "pointcoord-newton", "absolute"])
 def test_a_kept_motion_that_is_short_or_wrong_is_found_out(solver: str) -> None:
-    scene = Scene.from_mapping(PAPER_RACK.content(1e-3))
+    scene = Scene.from_mapping(PAPER_RACK.content(PAPER, 1e-3))
     end = float(PAPER_RACK.end.value)
     with pytest.raises(FormulationError) as caught:
         formulation(solver).solve(scene)
@@ -107,7 +107,7 @@ def test_a_way_is_blocked_where_the_reference_loses_its_pose(
     change: Callable[[dict[str, float], dict[str, float]], dict[str, Any]], says: str
 ) -> None:
     end = goal(0.1)
-    scene = Scene.from_mapping(paper_car(end["arm_angle"], end["rack"]))
+    scene = Scene.from_mapping(scene_content(PAPER_CAR, end["arm_angle"], end["rack"]))
     with pytest.raises(FormulationError) as caught:
         formulation("absolute").solve(scene)
     refusal: Any = caught.value.reason
@@ -123,5 +123,5 @@ def test_a_way_is_blocked_where_the_reference_loses_its_pose(
 
 def test_the_overshoot_of_the_arm_ends_where_angles_do() -> None:
     for ahead, upright in ((False, 0.0), (True, np.pi)):
-        law = Drive(PAPER, "arm_angle", ahead, ARM).content(1.0)["inputs"]["arm_angle"]["polynomial"]
+        law = Drive(PAPER, "arm_angle", ahead, ARM).content(PAPER, 1.0)["inputs"]["arm_angle"]["polynomial"]
         assert sum(law) == upright

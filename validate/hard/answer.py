@@ -1,4 +1,4 @@
-"""A solution held to the reference, in one answer: right, noted or wrong, by how much and in what.
+"""A solution compared with the reference, in one answer: right, noted or wrong, by how much and in what.
 
 A formulation may say itself that some of its numbers have no meaning. Such a note covers the numbers that
 are not finite in the quantity that it names, and nothing else: they are left out, and the rest is judged
@@ -8,6 +8,8 @@ once more.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +19,39 @@ from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import told_by
 from validate.comparison.compare import Comparison, compare_solutions
 from validate.formulations.protocol import Solution
-from validate.hard.case import Answer, Outcome
 
 Array = NDArray[np.float64]
+# right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
+# some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
+# unjudged: the reference could not be proven, which is a failure of the catalogue unless the case allows it.
+Outcome = Literal["right", "refused", "noted", "wrong", "unjudged"]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one formulation made of one value of a case's parameter.
+
+    Attributes:
+        formulation: its name.
+        outcome: by the reference.
+        reason: of a refusal; else which quantity came closest to its bound, or exceeded it the most.
+        error: largest distance of a point from the reference, in the case's unit; None without numbers.
+        bound: largest bound that the formulation gives for it, in the same unit.
+        share: largest error of any quantity, rates and angles too, in parts of its bound.
+        condition: largest condition number.
+    """
+
+    formulation: str
+    outcome: Outcome
+    reason: str = ""
+    error: float | None = None
+    bound: float | None = None
+    share: float | None = None
+    condition: float | None = None
 
 
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
-    """Hold all numbers of a solution to the reference, each to what the solution itself claims of it."""
+    """Compare all numbers of a solution with the reference, each by the bound that the solution gives."""
     rows = compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
     outcome = _outcome(scene, answer, reference, rows)
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)

@@ -1,14 +1,10 @@
-"""Families of cases that make sense for every mechanism: one case of each for every shipped one.
-
-The first mechanism is tried at every value of the parameter, the second at every fourth, all others at one:
-what is hard about a value is the same in each.
-"""
+"""The mechanisms that cases are made of, and scenes in which their inputs move: shipped ones, and cars."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, Literal
 
 from pointcoord import Scene, built_in_scenes
@@ -17,18 +13,13 @@ from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import Car
 from validate.cars.scene_content import Law, content_of
 from validate.hard.cars import CARS, SQUARE, as_given, drawn_angle
-from validate.hard.case import IF_ANY, Case, Expected, Trial, coarse
-from validate.hard.trial import Measure, scene_case
 
-SOLVERS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 Content = dict[str, Any]
 
 
 # angle: 0 to pi from a direction; turn: any number of turns from the drawing; length.
 Kind = Literal["angle", "turn", "length"]
 KINDS: Mapping[str, Kind] = {"arm": "angle", "turn": "turn"}
-# Why a model may refuse a mechanism, or no reference be had of it.
-HARD: Mapping[str, str] = {"bricard": "one of its rows depends on the others at every pose"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,88 +156,4 @@ OTHERS = tuple(subject for subject in _EVERY if not subject.of_parts)
 OF_PARTS = tuple(subject for subject in _EVERY if subject.of_parts)
 NAMED: Mapping[str, Subject] = {**OF_CARS, **{subject.name: subject for subject in _EVERY}}
 SUBJECTS = (PAPER, WISHBONE, *OTHERS)
-
-
-def values_of(
-    subject: Subject, values: Sequence[float], second: Sequence[float] = (), others: Sequence[float] = ()
-) -> tuple[float, ...]:
-    """Those of a family's values that a mechanism is tried at.
-
-    Args:
-        second: in place of every fourth and the last for the second mechanism.
-        others: in place of the one amid them for all others.
-    """
-    if subject in (PAPER, BESIDE):
-        return tuple(values)
-    if subject is WISHBONE:
-        return tuple(second or coarse(tuple(values)))
-    return tuple(others or (values[len(values) // 2],))
-
-
-def counted(count: int) -> tuple[float, ...]:
-    """Numbers from 1 to a count, as values of a parameter."""
-    return tuple(float(n) for n in range(1, count + 1))
-
-
-def every(expected: Mapping[str, Expected] | Expected) -> Mapping[str, Expected]:
-    """By formulation, if it is not yet."""
-    return dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected
-
-
-def expected_of(subject: Subject, expected: Mapping[str, Expected] | Expected) -> Mapping[str, Expected]:
-    """What formulations may make of a mechanism; of one that is hard by nature, never wrong numbers."""
-    return dict.fromkeys(every(expected), IF_ANY) if subject.name in HARD else every(expected)
-
-
-def family(
-    *,
-    name: str,
-    group: str,
-    why: str,
-    parameter: str,
-    values: Sequence[float] | Callable[[Subject], tuple[float, ...]],
-    scene: Callable[[Subject, float], Content],
-    expected: Mapping[str, Expected] | Expected,
-    behaviour: str = "",
-    measure: Measure | None = None,
-    second: Sequence[float] = (),
-    others: Sequence[float] = (),
-    also_answered: Sequence[float] | Callable[[Subject, float], bool] = (),
-    subjects: Sequence[Subject] = SUBJECTS,
-    needs_heave: bool = False,
-    judged: Callable[[Subject, float, Trial], Trial] | None = None,
-    given: bool = True,
-    strict: bool = False,
-) -> tuple[Case, ...]:
-    """A case for every mechanism; see `trial.scene_case`.
-
-    Args:
-        values: that the first mechanism is tried at, or of each.
-        scene: the content at a value, of a subject.
-        expected: by formulation, or of each of `SOLVERS`.
-        second, others: see `values_of`.
-        also_answered: see `Case`; or whether a value is one of them.
-        needs_heave: whether mechanisms whose chassis cannot heave are left out.
-        strict: whether as much is expected of mechanisms that are hard by nature.
-    """
-
-    def case(subject: Subject) -> Case:
-        own = values(subject) if callable(values) else values_of(subject, values, second, others)
-        return scene_case(
-            name=f"{name}{subject.suffix}",
-            group=group,
-            why=why,
-            parameter=parameter,
-            values=own,
-            scene=partial(scene, subject),
-            expected=every(expected) if strict else expected_of(subject, expected),
-            behaviour=behaviour,
-            measure=measure,
-            also_answered=tuple(v for v in own if also_answered(subject, v))
-            if callable(also_answered)
-            else tuple(also_answered),
-            judged=None if judged is None else partial(judged, subject),
-            given=given,
-        )
-
-    return tuple(case(subject) for subject in subjects if subject.heaves or not needs_heave)
+HEAVING = tuple(subject for subject in SUBJECTS if subject.heaves)
