@@ -205,6 +205,17 @@ def test_what_agrees_only_by_a_rounding_that_nobody_stated_is_not_tested_and_the
     assert not any("printed" in note for note in found.outcome.notes)
 
 
+def test_a_file_of_which_nothing_is_tested_says_so_in_its_last_lines_and_names_the_line_to_add(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = tmp_path / "x.csv"
+    data.write_text(steered(UNEVEN))
+    assert main(["validate", "--data", str(data), "double-wishbone"]) == 3
+    out = capsys.readouterr().out
+    assert "\nNothing was compared: 1 not tested.\n" in out
+    assert "columns.rack.printed = 0" in out
+
+
 @pytest.mark.parametrize("command", ["validate", "fit"])
 def test_a_map_that_is_not_there_is_written_to_be_filled_in(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
