@@ -184,7 +184,9 @@ def file_parts(found: DataOutcome) -> tuple[Part, ...]:
         f"{outcome.scene}: {pair_of(outcome)}, {instants} over {shown(found.over)}",
         Table(FILE_HEAD, tuple(rows)),
         *lines_below(outcome),
-        f"{counted_as(tested, 'number')} compared: {counts}." if tested else f"Nothing was compared: {counts}.",
+        f"{counted_as(tested, 'number')} compared: {counts}."
+        if tested
+        else f"Nothing was compared: {counts}.",
     )
 
 
