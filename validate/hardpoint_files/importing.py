@@ -15,7 +15,8 @@ from math import radians, tan
 from pathlib import Path
 from typing import Any
 
-from pointcoord import Scene
+from pointcoord import Scene, standing
+from pointcoord.drawing_stands import Standing
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
@@ -28,7 +29,7 @@ from validate.hardpoint_files.derived import derived
 from validate.hardpoint_files.format import Format, format_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
-from validate.hardpoint_files.written_scene import Bounce, ScenePoint, bounce_of, scene_of, scene_text
+from validate.hardpoint_files.written_scene import ScenePoint, bounce_of, scene_of, scene_text
 from validate.plain_text import some_of
 from validate.tables.cells import text_of
 from validate.tables.errors import FileError
@@ -86,7 +87,7 @@ class Imported:
         points: of the scene, in its axes, with where each comes from.
         not_needed: points of the file that are known and hold nothing. unknown: points that are not known.
         angles: static angles that the file prints, held to the drawing's.
-        bounce: the motion that is written. facts: what was taken for granted, in words.
+        stands: the drawing, closed. facts: what was taken for granted, in words.
         doubts: what looks wrong and was taken as the user said it.
     """
 
@@ -97,7 +98,7 @@ class Imported:
     not_needed: tuple[FilePoint, ...]
     unknown: tuple[FilePoint, ...]
     angles: tuple[AngleCheck, ...]
-    bounce: Bounce
+    stands: Standing
     facts: tuple[str, ...]
     doubts: tuple[str, ...]
 
@@ -223,18 +224,19 @@ class _Import:
             if name not in points
         ]
         drawn = scene_of(self.source, kind, side, points.values())
-        bounce = bounce_of(drawn)
-        words = self.format.words, drawn, points.values(), bounce, facts, wheel.others
-        angles = check_angles(self.format.angles, axle.angles, bounce.angles, wheel.places, topology)
+        stands = standing(drawn)
+        laws, scene = bounce_of(drawn, stands)
+        words = self.format.words, drawn, points.values(), laws, facts, wheel.others
+        angles = check_angles(self.format.angles, axle.angles, stands.angles, wheel.places, topology)
         return Imported(
             format=self.format,
-            scene=Scene.from_mapping(bounce.added_to(drawn), self.source),
+            scene=scene,
             text=scene_text(self.source, *words),
             points=tuple(points.values()),
             not_needed=tuple(point for point in wheel.others if self.holds_nothing(point)),
             unknown=tuple(point for point in wheel.others if not self.holds_nothing(point)),
             angles=tuple(angles),
-            bounce=bounce,
+            stands=stands,
             facts=tuple(facts),
             doubts=tuple(doubts),
         )
