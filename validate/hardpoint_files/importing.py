@@ -193,7 +193,7 @@ class _Import:
                 f"is read as {kind}, whose file names no wheel: the roles wheel_axis and inboard",
                 "a suspension of one wheel; else a scene written by hand (pointcoord new)",
             )
-        wheel = self.wheel()
+        wheel = self.chosen()
         axle = self.contents.axle(wheel.part)
         axis = self.spin_axis(axle)
         self.require_all(wheel, axis)
@@ -327,7 +327,7 @@ class _Import:
         found = [*map(self.lookup(kind), self.contents.points)]
         return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
 
-    def wheel(self) -> _Wheel:
+    def chosen(self) -> _Wheel:
         """The points of the wheel that is asked for."""
         known, others = self.named(self.kind)
         theirs = {plain(point.name) for _, point in known}
