@@ -388,23 +388,6 @@ def test_a_factor_is_what_a_file_off_by_more_than_its_digits_needs(tmp_path: Pat
     assert main([*words, "--tolerance-factor", "3"]) == 0
 
 
-def test_the_same_file_gives_the_same_bytes(tmp_path: Path) -> None:
-    (tmp_path / "map.toml").write_text(MAP, encoding="utf-8")
-    (tmp_path / "x.csv").write_text(curves_over_travel(lambda toe: -toe), encoding="utf-8")
-    words = ["validate", "--data", str(tmp_path / "x.csv"), "--map", str(tmp_path / "map.toml")]
-    files = [tmp_path / name for name in ("x.json", "x.xml", "x.md")]
-    ends = [
-        word
-        for pair in zip(("--json", "--junit", "--summary"), [*map(str, files)], strict=True)
-        for word in pair
-    ]
-    found = []
-    for _ in range(2):
-        assert main([*words, "double-wishbone", "--quiet", *ends]) == 1
-        found.append([file.read_bytes() for file in files])
-    assert found[0] == found[1]
-
-
 @pytest.mark.parametrize("point", ["wheel_centre", "contact"])
 @pytest.mark.parametrize("fitted", [False, True])
 def test_a_travel_counts_from_the_closed_drawing_and_the_rack_as_drawn(point: str, fitted: bool) -> None:
