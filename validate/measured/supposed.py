@@ -175,12 +175,9 @@ def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
 
 def _changed(measured: Measured, changes: Changes) -> Iterator[Supposed]:
     """The file with its independent columns changed."""
-    independent = list(measured.independent)
-    for i, c in changes.items():
-        s = independent[i]
-        independent[i] = replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off)
+    independent = _moved(measured, changes)
     words = ", and ".join(f"{shown(independent[i].column)} {change.words}" for i, change in changes.items())
-    other = replace(measured, independent=tuple(independent))
+    other = replace(measured, independent=independent)
     fitted = any(change.found for change in changes.values())
     turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
     slopes = [s for s in measured.numbers if s.meaning.per in turned]
@@ -190,6 +187,12 @@ def _changed(measured: Measured, changes: Changes) -> Iterator[Supposed]:
         # Derivatives by a column that counts the other way do so too, if they were not made of another.
         names = ", ".join(shown(s.column) for s in slopes)
         yield Supposed(f"{words}, and {names} is by it as it is said", other, found=fitted)
+
+
+def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
+    """The independent columns, some of them changed."""
+    of = ((s, changes.get(i, _Change())) for i, s in enumerate(measured.independent))
+    return tuple(replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off) for s, c in of)
 
 
 def _in_reach(driven: Driven, measured: Measured) -> Iterator[str]:
@@ -302,10 +305,7 @@ class _Trial:
     def _gaps(self, changes: Changes) -> Array:
         """Theirs less ours, of the spread of theirs, (columns, rows); NaN where there is no pose."""
         numbers = self.measured.numbers
-        values: Sequence[Array] = [
-            s.values if i not in changes else changes[i].factor * s.values + changes[i].more
-            for i, s in enumerate(self.measured.independent)
-        ]
+        values = [s.values for s in _moved(self.measured, changes)]
         if len(self.driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(values[0]):
             return np.full_like(self.theirs, np.nan)
         found = self.driven.poses(values, numbers)
