@@ -98,7 +98,8 @@ def compare_results(
     compared = int(np.any([np.isfinite(h.share) for h in held], axis=0).sum())
     faults = _too_few(measured, poses.driven, held, compared)
     solutions = _solution(measured, by_row), ours
-    notes = *notes, *faults
+    coarse = ", ".join(row.name for row in rows if row.why == TOO_COARSE)
+    notes = (*notes, *([f"{coarse} is not tested: {TOO_COARSE}"] if coarse else []), *faults)
     outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
     explanations = _explained(scene, measured, by_row, ours, wrong, factor)
