@@ -22,8 +22,9 @@ from validate.commands.usage import (
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.measured.comparing import OURS, DataOutcome, compare_results
+from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import map_to_fill_in, read_results
+from validate.measured.tolerances import OURS
 from validate.output import report
 from validate.output.console import Console
 from validate.output.document import Head, Journal

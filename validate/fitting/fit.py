@@ -29,6 +29,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,8 +64,25 @@ CONFIDENCE = 0.95
 OPEN = 4.0
 MOST_SOLVES = 60
 NAMED = 3  # rows that are left out, one by one
-KEPT = 3  # solved designs that are remembered
 AT_A_BOUND = 1e-9  # of the bounds, within which a correction lies on one
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A coordinate that was free, mm.
+
+    Attributes:
+        deviation: of the correction; 0 on its bound, where it is held.
+        low, high: where the correction lies in 95 of 100 files, within the bounds.
+    """
+
+    drawn: float
+    correction: float
+    corrected: float
+    deviation: float
+    low: float
+    high: float
+    on_bound: bool
 
 
 @dataclass(frozen=True)
@@ -72,16 +90,16 @@ class Combination:
     """A direction in the corrections.
 
     Attributes:
-        parts: by coordinate, of unit length together.
-        singular: what moving 1 mm along it does to the numbers, in their standard deviations.
+        singular_value: what moving 1 mm along it does to the numbers, in their standard deviations.
         deviation: how well the file alone knows it, mm; infinite if not at all.
         seen: whether that is better than the bounds and the prior.
+        parts: by coordinate, of unit length together.
     """
 
-    parts: dict[str, float]
-    singular: float
+    singular_value: float
     deviation: float
     seen: bool
+    parts: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -89,7 +107,7 @@ class Fitted:
     """A column before and after, in our units.
 
     Attributes:
-        before, after: r.m.s. difference. digits: r.m.s. of what its numbers are known to.
+        before, after: r.m.s. difference. known_to: r.m.s. of what its numbers are known to.
         count: of numbers that were used.
     """
 
@@ -97,7 +115,7 @@ class Fitted:
     unit: str
     before: float
     after: float
-    digits: float
+    known_to: float
     count: int
 
 
@@ -107,10 +125,7 @@ class Fit:
 
     Attributes:
         scene: corrected.
-        drawn, corrections: by coordinate, mm.
-        deviations: by coordinate, mm; of one on its bound 0: it is held there.
-        unknown: coordinates that the file alone does not know to within the bounds and the prior.
-        widening: how many deviations to either side hold in 95 of 100 files.
+        coordinates: by name. unknown: those that the file alone does not know to within bounds and prior.
         columns: of the file.
         combinations: of the corrections, the best known first.
         factor: f above: how much more is left than the digits explain.
@@ -122,11 +137,8 @@ class Fit:
     """
 
     scene: Scene
-    drawn: dict[str, float]
-    corrections: dict[str, float]
-    deviations: dict[str, float]
+    coordinates: dict[str, Coordinate]
     unknown: tuple[str, ...]
-    widening: float
     columns: tuple[Fitted, ...]
     combinations: tuple[Combination, ...]
     factor: float
@@ -140,33 +152,20 @@ class Fit:
 
     @property
     def unseen(self) -> tuple[Combination, ...]:
-        """Combinations that the file cannot see."""
+        """Combinations that the file cannot see: where there are any the answer is not unique."""
         return tuple(one for one in self.combinations if not one.seen)
 
     @property
-    def unique(self) -> bool:
-        """Whether the file alone settles every correction, to within the bounds and better than the prior."""
-        return not self.unseen
-
-    @property
-    def on_bounds(self) -> tuple[str, ...]:
-        """Coordinates whose correction would go farther if it could."""
-        return tuple(n for n, amount in self.corrections.items() if _on_bound(amount, self.bounds))
-
-    def interval(self, coordinate: str) -> tuple[float, float]:
-        """Where the correction lies in 95 of 100 files, mm, and within the bounds."""
-        half, amount = self.widening * self.deviations[coordinate], self.corrections[coordinate]
-        return max(amount - half, -self.bounds), min(amount + half, self.bounds)
-
-    def rms(self, unit: str) -> tuple[float, float, int]:
-        """Before and after, over all columns of a unit, and how many numbers these are."""
-        some = [column for column in self.columns if column.unit == unit]
-        count = sum(column.count for column in some)
-        before, after = (
-            math.sqrt(sum(getattr(column, when) ** 2 * column.count for column in some) / max(count, 1))
-            for when in ("before", "after")
-        )
-        return before, after, count
+    def rms(self) -> dict[str, tuple[float, float, int]]:
+        """By unit: before and after, over all columns of it, and how many numbers these are."""
+        found = {}
+        for unit in dict.fromkeys(column.unit for column in self.columns):
+            some = [column for column in self.columns if column.unit == unit]
+            count = sum(column.count for column in some)
+            before = math.sqrt(sum(column.before**2 * column.count for column in some) / count)
+            after = math.sqrt(sum(column.after**2 * column.count for column in some) / count)
+            found[unit] = before, after, count
+        return found
 
 
 def require_limits(bounds: float, prior: float, accuracy: float, mark: str = "") -> None:
@@ -220,9 +219,9 @@ def fit_hardpoints(
         why = next(iter(start.reasons.values()), "no number is both there and ours")
         allowed = "rows that the scene's car can have"
         raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
-    spread = _spread(curves, accuracy)[used]
+    spread = _spread(curves, first, accuracy)[used]
     turns = np.concatenate([np.full(len(s.values), s.meaning.unit == "rad") for s in measured.numbers])[used]
-    search = _Search(curves, used, {zero.tobytes(): start}, told)
+    tried, failures = count(1), dict[str, None]()
 
     def gap(numbers: Array) -> Array:
         """Ours less theirs; whole turns apart is the same angle."""
@@ -230,7 +229,19 @@ def fit_hardpoints(
         return np.asarray(np.where(turns, (apart + np.pi) % (2.0 * np.pi) - np.pi, apart))
 
     def left(amounts: Array) -> Array:
-        return np.concatenate([gap(search.numbers(amounts)) / spread, amounts / prior])
+        """What is left by corrections, NaN where the design cannot be solved or a row has no pose."""
+        numbers = first if not amounts.any() else np.full(len(first), np.nan)
+        if amounts.any():
+            told(f"{(at := next(tried))} tried", at)
+            try:
+                found = curves.solved(amounts)
+                numbers = curves.numbers(found)
+                if len(lost := np.flatnonzero(used & ~np.isfinite(numbers)) % len(measured.rows)):
+                    reason = found.reasons.get(int(lost[0]), "no number")
+                    failures[f"{measured.rows[lost[0]]}: {reason}"] = None
+            except PointcoordError as error:
+                failures[str(error)] = None
+        return np.concatenate([gap(numbers) / spread, amounts / prior])
 
     def slopes(amounts: Array) -> Array:
         known = curves.slopes(amounts, used) / spread[:, None]
@@ -247,41 +258,54 @@ def fit_hardpoints(
         gtol=1e-14,
         max_nfev=solves,
     )
-    amounts = np.asarray(solved.x)
-    after = gap(search.numbers(amounts))
-    whole, rest = slopes(amounts), left(amounts)
-    matrix = whole[: len(after)]
+    amounts, rest = np.asarray(solved.x), np.asarray(solved.fun)
+    after = rest[: len(spread)]
+    matrix = np.asarray(solved.jac)[: len(after)]
     _, singular, turned = np.linalg.svd(matrix, full_matrices=True)
     singular = np.concatenate([singular, np.zeros(len(zero) - len(singular))])
-    held: Bools = np.array([_on_bound(amount, bounds) for amount in amounts.tolist()])
+    held: Bools = np.abs(amounts) >= (1.0 - AT_A_BOUND) * bounds
     _, own, directions = np.linalg.svd(matrix[:, ~held], full_matrices=True)
     own = np.concatenate([own, np.zeros(int((~held).sum()) - len(own))])
     freedom = len(after) - int((own > 1.0 / bounds).sum())
-    estimated = math.sqrt(float(np.sum((after / spread) ** 2)) / freedom) if freedom > 0 else 1.0
-    factor = max(1.0, estimated)
+    factor = max(1.0, math.sqrt(float(after @ after) / freedom) if freedom > 0 else 1.0)
+
+    def deviations(beside: float) -> Array:
+        """Of corrections that are on no bound, where they are known to so many mm beside the file."""
+        found = np.zeros(len(zero))
+        found[~held] = np.sqrt(directions.T**2 @ (1.0 / ((own / factor) ** 2 + beside**-2)))
+        return found
+
     with np.errstate(divide="ignore"):
-        deviations = factor / singular
+        by_file = factor / singular
     known = min(bounds, prior)  # beforehand
-    variance, alone = np.zeros(len(zero)), np.zeros(len(zero))
-    variance[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + prior**-2))
-    alone[~held] = directions.T**2 @ (1.0 / ((own / factor) ** 2 + (OPEN * known) ** -2))
     tail = 0.5 * (1.0 + CONFIDENCE)
-    better = lsq_linear(whole, -rest, bounds=(-bounds - amounts, bounds - amounts))
+    half = float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail))
+    better = lsq_linear(solved.jac, -rest, bounds=(-bounds - amounts, bounds - amounts))
     return Fit(
         curves.design(amounts),
-        {name: _place(scene, name) for name in curves.free},
-        dict(zip(curves.free, amounts.tolist(), strict=True)),
-        dict(zip(curves.free, np.sqrt(variance).tolist(), strict=True)),
+        {
+            name: Coordinate(
+                (at := _place(scene, name)),
+                a,
+                at + a,
+                d,
+                max(a - half * d, -bounds),
+                min(a + half * d, bounds),
+                on,
+            )
+            for name, a, d, on in zip(
+                curves.free, amounts.tolist(), deviations(prior).tolist(), held.tolist(), strict=True
+            )
+        },
         tuple(
-            name for name, open_ in zip(curves.free, np.sqrt(alone).tolist(), strict=True) if open_ >= known
+            name for name, alone in zip(curves.free, deviations(OPEN * known), strict=True) if alone >= known
         ),
-        float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail)),
-        _columns(measured, used, gap(first), after, spread),
+        _columns(measured, used, gap(first), after * spread, spread),
         tuple(
             Combination(
-                dict(zip(curves.free, row.tolist(), strict=True)), float(w), float(d), bool(d < known)
+                float(w), float(d), bool(d < known), dict(zip(curves.free, row.tolist(), strict=True))
             )
-            for row, w, d in zip(turned, singular, deviations, strict=True)
+            for row, w, d in zip(turned, singular, by_file, strict=True)
         ),
         factor,
         freedom,
@@ -289,7 +313,7 @@ def fit_hardpoints(
         prior,
         bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
         int(solved.nfev),
-        tuple(search.failures),
+        tuple(failures),
         (*left_out, *_notes(curves, start)),
     )
 
@@ -301,65 +325,21 @@ def _without_derivatives(measured: Measured) -> tuple[Measured, tuple[str, ...]]
         FileError: there are no others.
     """
     curves = tuple(s for s in measured.numbers if not s.meaning.per)
-    slopes = [shown(s.column) for s in measured.numbers if s.meaning.per]
+    slopes = ", ".join(shown(s.column) for s in measured.numbers if s.meaning.per)
     if not curves:
-        problem = f"holds derivatives only ({', '.join(slopes)})"
+        problem = f"holds derivatives only ({slopes})"
         raise FileError(measured.source, "", problem, "the curves themselves, such as an angle over travel")
-    notes = [f"{', '.join(slopes)} is not fitted to: derivatives are not, their curves are"] if slopes else []
-    return replace(measured, numbers=curves), tuple(notes)
+    notes = (f"{slopes} is not fitted to: derivatives are not, their curves are",) if slopes else ()
+    return replace(measured, numbers=curves), notes
 
 
 def _notes(curves: Curves, start: Found) -> tuple[str, ...]:
     """Inputs that the file does not give, and rows that are left out."""
-    drawn = [
-        f"{name} is as drawn in every design: the file does not give it" for name in curves.driven.as_drawn
-    ]
-    lost = [
-        f"{curves.measured.rows[row]} is left out: {reason}" for row, reason in sorted(start.reasons.items())
-    ]
+    names, rows = curves.driven.as_drawn, curves.measured.rows
+    drawn = [f"{name} is as drawn in every design: the file does not give it" for name in names]
+    lost = [f"{rows[row]} is left out: {reason}" for row, reason in sorted(start.reasons.items())]
     more = [f"{len(lost) - NAMED} more rows are left out"] if len(lost) > NAMED else []
     return (*drawn, *lost[:NAMED], *more)
-
-
-class _Search:
-    """Designs that least squares ask for, each solved once."""
-
-    def __init__(
-        self, curves: Curves, used: Bools, solved: dict[bytes, Found], told: Callable[[str, int], None]
-    ) -> None:
-        self.curves, self.used, self.told = curves, used, told
-        self.tried = 0
-        self.failures: dict[str, None] = {}
-        self._solved = solved
-
-    def numbers(self, amounts: Array) -> Array:
-        """Of every column, NaN where a design has no pose."""
-        try:
-            found = self._design(amounts)
-        except PointcoordError as error:
-            self.failures[str(error)] = None
-            return np.full(len(self.used), np.nan)
-        numbers = self.curves.numbers(found)
-        lost = np.flatnonzero(self.used & ~np.isfinite(numbers))
-        if len(lost):
-            rows = self.curves.measured.rows
-            row = int(lost[0]) % len(rows)
-            self.failures[f"{rows[row]}: {found.reasons.get(row, 'no number')}"] = None
-        return numbers
-
-    def _design(self, amounts: Array) -> Found:
-        key = amounts.tobytes()
-        if key not in self._solved:
-            self.tried += 1
-            self.told(f"{self.tried} tried", self.tried)
-            solved = self.curves.solved(amounts)
-            # A rejected step is followed by a shorter one from the last that was taken.
-            self._solved = dict([*self._solved.items()][-KEPT:]) | {key: solved}
-        return self._solved[key]
-
-
-def _on_bound(amount: float, bounds: float) -> bool:
-    return abs(amount) >= (1.0 - AT_A_BOUND) * bounds
 
 
 def _place(scene: Scene, coordinate: str) -> float:
@@ -395,21 +375,15 @@ def free_coordinates(scene: Scene, free: Sequence[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _spread(curves: Curves, accuracy: float) -> Array:
-    """Standard deviation of every number, (columns * rows,)."""
-    measured = curves.measured
-    zero = np.zeros(len(curves.free))
-    values = [s.values for s in measured.independent]
-    swing = np.zeros(len(values[0]) * len(measured.numbers))
-    here = curves.at(zero)
+def _spread(curves: Curves, here: Array, accuracy: float) -> Array:
+    """Standard deviation of every number of the car as drawn, (columns * rows,)."""
+    measured, zero = curves.measured, np.zeros(len(curves.free))
+    values, swing = [s.values for s in measured.independent], np.zeros(len(here))
     for _, ends in at_either_end(values, [s.off for s in measured.independent]):
-        gaps = [np.nan_to_num(np.abs(curves.at(zero, end) - here)) for end in ends]
-        swing += np.max(gaps, axis=0)
+        swing += np.max([np.nan_to_num(np.abs(curves.at(zero, end) - here)) for end in ends], axis=0)
     off = np.concatenate([s.off + s.accuracy_or(accuracy) for s in measured.numbers])
-    least = np.concatenate(
-        [np.full(len(s.values), LEAST[s.meaning.unit.partition("/")[0]]) for s in measured.numbers]
-    )
-    return np.asarray(np.maximum((off + swing) / math.sqrt(3.0), least))
+    least = [LEAST[s.meaning.unit.partition("/")[0]] for s in measured.numbers]
+    return np.asarray(np.maximum((off + swing) / math.sqrt(3.0), np.repeat(least, len(measured.rows))))
 
 
 def _columns(
@@ -419,8 +393,7 @@ def _columns(
     which = np.repeat(np.arange(len(measured.numbers)), len(measured.rows))[used]
     found = []
     for i, s in enumerate(measured.numbers):
-        mine = which == i
-        if mine.any():
+        if (mine := which == i).any():
             rms = [float(np.sqrt(np.mean(part[mine] ** 2))) for part in (before, after, spread)]
             found.append(Fitted(s.column, s.meaning.unit, rms[0], rms[1], rms[2], int(mine.sum())))
     return tuple(found)

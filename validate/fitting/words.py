@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr
 
-from validate.fitting.fit import CONFIDENCE, Combination, Fit, Fitted
+from validate.fitting.fit import CONFIDENCE, Combination, Fit
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -26,52 +26,42 @@ STRANGE = 5.0
 def text_of(fit: Fit, name: str, source: str) -> str:
     """Everything that is to be said of a fit."""
     lines = [f"{name}: hardpoints fitted to {source}"]
-    for unit in dict.fromkeys(column.unit for column in fit.columns):
-        before, after, count = fit.rms(unit)
+    for unit, (before, after, count) in fit.rms.items():
         lines.append(f"  r.m.s. {_of(unit, before)} before, {_of(unit, after)} after ({count} numbers)")
-    lines += [f"    {_column(column)}" for column in fit.columns]
-    lines.append(
-        f"  what is left is {fit.factor:.3g} times what the digits explain"
-        if fit.factor > 1.0
-        else "  what is left is no more than the digits explain"
-    )
+    for column in fit.columns:
+        parts = (_of(column.unit, part) for part in (column.before, column.after, column.known_to))
+        told = "{} before, {} after; known to {}".format(*parts)
+        lines.append(f"    {shown(column.column)}: {told}")
+    more = f"{fit.factor:.3g} times what" if fit.factor > 1.0 else "no more than"
     lines += [
+        f"  what is left is {more} the digits explain",
         "",
         f"  correction, mm, within +-{fit.bounds:g}, its standard deviation, and where it lies "
         f"{100.0 * CONFIDENCE:g} times in 100",
     ]
-    width = max(len(one) for one in fit.corrections)
-    for one, amount in fit.corrections.items():
-        deviation = fit.deviations[one]
-        said = f"    {one.ljust(width)} {amount:+z10.4f}"
-        if one in fit.on_bounds:
-            lines.append(f"{said}   on its bound, and held there")
-            continue
-        low, high = fit.interval(one)
-        open_ = "   not known from these data" if one in fit.unknown else ""
-        lines.append(f"{said} +- {deviation:.2g}   {low:+z.4f} to {high:+z.4f}{open_}")
-    lines += [
-        "",
-        "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm",
-    ]
-    lines += [f"    {one.singular:10.3g}  {_known(one)}" for one in fit.combinations]
-    if fit.unique:
-        lines += [
-            "",
-            "  The data settle every combination of these coordinates: unique near here.",
-        ]
+    width = max(len(at) for at in fit.coordinates)
+    for at, one in fit.coordinates.items():
+        known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
+        known += "   not known from these data" if at in fit.unknown else ""
+        known = "  on its bound, and held there" if one.on_bound else known
+        lines.append(f"    {at.ljust(width)} {one.correction:+z10.4f} {known}")
+    head = "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm"
+    lines += ["", head]
+    for combined in fit.combinations:
+        known = f"{combined.deviation:.3g}" if combined.seen else "not seen"
+        lines.append(f"    {combined.singular_value:10.3g}  {known}")
+    if not fit.unseen:
+        lines += ["", "  The data settle every combination of these coordinates: unique near here."]
         return "\n".join(lines)
-    count = len(fit.unseen)
     lines += [
         "",
-        f"  The answer is not unique: the data cannot see {count} of {len(fit.combinations)} combinations of "
-        "coordinates.",
+        f"  The answer is not unique: the data cannot see {len(fit.unseen)} of {len(fit.combinations)} "
+        "combinations of coordinates.",
         f"  Along these the correction is as small as the prior of {fit.prior:g} mm makes it: a choice, no "
         "finding; fewer --free coordinates narrow it.",
         "  Any of them may be added, to first order:",
     ]
-    lines += [f"    {words}" for words in unseen_words(fit)]
-    return "\n".join(lines)
+    return "\n".join([*lines, *(f"    {words}" for words in unseen_words(fit))])
 
 
 def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
@@ -89,14 +79,11 @@ def warnings_of_fit(fit: Fit) -> tuple[str, ...]:
             "these, or another unit, sign or definition of a column; pointcoord validate SCENE --data FILE "
             "says column by column how far they are apart"
         )
-    if fit.on_bounds:
-        found.append(
-            f"{', '.join(fit.on_bounds)} would go beyond the bounds of {fit.bounds:g} mm: less might be left"
-        )
-    if not fit.unique:
-        found.append(
-            f"the answer is not unique: the data do not see {counted(len(fit.unseen))} of coordinates"
-        )
+    if on := ", ".join(at for at, one in fit.coordinates.items() if one.on_bound):
+        found.append(f"{on} would go beyond the bounds of {fit.bounds:g} mm: less might be left")
+    if fit.unseen:
+        unseen = counted(len(fit.unseen))
+        found.append(f"the answer is not unique: the data do not see {unseen} of coordinates")
     return tuple(found)
 
 
@@ -107,12 +94,11 @@ def counted(number: int) -> str:
 
 def unseen_words(fit: Fit) -> list[str]:
     """Which combinations the data cannot see; those that change nothing at all as simply as can be."""
-    largest = max(one.singular for one in fit.combinations)
-    nothing = [one for one in fit.unseen if one.singular <= NOTHING * largest]
-    weak = [one for one in fit.unseen if one not in nothing]
+    least = NOTHING * max(one.singular_value for one in fit.combinations)
+    nothing = [one for one in fit.unseen if one.singular_value <= least]
     said = [f"{combination(parts, SAID_EXACT)}: changes nothing" for parts in simplest(nothing)]
-    said += [f"{combination(one.parts)}: known to {one.deviation:.2g} mm only" for one in weak]
-    return said
+    weak = (one for one in fit.unseen if one not in nothing)
+    return said + [f"{combination(one.parts)}: known to {one.deviation:.2g} mm only" for one in weak]
 
 
 def combination(parts: Mapping[str, float], said: float = SAID) -> str:
@@ -141,13 +127,3 @@ def _of(unit: str, number: float) -> str:
     if unit.startswith("rad"):
         return f"{math.degrees(number):.4g} deg{unit.removeprefix('rad')}"
     return f"{number:.4g} {unit}"
-
-
-def _column(column: Fitted) -> str:
-    parts = (_of(column.unit, part) for part in (column.before, column.after, column.digits))
-    before, after, digits = parts
-    return f"{shown(column.column)}: {before} before, {after} after; known to {digits}"
-
-
-def _known(one: Combination) -> str:
-    return f"{one.deviation:.3g}" if one.seen else "not seen"

@@ -17,15 +17,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import (
-    Axle,
-    Contents,
-    FilePoint,
-    Place,
-    SpinAxis,
-    finite,
-    short,
-)
+from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, finite, short
 from validate.tables.errors import FileError
 
 CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
@@ -84,12 +76,6 @@ class _Json:
         """Its type and its template, of which either may be anything."""
         return self.data.get("Type"), self.data.get("Template")
 
-    @property
-    def suspension(self) -> str:
-        """What it calls itself if it is a suspension; empty if it is none."""
-        kind, template = self.called
-        return template if kind == "Suspension" and isinstance(template, str) else ""
-
     def refuse(self, told: str, allowed: str, *keys: str) -> FileError:
         """What is wrong at the place of keys."""
         return FileError(self.source, self.line(*keys), told, allowed)
@@ -111,16 +97,14 @@ class _Json:
         """The file that it names at a place, from the nearest folder above it that has one of that name."""
         if not isinstance(name, str):
             raise self.refuse(f"has no {place}", "the name of a file", *keys)
-        for folder in Path(self.source).absolute().parents:
-            path = folder / name
-            if path.is_file():
-                data = read_file(path, f"the path of a file that {self.source} names")
-                return _Json.of(data.decode("utf-8-sig", "replace"), str(path))
-        told = f"names {short(name)}, which is in none of the folders above it"
-        allowed = (
-            "a vehicle in Chrono's folder of data with the files that it names, or a suspension's own file"
-        )
-        raise self.refuse(told, allowed, name)
+        paths = (folder / name for folder in Path(self.source).absolute().parents)
+        path = next((path for path in paths if path.is_file()), None)
+        if path is None:
+            told = f"names {short(name)}, which is in none of the folders above it"
+            allowed = "a vehicle in Chrono's folder of data with the files that it names"
+            raise self.refuse(told, f"{allowed}, or a suspension's own file", name)
+        data = read_file(path, f"the path of a file that {self.source} names")
+        return _Json.of(data.decode("utf-8-sig", "replace"), str(path))
 
     def numbers(self, value: object, axes: str, name: str, *keys: str) -> list[Decimal]:
         """A number for each axis, which are called so together."""
@@ -156,7 +140,7 @@ def read(text: str, source: str) -> Contents:
         SceneError: a file that it names cannot be read.
     """
     file, on_the_way = _Json.of(text, source), {source}
-    while not file.suspension:
+    while not _is_suspension(file):
         # A simulation's own files name the vehicle.
         within = file.data.get("Vehicle")
         name = within.get("Input File") if isinstance(within, dict) else file.data.get("Vehicle Input File")
@@ -165,10 +149,21 @@ def read(text: str, source: str) -> Contents:
             return _vehicle(file)
         on_the_way.add(inner.source)
         file = inner
-    return _suspension(file)
+    points, axle = _suspension(file)
+    notes = (
+        "points are in the frame of the suspension, which the car's own file puts somewhere",
+        "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
+    )
+    return Contents(tuple(points), {"": replace(axle, notes=notes)})
 
 
-def _suspension(file: _Json) -> Contents:
+def _is_suspension(file: _Json) -> bool:
+    kind, template = file.called
+    return kind == "Suspension" and isinstance(template, str) and bool(template)
+
+
+def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
+    """The points of a suspension, and its spin axis."""
     points = [
         FilePoint(f"{part}: {key}", file.place(value, f"{part}: {key}", part, key), file.line(part, key))
         for part, keys in file.data.items()
@@ -183,13 +178,7 @@ def _suspension(file: _Json) -> Contents:
         f"{key} {file.data[key]}" if key in file.data else f"no {key}, which is 0 then"
         for key in (CAMBER, TOE)
     )
-    notes = (
-        "points are in the frame of the suspension, which the car's own file puts somewhere",
-        "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
-    )
-    return Contents(
-        tuple(points), {"": Axle(file.suspension, {}, SpinAxis(axis, " and ".join(taken)), notes)}
-    )
+    return points, Axle(file.called[1], {}, SpinAxis(axis, " and ".join(taken)))
 
 
 # A vehicle, and the files that it names.
@@ -212,25 +201,23 @@ def _vehicle(file: _Json) -> Contents:
     points: list[FilePoint] = []
     read: dict[str, Axle] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
-        x, y, z = place
-        if y:
-            told = f"{PLACE} of its {label} axle has y {y}, beside the middle of the car"
+        if place[1]:
+            told = f"{PLACE} of its {label} axle has y {place[1]}, beside the middle of the car"
             raise file.refuse(told, "y 0", PLACE)
         own = file.named(axle.get(SUSPENSION), f"{SUSPENSION} of an axle", AXLES)
-        if not own.suspension:
+        if not _is_suspension(own):
             told = f"is of Type {short(str(own.called[0]))}, and {file.source} has it as a suspension"
             raise own.refuse(told, "Type Suspension with a Template", "Type")
-        one = _suspension(own)
-        points += [
-            replace(point, part=label, place=(point.place[0] + x, point.place[1] + y, point.place[2] + z))
-            for point in one.points
-        ]
+        theirs, alone = _suspension(own)
+        for point in theirs:
+            x, y, z = (a + b for a, b in zip(point.place, place, strict=True))
+            points.append(replace(point, part=label, place=(x, y, z)))
         steered, doubts = _steering(axle, file)
         moved = (
             f"points and their lines are those of {own.source}, moved by its {PLACE} "
             f"{[float(n) for n in place]} m into the frame of the chassis"
         )
-        read[label] = replace(one.axles[""], notes=(moved, steered), doubts=doubts)
+        read[label] = replace(alone, notes=(moved, steered), doubts=doubts)
     return Contents(tuple(points), read)
 
 

@@ -14,16 +14,7 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 
 from validate.hardpoint_files.axes import DIRECTIONS
-from validate.hardpoint_files.contents import (
-    Axle,
-    Contents,
-    FilePoint,
-    Spoilt,
-    place_of,
-    plain,
-    short,
-    words_of,
-)
+from validate.hardpoint_files.contents import Axle, Contents, FilePoint, place_of, plain, short, words_of
 from validate.tables.cells import is_number, joined, lines_of
 from validate.tables.errors import FileError
 from validate.tables.units import length_called
@@ -62,7 +53,7 @@ class _Titles:
     """What a line of titles says.
 
     Attributes:
-        columns: of x, y and z, by wheel. name_at: the column of names. wheel_at: that of wheels, if any.
+        columns: of x, y and z, by wheel. name_at, wheel_at: those of names and wheels, if any.
         unit: of lengths. directions: where x, y and z point. row: the line itself.
         said: whether the user says it.
     """
@@ -80,19 +71,18 @@ class _Titles:
         """The columns of coordinates."""
         return {at for three in self.columns.values() for at in three}
 
+    def title(self, at: int) -> str:
+        """A column's title; empty if it has none."""
+        return _cell(self.row, at)
+
     def further(self, row: Row) -> list[int]:
         """Columns with numbers that are not read; what is ahead of a name may count the lines."""
         read = {self.name_at, self.wheel_at, *self.own}
         return [
             at
-            for at, cell in enumerate(row)
-            if at not in read and at > min(self.name_at, *self.own) and is_number(cell)
-            if not _counts_lines(_words(self.title(at)))
+            for at in range(min(self.name_at, *self.own) + 1, len(row))
+            if at not in read and is_number(row[at]) and not _counts_lines(_words(self.title(at)))
         ]
-
-    def title(self, at: int) -> str:
-        """A column's title; empty if it has none."""
-        return _cell(self.row, at)
 
 
 UNTITLED = _Titles({NO_WHEEL: (1, 2, 3)}, 0)
@@ -112,8 +102,7 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
         told = "has numbers with points and with commas"
         raise FileError(source, lines.mixed, told, "one sign before the decimals, none between thousands")
     titles, heading, words = _said(rows, said, source) if said else UNTITLED, NO_WHEEL, ("", 0, 0)
-    points: list[FilePoint] = []
-    spoilt: list[Spoilt] = []
+    every: list[FilePoint] = []
     notes: dict[str, None] = {}
     tables = [titles]
     for line, row in rows:
@@ -121,41 +110,35 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
             continue
         if not titles.said and (found := _titles(row, source, line)) is not None:
             tables.append(titles := found)
-            continue
-        if unit := _unit_line(row, titles):
+        elif unit := _unit_line(row, titles):
             tables.append(titles := replace(titles, unit=unit))
-            continue
-        if (wheel := _heading(row)) is not None:
+        elif (wheel := _heading(row)) is not None:
             # The left wheel under a heading of the front axle is the front left one.
             heading = wheel[0], wheel[1] or heading[1]
-            continue
-        if not any(map(is_number, row)):
-            words = ", ".join(row[1:]), line, sum(map(bool, row))
-        elif titles is UNTITLED and words[2] > 3 and not points:
-            told = f"has titles that are not known: {short(words[0])}"
-            raise FileError(
-                source, words[1], told, f"X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X; {SAY}"
-            )
-        new, broken = _points_of(row, titles, heading, source, line)
-        points += new
-        spoilt += broken
-        if new:
-            notes |= {f"the column {short(titles.title(at))} is not read": None for at in titles.further(row)}
+        else:
+            if not any(map(is_number, row)):
+                words = ", ".join(row[1:]), line, sum(map(bool, row))
+            elif titles is UNTITLED and words[2] > 3 and not any(one.error is None for one in every):
+                told = f"has titles that are not known: {short(words[0])}"
+                allowed = f"X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X; {SAY}"
+                raise FileError(source, words[1], told, allowed)
+            new = _points_of(row, titles, heading, source, line)
+            every += new
+            if any(one.error is None for one in new):
+                notes |= {
+                    f"the column {short(titles.title(at))} is not read": None for at in titles.further(row)
+                }
+    points, spoilt = ([p for p in every if (p.error is None) is good] for good in (True, False))
     if not points:
         wrong = next((one.error for one in spoilt if one.value), None)
         raise wrong or FileError(source, 0, "has no points", f"{ROW}; {SAY}")
     units, directions = ({getattr(one, key) for one in tables} - {"", ()} for key in ("unit", "directions"))
-    if len(units) > 1 or len(directions) > 1:
-        raise FileError(
-            source, 0, f"has tables in different {'units' if len(units) > 1 else 'axes'}", "a file for each"
-        )
-    return Contents(
-        tuple(points),
-        unit=next(iter(units), ""),
-        axes=next(iter(directions), ()),
-        spoilt=tuple(spoilt),
-        axles={"": Axle(notes=tuple(notes))},
-    )
+    for what, found_of in (("units", units), ("axes", directions)):
+        if len(found_of) > 1:
+            raise FileError(source, 0, f"has tables in different {what}", "a file for each")
+    axles = {"": Axle(notes=tuple(notes))}
+    unit, axes = next(iter(units), ""), next(iter(directions), ())
+    return Contents(tuple(points), axles, unit, axes, tuple(spoilt))
 
 
 def _named(words: Row) -> Row:
@@ -272,34 +255,31 @@ def _heading(row: Row) -> Wheel | None:
 # Points.
 
 
-def _points_of(
-    row: Row, titles: _Titles, heading: Wheel, source: str, line: int
-) -> tuple[list[FilePoint], list[Spoilt]]:
-    """The points of a line, and what is said in place of one."""
+def _points_of(row: Row, titles: _Titles, heading: Wheel, source: str, line: int) -> list[FilePoint]:
+    """The points of a line, or what is said in place of one."""
     name = _cell(row, titles.name_at)
     numbers = [cell for cell in row if is_number(cell)]
     if not name or (is_number(name) and not titles.said):
         if len(numbers) >= 3:
             raise FileError(source, line, "has coordinates without a name", ROW)
-        return [], []
+        return []
     value = next((cell for cell in numbers if cell != name), "")
     if not titles.said and (untitled := [at for at in titles.further(row) if not titles.title(at)]):
         told = f"has {len(numbers)} numbers for {short(name)}, some of them in columns without a title"
         allowed = f"three, or a line of titles such as Point, Left X, Left Y, Left Z, Right X; {SAY}"
         error = FileError(source, line, told, allowed)
-        return [], [Spoilt(FilePoint(name, NOWHERE, line, *heading), error, row[untitled[0]])]
+        return [FilePoint(name, NOWHERE, line, *heading, error, row[untitled[0]])]
     at = titles.wheel_at
     of_line = NO_WHEEL if at is None else wheel_of(plain(_cell(row, at)).split())
-    points: list[FilePoint] = []
-    spoilt: list[Spoilt] = []
+    found: list[FilePoint] = []
     for wheel, three in titles.columns.items():
         cells = [_cell(row, at) for at in three]
         side, part = (own or of or over for own, of, over in zip(wheel, of_line, heading, strict=True))
         point = FilePoint(name, NOWHERE, line, side, part)
         try:
-            points.append(replace(point, place=place_of(cells, source, line, name)))
+            found.append(replace(point, place=place_of(cells, source, line, name)))
         except FileError as error:
             # A line of words alone is a heading; one with numbers elsewhere is a mistake.
             if any(cells) or value:
-                spoilt.append(Spoilt(point, error, next(filter(is_number, cells), value)))
-    return points, spoilt
+                found.append(replace(point, error=error, value=next(filter(is_number, cells), value)))
+    return found

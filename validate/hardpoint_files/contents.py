@@ -19,7 +19,7 @@ FARTHEST = Decimal("1e9")
 
 @dataclass(frozen=True)
 class FilePoint:
-    """A point as the file has it.
+    """A point as the file has it, or a line that would be one and is none.
 
     Attributes:
         name: what the file calls it.
@@ -27,6 +27,7 @@ class FilePoint:
         line: where it is, counted from 1.
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
+        error: why it is no point; None of one. value: the first number that such a line has, if any.
     """
 
     name: str
@@ -34,31 +35,12 @@ class FilePoint:
     line: int
     side: str = ""
     part: str = ""
+    error: FileError | None = None
+    value: str = ""
 
-
-@dataclass(frozen=True)
-class Printed:
-    """A number that the file prints of its own drawing, and its line."""
-
-    value: Decimal
-    line: int
-
-
-@dataclass(frozen=True)
-class Spoilt:
-    """A line that would be a point and is none.
-
-    Attributes:
-        point: its name, line and wheel, without a place. error: what is wrong with it as a point.
-        value: the first number that it has; empty if it has none.
-    """
-
-    point: FilePoint
-    error: FileError
-    value: str
-
-    def __str__(self) -> str:
-        return f"{short(self.point.name)} {self.value}".strip() + f" on line {self.point.line}"
+    def of(self, part: str, side: str) -> bool:
+        """Whether it may belong to that wheel; an empty axle or side leaves it open."""
+        return all(mine in ("", its) or not its for mine, its in ((self.part, part), (self.side, side)))
 
 
 @dataclass(frozen=True)
@@ -75,13 +57,13 @@ class Axle:
 
     Attributes:
         called: what it calls the suspension; empty if it does not say.
-        angles: static angles that it prints, by its own words, deg.
+        angles: static angles that it prints, by its own words, deg, each with its line.
         spin_axis: where its wheel's spin axis points, if said without a point.
         notes: what the user should know of its points. doubts: what may make them another car than is meant.
     """
 
     called: str = ""
-    angles: Mapping[str, Printed] = field(default_factory=dict)
+    angles: Mapping[str, tuple[Decimal, int]] = field(default_factory=dict)
     spin_axis: SpinAxis | None = None
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
@@ -103,7 +85,7 @@ class Contents:
     axles: Mapping[str, Axle] = field(default_factory=dict)
     unit: str = ""
     axes: tuple[str, ...] = ()
-    spoilt: tuple[Spoilt, ...] = ()
+    spoilt: tuple[FilePoint, ...] = ()
 
     def axle(self, part: str) -> Axle:
         """What is said of an axle, or else of the whole file."""

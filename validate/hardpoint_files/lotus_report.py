@@ -6,16 +6,9 @@ A point is a line `X Y Z POINT ( number ) = name`. Tables of results follow, whi
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 
-from validate.hardpoint_files.contents import (
-    Axle,
-    Contents,
-    FilePoint,
-    Printed,
-    decimal_of,
-    place_of,
-    short,
-)
+from validate.hardpoint_files.contents import Axle, Contents, FilePoint, decimal_of, place_of, short
 from validate.tables.errors import FileError
 
 _AXLE = re.compile(r"^\s*(FRONT|REAR)\s+SUSPENSION\b")
@@ -33,7 +26,7 @@ def read(text: str, source: str) -> Contents:
     """
     points: list[FilePoint] = []
     called: dict[str, str] = {}
-    angles: dict[str, dict[str, Printed]] = {}
+    angles: dict[str, dict[str, tuple[Decimal, int]]] = {}
     part = unit = ""
     for line, words in enumerate(text.splitlines(), 1):
         if found := _AXLE.match(words):
@@ -46,14 +39,10 @@ def read(text: str, source: str) -> Contents:
             points.append(_point(found[1], found[2].strip(), source, line, part))
         elif found := _ANGLE.match(words):
             value = decimal_of(found[2], source, line, found[1].strip())
-            angles.setdefault(part, {}).setdefault(found[1].strip(), Printed(value, line))
+            angles.setdefault(part, {}).setdefault(found[1].strip(), (value, line))
     if not points:
-        raise FileError(
-            source,
-            0,
-            "has no points",
-            "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot",
-        )
+        like = "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot"
+        raise FileError(source, 0, "has no points", like)
     axles = {part: Axle(called.get(part, ""), angles.get(part, {})) for part in (*called, *angles)}
     return Contents(tuple(points), axles, unit)
 
@@ -61,9 +50,8 @@ def read(text: str, source: str) -> Contents:
 def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePoint:
     given = numbers.split()
     if len(given) != 3:
-        raise FileError(
-            source, line, f"has {len(given)} numbers before POINT ({short(numbers.strip())})", "x, y and z"
-        )
+        told = f"has {len(given)} numbers before POINT ({short(numbers.strip())})"
+        raise FileError(source, line, told, "x, y and z")
     if not name:
         raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
     return FilePoint(name, place_of(given, source, line, name), line, part=part)

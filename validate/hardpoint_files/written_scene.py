@@ -8,10 +8,10 @@ from math import floor
 from pathlib import Path
 from typing import Any
 
-from pointcoord import Scene, standing
+from pointcoord import Scene
+from pointcoord.drawing_stands import Standing
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism import mechanism_file
-from pointcoord.results.closing import Closing
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
 from validate.toml_written import value_of
@@ -52,24 +52,8 @@ class ScenePoint:
         return f"[{', '.join(numbers)}]"
 
 
-@dataclass(frozen=True)
-class Bounce:
-    """The motion that a scene begins with: one input goes up and down, the others are held as drawn.
-
-    Attributes:
-        inputs: each as in a scene. words: the same for people.
-        angles: of the closed drawing, rad. closing: how far it is from closing.
-    """
-
-    inputs: Mapping[str, Mapping[str, Any]]
-    words: Mapping[str, str]
-    angles: Mapping[str, float]
-    closing: Closing
-
-    def added_to(self, drawn: Scene) -> dict[str, Any]:
-        """The content of a drawing's scene with this motion."""
-        content = drawn.model_dump(exclude_none=True)
-        return content | {"inputs": self.inputs, "time": {"start": 0.0, "stop": STOP, "samples": SAMPLES}}
+Laws = Mapping[str, tuple[Mapping[str, Any], str]]
+"""Of each input its law as in a scene, and the same for people."""
 
 
 def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) -> Scene:
@@ -97,29 +81,25 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
     return scene.model_copy(update={"effects": effects})
 
 
-def bounce_of(scene: Scene) -> Bounce:
-    """A bounce about the drawing, with the others held as drawn, well within what the linkage reaches.
-
-    Raises:
-        AssemblyError: the drawing cannot be closed.
-    """
-    stands = standing(scene)
-    inputs: dict[str, Mapping[str, Any]] = {}
-    words: dict[str, str] = {}
-    for drive in scene.mechanism.topology.drives:
-        name, unit, drawn = drive.input, drive.unit, stands.inputs[drive.input]
+def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
+    """A bounce about the drawing, with the others held as drawn, well within what the linkage reaches."""
+    laws: dict[str, tuple[Mapping[str, Any], str]] = {}
+    for drive in drawn.mechanism.topology.drives:
+        name, unit, here = drive.input, drive.unit, stands.inputs[drive.input]
         # What pushes a point steers; what pushes none carries the wheel up and down.
         if drive.pushes:
-            inputs[name] = {"constant": drawn}
-            words[name] = f"{unit}, as drawn"
+            laws[name] = {"constant": here}, f"{unit}, as drawn"
             continue
         low, high = (end.value for end in stands.reach[name])
-        amplitude = floor(1e4 * PART * min(drawn - low, high - drawn)) / 1e4
-        inputs[name] = {"sine": {"amplitude": amplitude, "angular_frequency": FREQUENCY, "offset": drawn}}
-        words[name] = (
-            f"{unit}; it reaches {low:.4f} to {high:.4f}, and this takes a quarter of the shorter way"
-        )
-    return Bounce(inputs, words, stands.angles, stands.closing)
+        amplitude = floor(1e4 * PART * min(here - low, high - here)) / 1e4
+        sine = {"amplitude": amplitude, "angular_frequency": FREQUENCY, "offset": here}
+        words = f"{unit}; it reaches {low:.4f} to {high:.4f}, and this takes a quarter of the shorter way"
+        laws[name] = {"sine": sine}, words
+    moved = {
+        "inputs": {name: law for name, (law, _) in laws.items()},
+        "time": {"start": 0.0, "stop": STOP, "samples": SAMPLES},
+    }
+    return laws, Scene.from_mapping(drawn.model_dump(exclude_none=True) | moved, drawn.title)
 
 
 def scene_text(
@@ -127,7 +107,7 @@ def scene_text(
     format_words: str,
     drawn: Scene,
     points: Iterable[ScenePoint],
-    bounce: Bounce,
+    laws: Laws,
     facts: Sequence[str],
     others: Sequence[FilePoint],
 ) -> str:
@@ -151,7 +131,7 @@ def scene_text(
         *(f"# not used: {shown(point.name)}, line {point.line}" for point in others),
         "",
         "[inputs]",
-        *(f"{name} = {value_of(law)}    # {bounce.words[name]}" for name, law in bounce.inputs.items()),
+        *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),
         "",
         "[time]    # s",
         "start = 0.0",

@@ -20,10 +20,6 @@ A map is TOML:
     printed = 0.0001              # unit of the last digit, in the column's unit; 0: written in full or exact
     accuracy = 0.001              # how far its numbers may be off beside that, in the column's unit
 
-`travel.POINT` is how much higher a point is than in the closed drawing; `travel.contact` is that of the
-lowest point of a thin disc of the rolling radius about the wheel's centre. Names are those of the files that
-`pointcoord simulate -o` writes; the last part of a name will do where nothing else ends so.
-
 An angle or a coordinate in its unit by that of the independent column, such as "toe [deg/mm]" over a travel,
 is the derivative by that one, others as they are; d(toe)/d(bump) says the same where several could be meant.
 Rates by time are there over time, or where every input that is no constant has its own rate in the file.
@@ -35,22 +31,31 @@ and which no other column is said to be, and times, inputs and travels by their 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pointcoord import Scene, SceneError
-from pointcoord.effects.angle import Angle, WheelAngles
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
-from pointcoord.mechanism.faults import TableFault, fault_of
+from pointcoord.mechanism.faults import fault_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
+from validate.measured.meanings import (
+    CONTACT,
+    IGNORE,
+    INPUT,
+    PLACES,
+    TIME,
+    TRAVEL,
+    Meaning,
+    angle_of,
+    meanings_of,
+    named,
+)
 from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
 from validate.plain_text import shown
 from validate.tables.errors import FileError
@@ -59,13 +64,7 @@ from validate.toml_written import key_of, value_of
 
 Array = NDArray[np.float64]
 
-AXES = "xyz"
 BELOW = {"mm": "a length", "rad": "an angle", "s": "a time"}
-# d(toe)/d(bump), or dtoe/dbump.
-_DERIVATIVE = re.compile(r"d\(?(.+?)\)?/d\(?(.+?)\)?")
-PLACES = next(q for q, quantity in QUANTITIES.items() if quantity.of == "point" and quantity.unit == "mm")
-TIME, INPUT, TRAVEL, IGNORE, CONTACT = "time", "input", "travel", "ignore", "contact"
-RATES = ("rate", "acceleration")
 Definition = Literal["projected", "arcsine"]
 PROJECTED: Definition = "projected"
 ARCSINE: Definition = "arcsine"
@@ -73,12 +72,6 @@ ARCSINE: Definition = "arcsine"
 FEWEST = 3
 # No length, time, angle or rate of a car is larger in our units; the square of what is may be no number.
 FARTHEST = 1e12
-
-
-def _sign(value: float) -> float:
-    if abs(value) != 1.0:
-        raise TableFault((), f"is {value:g}", "1 or -1")
-    return value
 
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -92,7 +85,7 @@ class ColumnSaid(BaseModel):
 
     is_: str | None = Field(default=None, alias="is")
     unit: str | None = None
-    sign: Annotated[Number, AfterValidator(_sign)] = 1.0
+    sign: Literal[1, -1] = 1
     offset: Number = 0.0
     definition: Definition = PROJECTED
     printed: Size | None = None
@@ -129,44 +122,6 @@ class MapSaid(BaseModel):
                 raise FileError(where, ".".join(place), problem, ", ".join(known)) from None
             fault = fault_of(error)
             raise FileError(where, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
-
-
-@dataclass(frozen=True)
-class Meaning:
-    """What a column is.
-
-    Attributes:
-        kind: time, an input, a travel, or a number of a quantity.
-        quantity: of a number. name: of the input, of the point that travels, or of the number.
-        axis: 0 to 2 of a component of a vector; None of what the car has one number of.
-        unit: ours.
-        per: what the independent column is, in words, of a derivative by it; empty of what is none.
-        order: of the time derivative of an input or a travel; its name is then that of the whole, input.NAME.
-    """
-
-    kind: Literal["time", "input", "travel", "number", "rate"]
-    name: str
-    unit: str
-    quantity: str = ""
-    axis: int | None = None
-    per: str = ""
-    order: int = 0
-
-    @property
-    def label(self) -> str:
-        """Under which name it is compared: that of the number, and by what it is a derivative."""
-        return f"{self.name} per {self.per}" if self.per else self.name
-
-    @property
-    def words(self) -> str:
-        """Its name as a map says it."""
-        if self.kind == "number":
-            end = () if self.axis is None else (AXES[self.axis],)
-            whole = ".".join((self.quantity, self.name, *end))
-            return f"d({whole})/d({self.per})" if self.per else whole
-        if self.kind == "rate":
-            return f"{self.name}.{RATES[self.order - 1]}"
-        return TIME if self.kind == TIME else f"{self.kind}.{self.name}"
 
 
 @dataclass(frozen=True)
@@ -237,6 +192,12 @@ class Measured:
     rates: tuple[Series, ...] = ()
     held_rates: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def instants(self) -> Array:
+        """Values of the independent column; numbers of rows where there are several, (N,)."""
+        one, *others = self.independent
+        return np.arange(len(self.rows), dtype=float) if others else one.values
+
     def taken(self, keep: NDArray[np.bool_]) -> Measured:
         """Some of its rows."""
         return replace(
@@ -281,49 +242,39 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     map = _Map(where, MapSaid.of(content, where), columns, scene)
     found = map.series()
     independent = map.independent(found)
-    even = [s for s in independent if not s.said and s.off.any() and s.even]
-    independent = tuple(replace(s, off=0.0 * s.off) if s in even else s for s in independent)
+    even = [s.column for s in independent if not s.said and s.off.any() and s.even]
+    independent = tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in independent)
     over_time = independent[0].meaning.kind == TIME
     rates = () if over_time else tuple(s for s in found if s.meaning.kind == "rate")
     taken = {s.column for s in (*independent, *rates)}
     numbers = tuple(s for s in found if s.meaning.kind == "number" and s.column not in taken)
     if not numbers:
-        raise FileError(
-            columns.source, "", "holds nothing to compare", f"columns such as {', '.join(map.known[:4])}"
-        )
+        allowed = f"columns such as {', '.join(map.known[:4])}"
+        raise FileError(columns.source, "", "holds nothing to compare", allowed)
     beside = [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]
     notes = list(map.ignored)
     if even:
-        names = " and ".join(map_shown(s.column for s in even))
+        names = listed(even, " and ")
         notes.append(f"{names}: in even steps, taken as exact; if rounded, say printed = STEP of it in a map")
     if beside:
-        over = " and ".join(s.column for s in independent)
-        notes.append(f"{', '.join(map_shown(beside))} is not compared: rows are taken by {shown(over)}")
+        over = listed((s.column for s in independent), " and ")
+        notes.append(f"{listed(beside)} is not compared: rows are taken by {over}")
     for s in numbers:
-        lacking = int(np.isnan(s.values).sum())
-        if lacking:
+        if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    printed = [s.column for s in numbers if s.column in columns.fixed and not s.said]
-    if printed:
+    if printed := [s.column for s in numbers if s.column in columns.fixed and not s.said]:
         places = columns.fixed[printed[0]]
         notes.append(
-            f"{', '.join(map_shown(printed))}: taken as written in full, as other columns are; if rounded to "
+            f"{listed(printed)}: taken as written in full, as other columns are; if rounded to "
             f"{places} decimals, say printed = {10.0**-places:g} of it in a map"
         )
-    return _without_repeats(
-        Measured(
-            columns.source,
-            independent,
-            numbers,
-            {name: value for name, value in map.held.items() if map.meanings[name].kind != "rate"},
-            map.said.rolling_radius,
-            map.solve_for,
-            columns.rows,
-            tuple(notes),
-            rates,
-            {name: value for name, value in map.held.items() if map.meanings[name].kind == "rate"},
-        )
+    held, held_rates = (
+        {name: value for name, value in map.held.items() if (map.meanings[name].kind == "rate") is rate}
+        for rate in (False, True)
     )
+    measured = Measured(columns.source, independent, numbers, held, map.said.rolling_radius, map.solve_for)
+    more = replace(measured, rows=columns.rows, notes=tuple(notes), rates=rates, held_rates=held_rates)
+    return _without_repeats(more)
 
 
 def map_to_fill_in(file: str, scene: Scene) -> str:
@@ -348,16 +299,16 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
         "[columns]",
     ]
     for name in columns.names:
-        meaning, unit = map.meaning(name), map.unit_of(name)
+        meaning, unit = map.meant_by[name], map.unit_of(name)
         off = "" if meaning and unit else "# "
         words = value_of({"is": meaning.words if meaning else "", "unit": shown(unit)})
         lines.append(f"{off}{key_of(shown(name))} = {words}")
     return "\n".join(lines) + "\n"
 
 
-def map_shown(names: Iterable[str]) -> list[str]:
-    """Names of a file that can be shown."""
-    return [shown(name) for name in names]
+def listed(names: Iterable[str], by: str = ", ") -> str:
+    """Names of a file as they can be shown."""
+    return by.join(map(shown, names))
 
 
 @dataclass(frozen=True)
@@ -413,25 +364,7 @@ class _Map:
 
     @cached_property
     def meanings(self) -> dict[str, Meaning]:
-        """Everything that a column can be, by its whole name."""
-        topology = self.scene.mechanism.topology
-        every = [Meaning("input", name, unit) for name, unit in topology.input_units.items()]
-        contact = (CONTACT,) if topology.wheel_axis else ()
-        every += [Meaning("travel", n, "mm") for n in (*contact, *topology.moving, *topology.carried)]
-        found = {TIME: Meaning("time", TIME, "s")} | {one.words: one for one in every}
-        for one in every:
-            for order, per in ((1, "s"), (2, "s^2")):
-                rate = Meaning("rate", one.words, f"{one.unit}/{per}", order=order)
-                found[rate.words] = rate
-        names_of = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
-        for effect in (*ALWAYS, *EFFECTS.values()):
-            for quantity, names in effect.gives_numbers.items():
-                unit, of = QUANTITIES[quantity].unit, QUANTITIES[quantity].of
-                for name in names_of[of] if names is None else names:
-                    for axis in (None,) if of == "car" else (0, 1, 2):
-                        number = Meaning("number", name, unit, quantity, axis)
-                        found[number.words] = number
-        return found
+        return meanings_of(self.scene.mechanism.topology)
 
     @property
     def known(self) -> tuple[str, ...]:
@@ -439,21 +372,19 @@ class _Map:
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
 
+    @cached_property
+    def meant_by(self) -> dict[str, Meaning | None]:
+        """What each column of numbers is; None what is to be left out."""
+        return {column: self.meaning(column) for column in self.columns.names}
+
     @property
-    def ignored(self) -> tuple[str, ...]:
+    def ignored(self) -> Iterator[str]:
         """Columns that are left out, in words."""
-        out = [name for name in self.columns.names if self.meaning(name) is None]
-        told = self.said.columns
-        unnamed = [name for name in out if told and name not in told]
-        known = [name for name in out if name not in unnamed]
-        holding = {n: what for n, what in self.columns.no_numbers.items() if what != NOTHING_AT_ALL}
-        notes = [f"left out: {shown(n)}, which holds {what} and no numbers" for n, what in holding.items()]
-        if known:
-            notes.append(f"left out as nothing that we know: {', '.join(map_shown(known))}")
-        if unnamed:
-            why = "the map does not name them, nor are they numbers of ours with a unit"
-            notes.append(f"left out: {', '.join(map_shown(unnamed))} ({why})")
-        return tuple(notes)
+        for name, holds in self.columns.no_numbers.items():
+            if holds != NOTHING_AT_ALL:
+                yield f"ignored: {shown(name)}, which holds {holds} and no numbers"
+        if out := [name for name, one in self.meant_by.items() if one is None]:
+            yield f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)"
 
     def meaning(self, column: str) -> Meaning | None:
         """What a column is; None for what is to be left out.
@@ -461,23 +392,23 @@ class _Map:
         Raises:
             FileError: the map gives it a name that there is not.
         """
-        named = self._part(column).is_
-        if named is None:
-            found = self._named(column) or self._named(_without_unit(column))
+        said = self._part(column).is_
+        if said is None:
+            found = self._named(column) or self._named(column.removesuffix(f"_{_unit_at_the_end(column)}"))
             if self.said.columns and column not in self.said.columns:
                 return found if column in self.meanings or self._goes_along(column, found) else None
             return found
-        if named == IGNORE:
+        if said == IGNORE:
             return None
-        found = self._named(named)
+        found = self._named(said)
         if found is None:
             every = (*self.meanings, IGNORE)
-            hint = meant(named, (*every, *{n.partition(".")[2]: n for n in every if "." in n}))
+            hint = meant(said, (*every, *{n.partition(".")[2]: n for n in every if "." in n}))
             allowed = (
                 f"{TIME}, {INPUT}.NAME, {TRAVEL}.POINT, {TRAVEL}.{CONTACT}, QUANTITY.NAME[.AXIS] such as "
             )
             allowed += f"{', '.join(self.known[:5])}, or {IGNORE}"
-            raise self._wrong(f"columns.{column}.is", f"nothing is called {shown(named)!r}{hint}", allowed)
+            raise self._wrong(f"columns.{column}.is", f"nothing is called {shown(said)!r}{hint}", allowed)
         return found
 
     def _goes_along(self, column: str, found: Meaning | None) -> bool:
@@ -487,24 +418,12 @@ class _Map:
         return found is not None and found.kind == "number" and not taken and bool(self.unit_of(column))
 
     def _named(self, name: str) -> Meaning | None:
-        """By its whole name, or by an end of it that nothing else has; a derivative by what it is of."""
-        meanings = self.meanings
-        if (parts := _DERIVATIVE.fullmatch(name)) is not None:
-            of = self._named(parts.group(1))
-            return replace(of, per=parts.group(2)) if of is not None and of.kind == "number" else None
-        if name in meanings:
-            return meanings[name]
-        ends = [one for whole, one in meanings.items() if whole.endswith(f".{name}")]
-        ends = [one for one in ends if one.kind != TRAVEL and not one.name.startswith(f"{TRAVEL}.")]
-        if not ends and name != name.lower():
-            return self._named(name.lower())
-        return ends[0] if len(ends) == 1 else None
+        return named(name, self.meanings)
 
     def series(self) -> list[Series]:
-        """Every column that means something, in our units."""
+        """Every column that means something, in our units; derivatives after what they are by."""
         found: dict[str, Series] = {}
-        meant_by = {column: self.meaning(column) for column in self.columns.names}
-        by_column = {column: one for column, one in meant_by.items() if one is not None}
+        by_column = {column: one for column, one in self.meant_by.items() if one is not None}
         slopes = [
             column
             for column, one in by_column.items()
@@ -515,13 +434,12 @@ class _Map:
             if column in slopes:
                 meaning = self._derivative(column, meaning, self.independent([*found.values()]))
             if meaning.words in found:
-                first = found[meaning.words].column
-                problem = f"columns {shown(first)!r} and {shown(column)!r} are both {meaning.words}"
-                raise self._wrong("columns", problem, "one column for each")
+                both = f"columns {shown(found[meaning.words].column)!r} and {shown(column)!r}"
+                raise self._wrong("columns", f"{both} are both {meaning.words}", "one column for each")
             found[meaning.words] = self._one(column, meaning)
         if not found:
             near = next((h for n in self.columns.names if (h := meant(n, self.known))), "")
-            problem = f"none of {', '.join(map_shown(self.columns.names))} is a name that we know{near}"
+            problem = f"none of {listed(self.columns.names)} is a name that we know{near}"
             allowed = f"names such as time, {', '.join(self.known[:4])}, or a map of them (--map)"
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
@@ -546,37 +464,30 @@ class _Map:
             problem = f"{shown(unit)!r} is no unit of a derivative of {of.words}"
             problem = problem if unit else "its unit is not said, neither behind its name nor in a map"
             raise self._column(column, problem, f"{every}, or deg/m and the like: rows are taken by {over}")
-        named = [
+        said = [
             s
             for s in independent
             if meaning.per in ("", s.column, s.meaning.words) or s.meaning.words.endswith(f".{meaning.per}")
         ]
-        if not named:
+        if not said:
             problem = f"is a derivative by {shown(meaning.per)!r}, and rows are taken by {over}"
-            raise self._column(column, problem, ", ".join(map_shown(s.column for s in independent)))
-        chosen = [s for s in named if s.meaning.unit == below]
+            raise self._column(column, problem, listed(s.column for s in independent))
+        chosen = [s for s in said if s.meaning.unit == below]
         if not chosen:
             problem = f"{shown(unit)!r} is by {BELOW[below]}, and rows are taken by {over}"
             raise self._column(column, problem, f"{every}, or what stands for these")
         if len(chosen) > 1:
-            problem = f"{shown(unit)!r} may be by {' or by '.join(map_shown(s.column for s in chosen))}"
+            problem = f"{shown(unit)!r} may be by {listed((s.column for s in chosen), ' or by ')}"
             raise self._column(column, problem, f'is = "d({of.words})/d({shown(chosen[0].column)})" in a map')
         by = chosen[0].meaning
         return replace(meaning, per=by.words, unit=f"{meaning.unit}/{by.unit}")
-
-    def _sign_of(self, words: str) -> float:
-        """The sign that the map gives to the column of a meaning."""
-        for column, part in self.said.columns.items():
-            named = self.meaning(column)
-            if named is not None and named.words == words:
-                return part.sign
-        return 1.0
 
     def _one(self, column: str, meaning: Meaning) -> Series:
         i, part = self.columns.names.index(column), self._part(column)
         factor = self._factor(column, meaning)
         # A derivative is by its own column, which goes the other way than ours where the map says so.
-        sign = part.sign * (self._sign_of(meaning.per) if meaning.per else 1.0)
+        by = {one.words: self._part(name).sign for name, one in self.meant_by.items() if one is not None}
+        sign = part.sign * by.get(meaning.per, 1)
         theirs, steps = self.columns.values[i], self.columns.steps[i]
         with np.errstate(over="ignore"):
             values = factor * (sign * theirs + part.offset)
@@ -613,7 +524,7 @@ class _Map:
         elif not chosen:
             every = [s.column for s in found]
             problem = f"no column that we know is called {shown(said)!r}{meant(said, every)}"
-            raise self._wrong("independent", problem, ", ".join(map_shown(every)))
+            raise self._wrong("independent", problem, listed(every))
         elif chosen[0].meaning.kind == "number":
             problem = f"{shown(said)!r} is {chosen[0].meaning.words}"
             raise self._wrong("independent", problem, "a time, an input or a travel")
@@ -621,7 +532,7 @@ class _Map:
             return tuple(chosen)
         travels = [s for s in found if s.meaning.kind == TRAVEL] if said is None else chosen
         if len([s for s in travels if s.meaning.kind == TRAVEL]) > 1:
-            problem = f"{', '.join(map_shown(s.column for s in travels))} could each be it"
+            problem = f"{listed(s.column for s in travels)} could each be it"
             raise self._wrong("independent", problem, "independent = NAME in a map")
         inputs = [s for s in found if s.meaning.kind == INPUT and s not in travels]
         if not travels and not inputs:
@@ -632,24 +543,10 @@ class _Map:
         return (*travels, *inputs)
 
 
-def angle_of(meaning: Meaning) -> Angle | None:
-    """The angle that a number is; None if it is none of a line."""
-    for effect in EFFECTS.values():
-        if isinstance(effect, WheelAngles) and meaning.quantity in {q.name for q in effect.quantities}:
-            for angle in effect.angles:
-                if angle.name == meaning.name:
-                    return angle
-    return None
-
-
 def _unit_at_the_end(column: str) -> str:
     """The unit of a name such as camber_deg; empty if there is none."""
     end = column.rpartition("_")[2]
     return end if end != column and is_unit(end) else ""
-
-
-def _without_unit(column: str) -> str:
-    return column.removesuffix(f"_{_unit_at_the_end(column)}")
 
 
 def _without_repeats(measured: Measured) -> Measured:
@@ -660,30 +557,29 @@ def _without_repeats(measured: Measured) -> Measured:
     """
     keys = np.stack([s.values for s in measured.independent], axis=-1)
     whole = np.stack([s.values for s in (*measured.numbers, *measured.rates)], axis=-1)
-    seen: dict[tuple[float, ...], int] = {}
-    again: list[int] = []
-    for i, key in enumerate(map(tuple, keys.tolist())):
-        first = seen.setdefault(key, i)
-        if first == i:
-            continue
-        if not np.array_equal(whole[first], whole[i], equal_nan=True):
-            at = ", ".join(
-                f"{shown(s.column)} = {v:.10g} {s.meaning.unit}"
-                for s, v in zip(measured.independent, key, strict=True)
-            )
-            problem = f"is at {at} as {measured.rows[first]} is, and says something else"
-            allowed = "one row for each pose; of a loop its two ways in files of their own"
-            raise FileError(measured.source, measured.rows[i], problem, allowed)
-        again.append(i)
     lost: NDArray[np.bool_] = np.asarray(np.isnan(keys).any(axis=-1))
-    keep: NDArray[np.bool_] = np.logical_not(lost)
-    keep[again] = False
-    notes = list(measured.notes)
-    if again:
-        notes.append(f"rows that repeat another: {len(again)}, from {measured.rows[again[0]]} on")
-    if lost.any():
-        where = measured.rows[int(np.argmax(lost))]
-        notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {where} on")
+    # Rows without a pose are each their own.
+    _, place, of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    first = place[np.ravel(of)]
+    again = first < np.arange(len(keys))
+    same = (whole == whole[first]) | (np.isnan(whole) & np.isnan(whole[first]))
+    for i in np.flatnonzero(again & ~same.all(axis=-1))[:1].tolist():
+        at = ", ".join(
+            f"{shown(s.column)} = {v:.10g} {s.meaning.unit}"
+            for s, v in zip(measured.independent, keys[i].tolist(), strict=True)
+        )
+        problem = f"is at {at} as {measured.rows[first[i]]} is, and says something else"
+        allowed = "one row for each pose; of a loop its two ways in files of their own"
+        raise FileError(measured.source, measured.rows[i], problem, allowed)
+    keep = ~(again | lost)
+    notes = [
+        f"{what}: {int(rows.sum())}, from {measured.rows[int(np.argmax(rows))]} on"
+        for what, rows in (
+            ("rows that repeat another", again),
+            ("rows that do not say at which pose they are", lost),
+        )
+        if rows.any()
+    ]
     if not keep.any():
         raise FileError(measured.source, "", "no row says at which pose it is", "at least one")
-    return replace(measured.taken(keep), notes=tuple(notes))
+    return replace(measured.taken(keep), notes=(*measured.notes, *notes))

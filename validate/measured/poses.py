@@ -29,19 +29,8 @@ from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 from validate.diagnosis.evidence import axes_of
 from validate.formulations.asked_numbers import per_second
-from validate.measured.mapping import (
-    ARCSINE,
-    CONTACT,
-    INPUT,
-    PLACES,
-    RATES,
-    TIME,
-    TRAVEL,
-    Meaning,
-    Measured,
-    Series,
-    angle_of,
-)
+from validate.measured.mapping import ARCSINE, Measured, Series
+from validate.measured.meanings import CONTACT, INPUT, PLACES, RATES, TIME, TRAVEL, Meaning, angle_of
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -57,20 +46,6 @@ SPEED = next(q for q, of in QUANTITIES.items() if of.of == "point" and per_secon
 
 
 @dataclass(frozen=True)
-class Slopes:
-    """Derivatives of all places by one of the independent columns.
-
-    Attributes:
-        places, bounds: by point, (N, 3), NaN where there is no pose.
-        laws: what every input changes by it, (N,); none over time.
-    """
-
-    places: Mapping[str, Array]
-    bounds: Mapping[str, Array]
-    laws: Mapping[str, Array]
-
-
-@dataclass(frozen=True)
 class Found:
     """Our numbers at the rows of a file.
 
@@ -80,18 +55,21 @@ class Found:
         reasons: by row, why there is none.
         inputs: at each row, (N,), as far as they are known; none over time.
         laws: their rates and second derivatives likewise, (N, 2), 0 as far as they are not known.
-        slopes: of the columns that derivatives are by.
+        slopes: by column that derivatives are by, the velocities where that goes at 1 per s and others rest.
         unrated: why there are no rates, in words; empty where there are.
     """
 
     numbers: Numbers
     bounds: Numbers
     reached: Bools
-    reasons: Mapping[int, str]
+    reasons: Mapping[int, str] = field(default_factory=dict)
     inputs: Mapping[str, Array] = field(default_factory=dict)
     laws: Mapping[str, Array] = field(default_factory=dict)
-    slopes: Mapping[str, Slopes] = field(default_factory=dict)
+    slopes: Mapping[str, Found] = field(default_factory=dict)
     unrated: str = ""
+
+
+NOTHING = Found({}, {}, np.zeros(0, dtype=bool))
 
 
 @dataclass(frozen=True)
@@ -229,25 +207,23 @@ def input_of(words: str) -> str:
     return words.removeprefix(f"{INPUT}.")
 
 
+def words_of(name: str) -> str:
+    """What a column of an input is called, the other way."""
+    return name if name.startswith(f"{TRAVEL}.") else f"{INPUT}.{name}"
+
+
 def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
     """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
     meaning, angle = series.meaning, angle_of(series.meaning)
-    if meaning.per and meaning.per not in found.slopes:
-        return None, None
+    of, quantity = found, meaning.quantity
     if meaning.per and angle is None:
-        slopes = found.slopes[meaning.per]
-        values, bounds = slopes.places, slopes.bounds
-    elif meaning.name not in found.numbers.get(meaning.quantity, {}):
+        of, quantity = found.slopes.get(meaning.per, NOTHING), SPEED
+    if meaning.name not in of.numbers.get(quantity, {}) or (meaning.per and meaning.per not in found.slopes):
         return None, None
-    elif angle is not None and (meaning.per or series.definition == ARCSINE):
+    if angle is not None and (meaning.per or series.definition == ARCSINE):
         return _of_a_line(series, angle, found, scene)
-    else:
-        values = found.numbers[meaning.quantity]
-        bounds = found.bounds.get(meaning.quantity, {})
-    if meaning.name not in values:
-        return None, None
-    value = values[meaning.name]
-    bound = bounds.get(meaning.name, np.zeros_like(value))
+    value = of.numbers[quantity][meaning.name]
+    bound = of.bounds.get(quantity, {}).get(meaning.name, np.zeros_like(value))
     return (value, bound) if meaning.axis is None else (value[:, meaning.axis], bound[:, meaning.axis])
 
 
@@ -258,19 +234,19 @@ def _of_a_line(series: Series, angle: Angle, found: Found, scene: Scene) -> tupl
     """
     axes, (start, end) = axes_of(scene), angle.ends(scene.mechanism.topology)
 
-    def line(places: Mapping[str, Array], bounds: Mapping[str, Array]) -> tuple[Array, Array]:
+    def line(of: Found, quantity: str) -> tuple[Array, Array]:
         """From end to end, and how far it may be off: each end may be by its bound along each axis."""
+        places, bounds = of.numbers[quantity], of.bounds[quantity]
         ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
         return places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
 
-    along, off = line(found.numbers[PLACES], found.bounds[PLACES])
+    along, off = line(found, PLACES)
     s = axes.component(along, angle.sine)
     if not series.meaning.per:
         long = np.linalg.norm(along, axis=-1)
         # The line turns by what it may be off / its length at most, an arcsine grows by 1 / cosine of that.
         return np.arcsin(s / long), np.asarray(off / long / np.sqrt(1.0 - (s / long) ** 2))
-    slopes = found.slopes[series.meaning.per]
-    going, off_ = line(slopes.places, slopes.bounds)
+    going, off_ = line(found.slopes[series.meaning.per], SPEED)
     c = axes.component(along, angle.cosine)
     s_, c_ = axes.component(going, angle.sine), axes.component(going, angle.cosine)
     square = s**2 + c**2
@@ -368,35 +344,35 @@ def poses_of(scene: Scene, measured: Measured) -> OverTime | OverMap:
     """
     driven = Driven.of(scene, measured)
     if driven.columns == (TIME,):
-        return OverTime(driven, simulate(driven.scene), bool(slopes_of(measured)))
+        return OverTime(driven, simulate(driven.scene))
     return OverMap.of(driven, measured)
-
-
-def slopes_of(measured: Measured) -> tuple[str, ...]:
-    """The columns that derivatives in a file are by, in words."""
-    return tuple(dict.fromkeys(s.meaning.per for s in measured.numbers if s.meaning.per))
 
 
 def asked_scene(scene: Scene, measured: Measured) -> Scene:
     """The scene with the effects that a file's columns need, and with all points."""
     effects = dict.fromkeys(scene.effects)
     for s in measured.numbers:
-        for effect in EFFECTS.values():
-            if _gives(effect, s):
-                effects[effect.name] = None
-    content = scene.model_dump(exclude_none=True)
-    content.pop("points", None)
+        effects |= {effect.name: None for effect in EFFECTS.values() if _gives(effect, s.meaning)}
+    content = scene.model_dump(exclude_none=True, exclude={"points"})
     return Scene.from_mapping(content | {"effects": tuple(effects)}, scene.title or "scene")
 
 
-def _gives(effect: Effect, series: Series) -> bool:
-    quantity, name = series.meaning.quantity, series.meaning.name
-    if series.meaning.per and SPEED in effect.gives_numbers:
-        return True
-    if quantity not in effect.gives_numbers:
-        return False
-    names = effect.gives_numbers[quantity]
-    return names is None or name in names
+def _gives(effect: Effect, meaning: Meaning) -> bool:
+    """Whether a number needs an effect; a derivative needs velocities."""
+    names = effect.gives_numbers.get(meaning.quantity, ())
+    return bool(meaning.per and SPEED in effect.gives_numbers) or names is None or meaning.name in names
+
+
+def spread(numbers: Mapping[str, Mapping[str, Any]], rows: Any, reached: Bools) -> Numbers:
+    """Numbers of some rows put where they belong, NaN elsewhere."""
+    found: Numbers = {}
+    for quantity, part in numbers.items():
+        found[quantity] = {}
+        for name, array in part.items():
+            some = np.asarray(array)[rows]
+            found[quantity][name] = np.full((len(reached), *some.shape[1:]), np.nan)
+            found[quantity][name][reached] = some
+    return found
 
 
 @dataclass(frozen=True, repr=False)
@@ -405,7 +381,6 @@ class OverTime:
 
     driven: Driven
     motion: Motion
-    sloped: bool = False
 
     def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
         """Inside the scene's time; each number with its proven bound."""
@@ -413,27 +388,19 @@ class OverTime:
         _, reasons = self.driven.inputs(values)
         reached: Bools = np.ones(len(times), dtype=bool)
         reached[[*reasons]] = False
-        numbers: Numbers = {}
-        bounds: Numbers = {}
-        if reached.any():
-            # Samples want their instants in order and once each.
-            instants, places = np.unique(times[reached], return_inverse=True)
-            samples = self.motion.at(instants)
-            proven = self.motion.proof_of(samples, rates=True).proven
-            for quantity, channel in samples.numbers.items():
-                numbers[quantity] = {n: _spread(a[places], reached) for n, a in channel.items()}
-                bounds[quantity] = {n: _spread(a[places], reached) for n, a in proven[quantity].items()}
-        slopes = {}
-        if self.sloped and reached.any():
-            slopes[TIME] = Slopes(numbers[SPEED], bounds[SPEED], {})
-        return Found(numbers, bounds, reached, reasons, slopes=slopes)
-
-
-def _spread(array: Array, reached: Bools) -> Array:
-    """Rows put where they belong, NaN elsewhere."""
-    found = np.full((len(reached), *array.shape[1:]), np.nan)
-    found[reached] = array
-    return found
+        if not reached.any():
+            return Found({}, {}, reached, reasons)
+        # Samples want their instants in order and once each.
+        instants, rows = np.unique(times[reached], return_inverse=True)
+        samples = self.motion.at(instants)
+        proven = self.motion.proof_of(samples, rates=True).proven
+        found = Found(
+            spread(samples.numbers, rows, reached),
+            spread({quantity: proven[quantity] for quantity in samples.numbers}, rows, reached),
+            reached,
+            reasons,
+        )
+        return replace(found, slopes={TIME: found})
 
 
 @dataclass(frozen=True, repr=False)
@@ -456,6 +423,7 @@ class OverMap:
     def of(cls, driven: Driven, measured: Measured) -> OverMap:
         """Makes a map that reaches from the drawing to all that a file asks for and the car has."""
         rated = tuple(s.meaning.words for s in measured.rates)
+        sloped = tuple(dict.fromkeys(s.meaning.per for s in measured.numbers if s.meaning.per))
         sides = [[s.values + side * s.off for s in measured.independent] for side in (-1.0, 0.0, 1.0)]
         solved = [driven.poses(side) for side in sides]
         required = driven.scene.mechanism.topology.required_inputs
@@ -465,96 +433,74 @@ class OverMap:
             if name in driven.columns or not len(there):
                 there = np.append(there, driven.drawn[name])
             low, high = float(there.min()), float(there.max())
-            whole = name if name.startswith(f"{TRAVEL}.") else f"{INPUT}.{name}"
             # A map takes no rate of an input that it holds.
-            moving = any(f"{whole}.{word}" in (*rated, *measured.held_rates) for word in RATES)
+            moving = any(f"{words_of(name)}.{word}" in (*rated, *measured.held_rates) for word in RATES)
             # Every row may have the same pose, by a heave or by held inputs alone; a map wants a free input.
             alone = name == required[0] and not any(n in driven.columns for n in required)
             if low == high and (name in driven.columns or moving or alone):
                 wide = LITTLE * widest(scene_mechanism(driven.scene), name)
                 low, high = low - wide, high + wide
             ranges[name] = low, high
-        return cls(
-            driven, kinematic_map(driven.scene, ranges), slopes_of(measured), rated, measured.held_rates
-        )
+        return cls(driven, kinematic_map(driven.scene, ranges), sloped, rated, measured.held_rates)
 
     def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
         """Where the map is proven; each number with its proven bound."""
         inputs, reasons = self.driven.inputs(values)
-        count = len(values[0])
-        covered = np.ones(count, dtype=bool)
+        covered = np.ones(len(values[0]), dtype=bool)
         for name, (low, high) in self.map.ranges.items():
             covered &= (inputs[name] >= low) & (inputs[name] <= high)
         covered[[*reasons]] = False
         if covered.any():
-            free = {name: inputs[name][covered] for name in self.map.inputs}
-            covered[covered] = self.map.covers(free)
-        lost = np.flatnonzero(~covered)
-        if len(lost):
+            covered[covered] = self.map.covers({name: inputs[name][covered] for name in self.map.inputs})
+        if len(lost := np.flatnonzero(~covered)):
             why = self.driven.poses([value[lost] for value in values]).reasons
             unproven = "is out of reach: no pose is proven there, a fold is near"
             reasons = {int(row): why.get(i, unproven) for i, row in enumerate(lost)}
         if not covered.any():
             return Found({}, {}, covered, reasons)
         mine = {name: value[covered] for name, value in inputs.items()}
-        given = dict(zip(self.rated, (rate[covered] for rate in rates), strict=True))
-        laws, unrated = self._laws(mine, given)
-        rates_of, bends_of = (*laws, None, None)[:2]
-        poses = self.map(mine, rates_of, bends_of, bounds=True)
-        numbers = {
-            quantity: {name: _spread(np.asarray(array), covered) for name, array in channel.items()}
-            for quantity, channel in poses.numbers.items()
-            if channel.computed
-        }
-        bounds = {
-            quantity: {name: _spread(np.asarray(array), covered) for name, array in part.items()}
-            for quantity, part in poses.bounds.items()
-        }
-        known = {name: np.zeros((count, 2)) for name in inputs}
+        laws, unrated = self._laws(mine, [rate[covered] for rate in rates])
+        found = self._found(mine, laws, covered)
+        slopes = {}
+        for words in self.sloped:
+            law = {n: np.full(covered.sum(), float(n == input_of(words))) for n in mine if n in self._free}
+            slopes[words] = self._found(mine, [law], covered)
+        return replace(found, reasons=reasons, inputs=inputs, slopes=slopes, unrated=unrated)
+
+    def _found(self, here: Mapping[str, Array], laws: Sequence[Mapping[str, Array]], covered: Bools) -> Found:
+        """What the map has at inputs with their time derivatives, as far as these are known."""
+        rates, bends = (*laws, None, None)[:2]
+        poses = self.map(here, rates, bends, bounds=True)
+        computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
+        known = {name: np.zeros((len(covered), 2)) for name in here}
         for order, law in enumerate(laws):
             for name, rate in law.items():
                 known[name][covered, order] = rate
-        slopes = {words: self._slopes(words, mine, covered) for words in self.sloped}
-        return Found(numbers, bounds, covered, reasons, inputs, known, slopes, unrated)
+        every = slice(None)
+        return Found(
+            spread(computed, every, covered), spread(poses.bounds, every, covered), covered, laws=known
+        )
 
-    def _laws(
-        self, here: Mapping[str, Array], given: Mapping[str, Array]
-    ) -> tuple[list[dict[str, Array]], str]:
+    def _laws(self, here: Mapping[str, Array], rates: Sequence[Array]) -> tuple[list[dict[str, Array]], str]:
         """Time derivatives of what the map takes as far as they are known, and why there are no more."""
         count = len(next(iter(here.values())))
-        told = {name: np.full(count, value) for name, value in self.rates.items()} | dict(given)
+        told = {name: np.full(count, value) for name, value in self.rates.items()}
+        told |= dict(zip(self.rated, rates, strict=True))
         found: list[dict[str, Array]] = []
         for word in RATES:
-            known = {
-                input_of(name.removesuffix(f".{word}")): rate
-                for name, rate in told.items()
-                if name.endswith(f".{word}")
-            }
-            lacking = [n for n in self.driven.columns if n not in known]
+            known = {n: told[f"{words_of(n)}.{word}"] for n in here if f"{words_of(n)}.{word}" in told}
+            lacking = [words_of(n) for n in self.driven.columns if n not in known]
             if lacking:
-                names = (n if n.startswith(f"{TRAVEL}.") else f"{INPUT}.{n}" for n in lacking)
                 what = "rates need" if not found else "second derivatives need"
-                said = " and ".join(f"{name}.{word}" for name in sorted(names))
+                said = " and ".join(f"{name}.{word}" for name in sorted(lacking))
                 return found, f"{what} a column of {TIME}, or {said}: a column, or held by a map"
-            found.append({n: known.get(n, np.zeros(count)) for n in here if n not in self._fixed})
+            found.append({n: known.get(n, np.zeros(count)) for n in here if n in self._free})
         return found, ""
 
     @property
-    def _fixed(self) -> frozenset[str]:
-        """Inputs that the map holds."""
-        return frozenset(n for n, (low, high) in self.map.ranges.items() if low == high)
-
-    def _slopes(self, words: str, here: Mapping[str, Array], covered: Bools) -> Slopes:
-        """Derivatives of all places by an independent column."""
-        count = int(covered.sum())
-        law = {n: np.full(count, float(n == input_of(words))) for n in here if n not in self._fixed}
-        poses = self.map(here, law, bounds=True)
-        places, bounds = poses.numbers[SPEED], poses.bounds[SPEED]
-        return Slopes(
-            {n: _spread(np.asarray(a), covered) for n, a in places.items()},
-            {n: _spread(np.asarray(a), covered) for n, a in bounds.items()},
-            {n: _spread(a, covered) for n, a in law.items()},
-        )
+    def _free(self) -> frozenset[str]:
+        """Inputs that the map does not hold."""
+        return frozenset(n for n, (low, high) in self.map.ranges.items() if low != high)
 
 
 Poses = OverTime | OverMap

@@ -1,9 +1,9 @@
-"""What the columns that rows are taken by may be meant as: of another sign, unit or zero than is said.
+"""What a file may be meant as: its independent columns of another sign, unit or zero, or another travel.
 
 A column v of an input or a travel is supposed to be x = k v + c in ours, with k 1, -1, or what makes another
 unit of it, and c 0, the drawn input, pi of an angle that counts the other way, or found by least squares of
-the file's places and angles. Poses are solved at some rows only; whoever supposes it has to hold the whole
-file to it.
+the file's places and angles; or the travel of the wheel's centre to be that of the contact, or the other way.
+Poses are solved at some rows; what leaves little there is held to the whole file.
 """
 
 from __future__ import annotations
@@ -11,15 +11,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import combinations, islice, product
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
-from pointcoord import PointcoordError
+from pointcoord import PointcoordError, Scene
 from validate.diagnosis.least import fitted
-from validate.measured.mapping import INPUT, TIME, Measured, Series
+from validate.measured.mapping import Measured, Series
+from validate.measured.meanings import CONTACT, INPUT, TIME, TRAVEL
 from validate.measured.poses import Driven, of_a_pose, ours_of
+from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
 from validate.tables.units import KINDS
 
@@ -28,8 +31,13 @@ Array = NDArray[np.float64]
 ROWS = 16  # that poses are solved at
 NEARLY_ALL = 0.8  # of them must be in reach
 STEP = {"rad": 1e-5, "mm": 1e-3}  # of differences by an offset
+RADII = (50.0, 1500.0)  # mm, of wheels
 # What a supposition may leave of the differences, of the numbers' own spread, to be held to the whole file.
 PROMISING = 0.05
+# Suppositions on a column that the whole file is held to; of several columns a map takes long.
+TRIED = 3
+# How much an offset that least squares found may leave: the largest difference is the least near it only.
+NEARLY = 1.5
 # By what a rounded offset may leave more than the found one, which least squares put lowest.
 CLOSE = 1.1
 # Of a found offset: how near to a known one it is meant to be that.
@@ -38,11 +46,18 @@ NEAR = 1e-3
 
 @dataclass(frozen=True)
 class Supposed:
-    """A file with its independent columns meant otherwise; found: whether an offset was fitted to it."""
+    """A file that is meant otherwise.
+
+    Attributes:
+        kind: travel, of another point, or input. found: whether an offset was fitted to it.
+        leftover: the largest difference that is left of the whole file, in its tolerance.
+    """
 
     words: str
     measured: Measured
-    found: bool
+    kind: str = "input"
+    found: bool = False
+    leftover: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -64,7 +79,82 @@ Changes = dict[int, _Change]
 """What some columns are changed by, by their places."""
 
 
-def likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
+def meant_otherwise(
+    scene: Scene,
+    measured: Measured,
+    held: Sequence[Held],
+    accuracy: float | None,
+    factor: float,
+    driven: Driven,
+) -> list[Supposed]:
+    """What explains the whole file: another travel, and the likeliest change of its columns, if any does."""
+    likeliest = islice(_likely(driven, measured), TRIED if len(measured.independent) == 1 else 1)
+    found = []
+    for suppositions in (_other_travel(scene, measured, held), likeliest):
+        for one in suppositions:
+            try:
+                other = held_of(one.measured, scene, accuracy)[0]
+            except PointcoordError:
+                continue
+            shares = np.stack([h.share for h in other])
+            leftover = float(np.nanmax(shares, initial=0.0)) / factor
+            # Fewer rows that agree are no explanation of those that are out of reach then.
+            kept = np.isfinite(shares).any() and (one.kind == "travel" or _reached(other) >= _reached(held))
+            if kept and leftover <= (NEARLY if one.found else 1.0):
+                more = f"; this leaves {leftover:.3g} times what is tolerated" if leftover > 1.0 else ""
+                found.append(replace(one, words=one.words + more, leftover=leftover))
+                break
+    return found
+
+
+def meant(measured: Measured, driven: Driven) -> str:
+    """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely."""
+    known = (one.words for one in _likely(driven, measured))
+    return next(known, "") or next(_in_reach(driven, measured), "")
+
+
+def _reached(held: Sequence[Held]) -> int:
+    """How many rows have numbers of ours."""
+    return int(np.isfinite([h.ours for h in held]).any(axis=0).sum())
+
+
+def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Iterator[Supposed]:
+    """The travel of the wheel's centre for that of the contact, or the other way.
+
+    Where no rolling radius is said it is the one that leaves least of poses.
+    """
+    centre = scene.mechanism.topology.wheel_centre
+    said = next((s for s in measured.independent if s.meaning.kind == TRAVEL), None)
+    if said is None or said.meaning.name not in (CONTACT, centre):
+        return
+    other = replace(said.meaning, name=centre if said.meaning.name == CONTACT else CONTACT)
+    independent = tuple(replace(s, meaning=other) if s is said else s for s in measured.independent)
+
+    def by(radius: float) -> Measured:
+        return replace(measured, independent=independent, rolling_radius=radius)
+
+    def left(radius: float) -> float:
+        """The largest difference in its tolerance, of poses alone."""
+        driven = Driven.of(scene, by(radius))
+        found = driven.poses([s.values for s in independent], measured.numbers)
+        there = (h for h in held if of_a_pose(h.series.meaning))
+        shares = [replace(h, ours=np.asarray(ours_of(h.series, found, scene)[0])).share for h in there]
+        return float(np.max(np.nan_to_num(shares), initial=0.0))
+
+    radius, of = measured.rolling_radius, ""
+    if other.name == CONTACT:
+        if not radius > 0.0:
+            try:
+                radius = float(minimize_scalar(left, bounds=RADII, options={"xatol": 0.1}).x)
+            except PointcoordError:
+                return
+        of = f" with a rolling radius of {radius:.4g} mm"
+    yield Supposed(
+        f"{shown(said.column)} is {other.words}{of}, not {said.meaning.words}", by(radius), "travel"
+    )
+
+
+def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
     """The likeliest suppositions, what is known beforehand before what is found; none over time."""
     if measured.independent[0].meaning.kind == TIME or not any(
         of_a_pose(s.meaning) for s in measured.numbers
@@ -85,24 +175,27 @@ def likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
 
 def _changed(measured: Measured, changes: Changes) -> Iterator[Supposed]:
     """The file with its independent columns changed."""
-    independent = list(measured.independent)
-    for i, c in changes.items():
-        s = independent[i]
-        independent[i] = replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off)
+    independent = _moved(measured, changes)
     words = ", and ".join(f"{shown(independent[i].column)} {change.words}" for i, change in changes.items())
-    other = replace(measured, independent=tuple(independent))
+    other = replace(measured, independent=independent)
     fitted = any(change.found for change in changes.values())
     turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
     slopes = [s for s in measured.numbers if s.meaning.per in turned]
     numbers = tuple(replace(s, values=-s.values) if s in slopes else s for s in measured.numbers)
-    yield Supposed(words, replace(other, numbers=numbers), fitted)
+    yield Supposed(words, replace(other, numbers=numbers), found=fitted)
     if slopes:
         # Derivatives by a column that counts the other way do so too, if they were not made of another.
         names = ", ".join(shown(s.column) for s in slopes)
-        yield Supposed(f"{words}, and {names} is by it as it is said", other, fitted)
+        yield Supposed(f"{words}, and {names} is by it as it is said", other, found=fitted)
 
 
-def in_reach(driven: Driven, measured: Measured) -> Iterator[str]:
+def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
+    """The independent columns, some of them changed."""
+    of = ((s, changes.get(i, _Change())) for i, s in enumerate(measured.independent))
+    return tuple(replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off) for s, c in of)
+
+
+def _in_reach(driven: Driven, measured: Measured) -> Iterator[str]:
     """Units of a column that bring nearly all rows within reach, in words; nearest the said one first."""
     some = _some(measured)
     for i, s in enumerate(some.independent):
@@ -154,19 +247,16 @@ class _Trial:
         unit, drawn, said = s.meaning.unit, self._drawn(s), _unit_of(s)
         if unit == "rad":
             yield _Change("is pi minus ours", -1.0, math.pi, 1.2)
+        ways = {"": (1.0, 0.0, 0.0), "has the other sign": (-1.0, 0.0, 1.0)}
+        if drawn:
+            ways["counts from the drawing on"] = 1.0, drawn, 1.1
+            ways["counts from the drawing on, the other way"] = -1.0, drawn, 1.3
         for name, size in _units(unit):
             factor = size / s.factor
-            other = abs(factor - 1.0) > 1e-9
-            of_unit = f"is in {name}, not in {said}" if other else ""
-            if other:
-                yield _Change(of_unit, factor, 0.0, 1.1)
-            if unit != "rad" or not other:
-                both = f"{of_unit}, and has the other sign" if other else "has the other sign"
-                yield _Change(both, -factor, 0.0, 1.0 + 1.1 * other)
-            if drawn:
-                home = f"{of_unit}, and from the drawing on" if other else "counts from the drawing on"
-                yield _Change(home, factor, drawn, 1.1 + other)
-                yield _Change(f"{home}, the other way", -factor, drawn, 1.3 + 2.0 * other)
+            other = f"is in {name}, not in {said}" if abs(factor - 1.0) > 1e-9 else ""
+            for way, (sign, more, cost) in ways.items():
+                if words := ", and ".join(filter(None, (other, way))):
+                    yield _Change(words, sign * factor, more, cost + 1.1 * bool(other))
 
     def _drawn(self, s: Series) -> float:
         """An input of the drawing; a travel counts from there by itself."""
@@ -215,10 +305,7 @@ class _Trial:
     def _gaps(self, changes: Changes) -> Array:
         """Theirs less ours, of the spread of theirs, (columns, rows); NaN where there is no pose."""
         numbers = self.measured.numbers
-        values: Sequence[Array] = [
-            s.values if i not in changes else changes[i].factor * s.values + changes[i].more
-            for i, s in enumerate(self.measured.independent)
-        ]
+        values = [s.values for s in _moved(self.measured, changes)]
         if len(self.driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(values[0]):
             return np.full_like(self.theirs, np.nan)
         found = self.driven.poses(values, numbers)

@@ -176,13 +176,17 @@ def file_parts(found: DataOutcome) -> tuple[Part, ...]:
         rows.append((*name, *numbers, row.place, verdict_of(row)))
     rows += [(words, "", "-", "-", "", "not given") for words in found.absent]
     verdicts = [row.verdict for row in outcome.rows]
-    counts = (f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts))
+    counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts))
+    # What is not tested was compared with nothing, or with what could not have told it from a wrong one.
+    tested = len(verdicts) - verdicts.count("not tested")
     instants = counted_as(len(outcome.solutions[0].times), "row")
     return (
         f"{outcome.scene}: {pair_of(outcome)}, {instants} over {shown(found.over)}",
         Table(FILE_HEAD, tuple(rows)),
         *lines_below(outcome),
-        f"{counted_as(len(verdicts), 'number')} compared: {', '.join(counts)}.",
+        f"{counted_as(tested, 'number')} compared: {counts}."
+        if tested
+        else f"Nothing was compared: {counts}.",
     )
 
 

@@ -54,12 +54,12 @@ def test_a_misread_hardpoint_is_found_to_what_the_digits_allow(digits: int) -> N
     misread = designs_of(CAR, offsets={"upper_ball_joint.z": 2.0}).design(0)
     fit = fit_hardpoints(misread, measured(wheel_table(CAR, digits), CAR), FREE)
     assert fit.converged
-    assert fit.unique
+    assert not fit.unseen
     for name, right in zip(FREE, (-2.0, 0.0), strict=True):
         # Rounding is no larger than sqrt(3) of its standard deviation; four of the correction's beside it.
-        assert abs(fit.corrections[name] - right) < 4.0 * fit.deviations[name]
-        assert fit.deviations[name] < 20.0 * 10.0**-digits + 1e-3
-    _, after, _ = fit.rms("rad")
+        assert abs(fit.coordinates[name].correction - right) < 4.0 * fit.coordinates[name].deviation
+        assert fit.coordinates[name].deviation < 20.0 * 10.0**-digits + 1e-3
+    _, after, _ = fit.rms["rad"]
     # Rounded numbers are at most half a digit off, and least squares leave no more than the right car.
     assert math.degrees(after) <= 0.5 * 10.0**-digits
 
@@ -70,7 +70,7 @@ def test_noise_widens_what_is_known_by_as_much_as_it_is_larger_than_the_digits()
     expected = 0.01 / (0.5e-4 / math.sqrt(3.0))
     assert 0.5 < fit.factor / expected < 1.5
     for name in FREE:
-        assert abs(fit.corrections[name]) < 4.0 * fit.deviations[name]
+        assert abs(fit.coordinates[name].correction) < 4.0 * fit.coordinates[name].deviation
 
 
 def test_a_coordinate_that_the_data_do_not_depend_on_is_said_and_left_alone() -> None:
@@ -88,10 +88,10 @@ def test_a_coordinate_that_the_data_do_not_depend_on_is_said_and_left_alone() ->
         content | {"mechanism": content["mechanism"] | {"points": level}}, "level axis"
     )
     fit = fit_hardpoints(scene, measured(wheel_table(scene, 4), scene), free)
-    assert not fit.unique
+    assert fit.unseen
     assert unseen_words(fit) == ["wheel_centre.y: changes nothing"]
     # Least squares end where the prior changes less than 1e-6 of the sum, at most one of each number.
-    assert abs(fit.corrections["wheel_centre.y"]) <= fit.prior * math.sqrt(1e-6 * 18.0)
+    assert abs(fit.coordinates["wheel_centre.y"].correction) <= fit.prior * math.sqrt(1e-6 * 18.0)
     assert "not unique" in text_of(fit, "x", "y")
 
 
@@ -121,19 +121,19 @@ def test_the_papers_tables_come_from_moved_hardpoints_and_not_from_one_choice_of
     """The reading of the paper: 10.3 mm r.m.s. as drawn, 0.3 mm with hardpoints moved, which is rounding."""
     points = [name for name in Scene.load("bounce").mechanism.points if name not in ALONG]
     fit = paper_fit(*points)
-    before, after, count = fit.rms("mm")
+    before, after, count = fit.rms["mm"]
     assert count == 54
     assert abs(before - 10.3) < 0.05
     assert after < 0.35
-    assert not fit.unique
+    assert fit.unseen
     assert "not unique" in text_of(fit, "bounce", "the paper's tables")
     # Hardpoints 5 mm away along what changes nothing to first order, and the tables are met as well.
     scene = Scene.load("bounce")
     data = measured(paper_data(), scene)
-    curves = Curves(scene, data, tuple(fit.corrections))
+    curves = Curves(scene, data, tuple(fit.coordinates))
     theirs = np.concatenate([s.values for s in data.numbers])
     unseen = np.array(list(fit.unseen[-1].parts.values()))
-    elsewhere = np.array(list(fit.corrections.values())) + 5.0 * unseen
+    elsewhere = np.array([one.correction for one in fit.coordinates.values()]) + 5.0 * unseen
     apart = curves.at(elsewhere) - theirs
     assert float(np.sqrt(np.mean(apart**2))) < 0.35
 
@@ -169,7 +169,7 @@ def test_the_corrected_scene_is_read_back_and_leaves_what_the_fit_said(
     assert again.inputs == CAR.inputs
     fit = fit_hardpoints(again, measured(text, again), FREE)
     # What the file left to rounding of its inputs widens no difference: before is what was left.
-    assert fit.rms("rad")[0] == pytest.approx(told["rms"][0]["after"], rel=1e-9)
+    assert fit.rms["rad"][0] == pytest.approx(told["rms"][0]["after"], rel=1e-9)
     assert told["rms"][0]["before"] > 100.0 * told["rms"][0]["after"]
     for row, own in zip(csv.DictReader(rows_of(rows)), told["coordinates"], strict=True):
         point, _, axis = row["coordinate"].partition(".")
@@ -251,8 +251,8 @@ def test_a_hardpoint_misread_by_5_mm_is_found_to_the_noise(over: str) -> None:
     assert fit.converged
     for name, right in MISREAD.items():
         # Digits are spread evenly: their sums are within four deviations but for one in 10^4.
-        assert abs(fit.corrections[name] - right) < 4.0 * fit.deviations[name], name
-    assert fit.deviations["upper_ball_joint.y"] < 0.1
+        assert abs(fit.coordinates[name].correction - right) < 4.0 * fit.coordinates[name].deviation, name
+    assert fit.coordinates["upper_ball_joint.y"].deviation < 0.1
 
 
 @cache
@@ -275,9 +275,10 @@ def test_one_coordinate_off_by_5_mm_is_found_as_such_where_all_are_free() -> Non
     assert fit.converged
     # Digits are explained as well by moving much else.
     assert fit.factor == wide.factor == 1.0
-    assert not fit.unique
+    assert fit.unseen
     off, more = (
-        {n: a - 5.0 * (n == "upper_ball_joint.z") for n, a in one.corrections.items()} for one in (fit, wide)
+        {n: at.correction - 5.0 * (n == "upper_ball_joint.z") for n, at in one.coordinates.items()}
+        for one in (fit, wide)
     )
     assert max(map(abs, off.values())) < 1.5
     assert max(map(abs, more.values())) > 2.0 * max(map(abs, off.values()))
@@ -298,9 +299,8 @@ def test_what_is_not_known_is_marked_whatever_the_prior_and_no_interval_leaves_t
     said = text_of(fit, "x", "y").splitlines()
     line = next(line for line in said if line.startswith("    wheel_axis_inner.y "))
     assert line.endswith("not known from these data")
-    for name in fit.corrections:
-        low, high = fit.interval(name)
-        assert -fit.bounds <= low <= fit.corrections[name] <= high <= fit.bounds
+    for one in fit.coordinates.values():
+        assert -fit.bounds <= one.low <= one.correction <= one.high <= fit.bounds
 
 
 def test_intervals_hold_the_right_car_as_often_as_they_say() -> None:
@@ -313,9 +313,9 @@ def test_intervals_hold_the_right_car_as_often_as_they_say() -> None:
     for seed in range(40):
         fit = fit_hardpoints(CAR, measured(wheel_table(CAR, 6, noise=0.02, seed=seed), CAR), FREE)
         for i, name in enumerate(FREE):
-            low, high = fit.interval(name)
-            held[seed, i] = low <= 0.0 <= high
-            squares[seed, i] = (fit.corrections[name] / fit.deviations[name]) ** 2
+            one = fit.coordinates[name]
+            held[seed, i] = one.low <= 0.0 <= one.high
+            squares[seed, i] = (one.correction / one.deviation) ** 2
     assert fit.freedom == 16
     assert (held.sum(axis=0) >= 33).all()
     mean = squares.mean(axis=0) / (16.0 / 14.0)
@@ -408,9 +408,13 @@ def test_a_prior_draws_corrections_back_as_tikhonov_s_closed_form_says() -> None
     known = ROWS / (accuracy / math.sqrt(3.0)) ** 2
     share = known / (known + prior**-2)
     assert 0.3 < share < 0.95
-    assert [*fit.corrections.values()] == pytest.approx((share * right).tolist(), rel=1e-6)
-    assert [*fit.deviations.values()] == pytest.approx([(known + prior**-2) ** -0.5] * 3, rel=1e-9)
-    assert [one.singular for one in fit.combinations] == pytest.approx([math.sqrt(known)] * 3, rel=1e-9)
+    assert [one.correction for one in fit.coordinates.values()] == pytest.approx(
+        (share * right).tolist(), rel=1e-6
+    )
+    assert [one.deviation for one in fit.coordinates.values()] == pytest.approx(
+        [(known + prior**-2) ** -0.5] * 3, rel=1e-9
+    )
+    assert [one.singular_value for one in fit.combinations] == pytest.approx([math.sqrt(known)] * 3, rel=1e-9)
 
 
 @pytest.mark.parametrize(("times", "settled"), [(0.9, False), (1.1, True)])
@@ -424,7 +428,7 @@ def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
     known = accuracy / math.sqrt(3.0) / math.sqrt(ROWS)
     fit = fit_hardpoints(CAR, data, CENTRE, prior=times * known, accuracy=accuracy)
     assert [one.deviation for one in fit.combinations] == pytest.approx([known] * 3, rel=1e-9)
-    assert fit.unique is settled
+    assert (not fit.unseen) is settled
     assert (fit.unknown == ()) is settled
     assert ("settle every combination" in text_of(fit, "x", "y")) is settled
 
@@ -446,7 +450,7 @@ def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not() -> None:
     weights = np.where(gaps, 0.0, 3.0 / np.square(accuracies))
     normal = np.einsum("nij,ni,nik->jk", turns, weights, turns) + np.eye(3) / 50.0**2
     expected = np.linalg.solve(normal, np.einsum("nij,ni,i->j", turns, weights, off))
-    assert [*fit.corrections.values()] == pytest.approx(expected.tolist(), rel=1e-6)
+    assert [one.correction for one in fit.coordinates.values()] == pytest.approx(expected.tolist(), rel=1e-6)
     assert [column.count for column in fit.columns] == [ROWS - 1, ROWS - 1, ROWS - 2]
 
 
@@ -455,14 +459,15 @@ def test_a_correction_ends_on_its_bound_and_the_others_are_fitted_to_it_there() 
     data = measured(wheel_table(CAR, 5), CAR)
     fit = fit_hardpoints(misread, data, FREE, bounds=4.0)
     assert fit.converged
-    assert fit.on_bounds == ("upper_ball_joint.z",)
-    assert fit.corrections["upper_ball_joint.z"] == pytest.approx(-4.0, abs=1e-9)
+    assert [at for at, one in fit.coordinates.items() if one.on_bound] == ["upper_ball_joint.z"]
+    assert fit.coordinates["upper_ball_joint.z"].correction == pytest.approx(-4.0, abs=1e-9)
     assert "on its bound" in text_of(fit, "x", "y")
     assert any("beyond the bounds" in words for words in warnings_of_fit(fit))
     held = designs_of(misread, offsets={"upper_ball_joint.z": -4.0}).design(0)
     alone = fit_hardpoints(held, data, FREE[1:], bounds=4.0)
-    assert fit.corrections[FREE[1]] == pytest.approx(alone.corrections[FREE[1]], abs=1e-4)
-    assert fit.deviations[FREE[1]] == pytest.approx(alone.deviations[FREE[1]], rel=1e-4)
+    other, alone = fit.coordinates[FREE[1]], alone.coordinates[FREE[1]]
+    assert other.correction == pytest.approx(alone.correction, abs=1e-4)
+    assert other.deviation == pytest.approx(alone.deviation, rel=1e-4)
 
 
 def off_by_10_deg(stop: float) -> str:
@@ -480,7 +485,7 @@ def test_designs_that_do_not_close_on_the_way_are_steps_too_far() -> None:
     assert fit.converged
     curves = Curves(CAR, data, ("upper_arm_front.y",))
     theirs = np.concatenate([s.values for s in data.numbers])
-    best = fit.corrections["upper_arm_front.y"]
+    best = fit.coordinates["upper_arm_front.y"].correction
     costs = [np.sum((curves.at(np.array([best + off])) - theirs) ** 2) for off in (-0.02, 0.0, 0.02)]
     assert costs[1] < costs[0]
     assert not costs[2] < costs[1]

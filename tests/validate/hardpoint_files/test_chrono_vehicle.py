@@ -84,7 +84,7 @@ def test_an_axle_of_a_vehicle_is_its_suspension_moved_into_the_chassis(part: str
 
 def test_each_axle_has_its_own_static_angles(tmp_path: Path) -> None:
     path = vehicle(tmp_path)
-    front, rear = (import_hardpoints(path, part=part).bounce.angles for part in ("front", "rear"))
+    front, rear = (import_hardpoints(path, part=part).stands.angles for part in ("front", "rear"))
     assert (front["camber"], front["toe"]) == pytest.approx((0.0, 0.0), abs=1e-13)
     assert rear["toe"] == pytest.approx(radians(0.25), abs=1e-13)
     assert np.tan(rear["camber"]) == pytest.approx(np.tan(radians(-1.5)) / cos(radians(0.25)), abs=1e-13)

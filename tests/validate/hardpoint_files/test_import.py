@@ -124,9 +124,9 @@ def test_a_strut_of_chrono_has_its_axis_and_the_angles_that_it_says(
     forward, left, up = about_z @ about_x @ np.array([0.0, 1.0, 0.0])
     axis = np.subtract(part.points["wheel_centre"], part.points["wheel_axis_inner"])
     np.testing.assert_allclose(axis / 100.0, [-forward, -left, up], rtol=0, atol=1e-13)
-    assert degrees(found.bounce.angles["toe"]) == pytest.approx(float(toe or 0), abs=1e-11)
+    assert degrees(found.stands.angles["toe"]) == pytest.approx(float(toe or 0), abs=1e-11)
     # Projected, as ours is: tan(camber) over cos(toe).
-    assert np.tan(found.bounce.angles["camber"]) == pytest.approx(np.tan(c) / cos(t), abs=1e-13)
+    assert np.tan(found.stands.angles["camber"]) == pytest.approx(np.tan(c) / cos(t), abs=1e-13)
 
 
 def test_no_angle_hangs_on_where_the_rod_ends_on_the_strut_axis(tmp_path: Path) -> None:
@@ -153,8 +153,8 @@ def test_static_angles_make_the_spin_axis_that_a_file_lacks(text: str, tmp_path:
     with pytest.raises(FileError, match=r"lacks wheel_axis_inner.* --camber and --toe will do"):
         imported(tmp_path, text)
     found = imported(tmp_path, text, camber=-2.0, toe=0.5)
-    assert degrees(found.bounce.angles["camber"]) == pytest.approx(-2.0, abs=1e-11)
-    assert degrees(found.bounce.angles["toe"]) == pytest.approx(0.5, abs=1e-11)
+    assert degrees(found.stands.angles["camber"]) == pytest.approx(-2.0, abs=1e-11)
+    assert degrees(found.stands.angles["toe"]) == pytest.approx(0.5, abs=1e-11)
 
 
 # Planted faults: what would make another car is refused, and the line names what it should be.
@@ -184,7 +184,7 @@ def test_a_table_under_our_own_names_has_our_own_axes(car: Scene, ending: str, t
     low, high = car.mechanism.topology.steering_axis
     rearward, _, up = np.subtract(points[high], points[low])
     # Leaning rearward at the top is positive; the drawing closes to 1e-13 mm over 130 mm at the least.
-    assert found.bounce.angles["caster"] == pytest.approx(np.arctan2(rearward, up), abs=1e-14)
+    assert found.stands.angles["caster"] == pytest.approx(np.arctan2(rearward, up), abs=1e-14)
 
 
 @pytest.mark.parametrize("car", [STRUT, WISHBONE], ids=["strut", "wishbone"])

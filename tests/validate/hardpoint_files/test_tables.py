@@ -218,6 +218,8 @@ def test_numbers_of_another_wheel_without_a_title_are_refused(ahead: str, mark: 
 def test_titles_that_are_not_known_are_refused(tmp_path: Path) -> None:
     with pytest.raises(FileError, match=r"line 1: has no column of x in 'Point, 1 X"):
         imported(tmp_path, "\n".join(["Point,1 X,1 Y,1 Z,2 X,2 Y,2 Z", *BOTH]), axes=OURS)
+    with pytest.raises(FileError, match="has no column of x"):
+        imported(tmp_path, "\n".join(["Point,old X,old Y,old Z,new X,new Y,new Z", *BOTH]), axes=OURS)
     for titles in ("X1,Y1,Z1,X2,Y2,Z2", "XL,YL,ZL,XR,YR,ZR"):
         with pytest.raises(FileError, match=r"titles that are not known.* \[table\]"):
             imported(tmp_path, "\n".join([f"Point,{titles}", *BOTH]), axes=OURS)
@@ -255,7 +257,7 @@ def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
     assert Scene.load(str(scene)).mechanism.points.items() >= CAR.items()
 
 
-@pytest.mark.parametrize("others", ["RX,RY,RZ", "FX,FY,FZ", "Mass,Stiffness,Preload"])
+@pytest.mark.parametrize("others", ["RX,RY,RZ", "FX,FY,FZ", "Mass,Stiffness,Preload", "MIN X,MAX X,MIN Y"])
 def test_numbers_under_other_titles_are_told(others: str, tmp_path: Path) -> None:
     text = "\n".join([f"Point,X,Y,Z,{others}", *(f"{row},1.5,2.5,3.5" for row in rows(str))])
     found = imported(tmp_path, text, axes=OURS)
@@ -380,11 +382,13 @@ def test_axes_that_nobody_says_are_asked_for_with_those_that_fit(tmp_path: Path)
         imported(tmp_path, spelt)
 
 
-def test_titles_may_say_where_axes_point(tmp_path: Path) -> None:
+def test_titles_or_names_may_say_where_axes_point(tmp_path: Path) -> None:
     text = "\n".join(["Point,X (rearward),Y [right],Z (up)", *rows(str)])
     found = imported(tmp_path, text)
     assert drawn(found) == CAR
     assert any("by its titles" in fact for fact in found.facts)
+    by_names = imported(tmp_path, table())
+    assert any("by names such as 'CHAS_LowFor'" in fact for fact in by_names.facts)
     with pytest.raises(FileError, match=r"line 1: says where only some of its axes point \(right\)"):
         imported(tmp_path, text.replace("(rearward)", "").replace("(up)", ""))
 
@@ -425,15 +429,6 @@ FORMS = {
 @pytest.mark.parametrize("text", FORMS.values(), ids=FORMS)
 def test_the_same_car_in_another_form_is_the_same_car(text: str, tmp_path: Path) -> None:
     assert drawn(imported(tmp_path, text, axes=OURS)) == CAR
-
-
-def test_other_columns_of_numbers_are_left_out_and_told(tmp_path: Path) -> None:
-    text = "\n".join(["Point,X,Y,Z,MIN X,MAX X", *(f"{row},-999,999" for row in rows(str))])
-    found = imported(tmp_path, text, axes=OURS)
-    assert drawn(found) == CAR
-    assert "the column 'MIN X' is not read" in found.facts
-    with pytest.raises(FileError, match="has no column of x"):
-        imported(tmp_path, text.replace("X,Y,Z,MIN X,MAX X", "old X,old Y,old Z,new X,new Y"), axes=OURS)
 
 
 def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
@@ -482,9 +477,3 @@ def test_points_in_one_place_make_no_car(tmp_path: Path, capsys: pytest.CaptureF
     assert main(["import", str(tmp_path / "car.txt"), "--axes", OURS]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "tie_rod_inner - tie_rod_outer has no length" in line
-
-
-def test_a_table_of_optimumk_names_alone_has_its_axes(tmp_path: Path) -> None:
-    found = imported(tmp_path, table())
-    assert drawn(found) == CAR
-    assert any("by names such as 'CHAS_LowFor'" in fact for fact in found.facts)

@@ -80,7 +80,7 @@ def test_a_rack_that_is_meant_otherwise_is_told_first(
         (
             "arm_angle [rad]",
             lambda a: np.degrees(a - HOME),
-            "arm_angle is in deg, not in rad, and from the drawing on",
+            "arm_angle is in deg, not in rad, and counts from the drawing on",
         ),
         ("arm_angle [rad]", lambda a: a + 0.03, "arm_angle counts from another zero: 0.03 rad are too many"),
     ],

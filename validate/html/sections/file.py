@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.ci.record import explained, why_undecided
-from validate.comparison.compare import SMALLEST, Comparison
+from validate.comparison.compare import Comparison
 from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers, plain
 from validate.html.run import Run, Told
 from validate.html.section import Block, Paragraph, Section
-from validate.measured.comparing import DataOutcome, Held
+from validate.measured.comparing import DataOutcome
 from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
 from validate.output.table import Cell, Table
 
@@ -77,11 +77,11 @@ def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
     columns = [held for held in file.columns_of(row) if np.isfinite(held.gap).any()]
     if not columns:
         return
-    held = max(columns, key=lambda held: float(np.nanmax(_shares(held))))
+    held = max(columns, key=lambda held: float(np.nanmax(held.share)))
     meaning = held.series.meaning
     # Rows of a file are in any order; of two at the same value, which inputs tell apart, both are drawn.
     order = np.argsort(file.at, kind="stable")
-    share = np.nan_to_num(_shares(held)[order], nan=-1.0)
+    share = np.nan_to_num(held.share[order], nan=-1.0)
     at = order[np.asarray(fewer(share, points), dtype=np.intp)]
     unit = "deg" if file.over.endswith("[rad]") else ""
     over = file.over.replace("[rad]", "[deg]") if unit else file.over
@@ -113,10 +113,6 @@ def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
     layout = {"xaxis": axis(plain(over)), "yaxis": axis(f"[{words}]", logarithmic=True)}
     words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
     yield Panel(words, (tolerance, difference), layout)
-
-
-def _shares(held: Held) -> Array:
-    return np.asarray(held.gap / (held.tolerance + SMALLEST))
 
 
 SECTION = Section("file", "The file beside the car", 15, _blocks)

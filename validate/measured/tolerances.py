@@ -1,0 +1,239 @@
+r"""What a file of results can be held to, number by number.
+
+A number q of a file at an independent value x agrees with ours if they differ by at most
+
+    T = h_q + S + a + b + 4 eps Q,    S = sum over the independent columns of max |q(x -+ h_x) - q(x)|,
+
+h_q and h_x half a unit of the last digit as written, S what the rounding of x may do to the quantity, taken
+at both ends of all x that are written so (to first order |q'| h_x, and monotonic over such a width), a the
+accuracy that the user says the file has, b our own proven bound; and reading, changing the unit and turning
+the sign round four times at most, a component being no more exact than the largest of its quantity, Q, from
+which it is computed. So T is 0 only where the car gives nothing but zeros and the user says that these are
+exact.
+
+Digits written in full say nothing of how exact a program is: it stops where its own tolerance is met. Where a
+column is in full digits and neither the user nor a map says an accuracy, its program is taken to place every
+point to e = the scene's own tolerance, mm (1e-9 if the scene says none, what `simulate` solves to), and a is
+what that makes of the number at that pose, with the worst signs (`formulations.stated_accuracy`). A travel in
+full digits is reached to e likewise, which goes into S. Rows where such an error may reach a singular pose
+are not tested. Where S alone is as wide as half of the whole range that the quantity
+has in the file, no number of it could tell its curve from a level line: it is not tested. Independent columns
+in even steps are set values, h_x = 0. Where nobody says how another one is rounded, and T is more than ten
+times what it is without that part of S, what agrees only within that is not tested either. Nor is a number of
+the car that agrees where fewer than half of what the file gives of it can be compared: the others would be as
+little tested in a file of them alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from validate.comparison.compare import SMALLEST
+from validate.formulations.protocol import Accuracy, Solution
+from validate.measured.mapping import Measured, Series
+from validate.measured.meanings import PLACES, TIME, TRAVEL
+from validate.measured.poses import Driven, Found, Numbers, Poses, at_either_end, ours_of, poses_of, spread
+from validate.plain_text import shown, some_of
+from validate.tables.errors import FileError
+from validate.toml_written import key_of
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(float).eps)
+OURS = "pointcoord"
+NO_NUMBERS = "no row has a number of it that can be compared with anything"
+# A verdict may not rest on a rounding that nobody states and that widens the tolerance by more than this.
+WIDER = 10.0
+# Rows out of reach, or columns, that are named one by one.
+NAMED = 3
+
+
+@dataclass(frozen=True)
+class Held:
+    """A column of a file beside ours.
+
+    Attributes:
+        ours, tolerance: (N,), NaN where there is nothing to compare.
+        swing: the part of the tolerance that the independent columns' rounding makes, (N,).
+        supposed: the part of that which is the rounding of columns whose last digit no map says, (N,).
+        bound: the part that is our own proven bound, (N,).
+        unknown: why ours are not known, in words.
+    """
+
+    series: Series
+    ours: Array
+    tolerance: Array
+    swing: Array
+    supposed: Array
+    bound: Array
+    unknown: str = ""
+
+    @property
+    def close(self) -> Array:
+        """The tolerance, at most WIDER times what it is without what is supposed, (N,)."""
+        return np.asarray(np.minimum(self.tolerance, WIDER * (self.tolerance - self.supposed)))
+
+    @property
+    def gap(self) -> Array:
+        """Difference of every number, (N,), NaN where there is none."""
+        return _apart(self.series.values, self.ours, self.series)
+
+    @property
+    def share(self) -> Array:
+        """Difference of every number in its tolerance, likewise."""
+        return np.asarray(self.gap / (self.tolerance + SMALLEST))
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """How many of its numbers are compared, and how many there are."""
+        return int(np.isfinite(self.share).sum()), int(np.isfinite(self.series.values).sum())
+
+    @property
+    def few(self) -> bool:
+        """Whether most of its numbers cannot be compared."""
+        compared, there = self.counts
+        return 2 * compared < there
+
+    @property
+    def blind(self) -> bool:
+        """Whether the independent column is too coarse to tell anything of it."""
+        told, swing = (part[np.isfinite(part)] for part in (self.ours, self.swing))
+        wide = float(np.ptp(told)) if len(told) else 0.0
+        return bool(wide > 0.0 and len(swing) and (swing >= 0.5 * wide).all())
+
+
+def held_of(
+    measured: Measured, scene: Scene, accuracy: float | None, poses: Poses | None = None
+) -> tuple[list[Held], Solution, tuple[str, ...]]:
+    """Every column beside ours, our solution, and notes.
+
+    Raises:
+        FileError: no row can be reached.
+        MissingPackage: digits in full without an accuracy need the extra `validate`.
+        PointcoordError: the scene cannot be solved.
+    """
+    poses = poses_of(scene, measured) if poses is None else poses
+    given, first = (*measured.independent, *measured.rates), len(measured.independent)
+    values = [s.values for s in given]
+    here = poses.at(values[:first], values[first:])
+    notes = [*measured.notes, *poses.driven.notes, *_out_of_reach(measured, here)]
+    if not here.reached.any():
+        row = min(here.reasons)
+        problem = f"none of its {len(values[0])} rows can be reached ({here.reasons[row]})"
+        raise FileError(measured.source, measured.rows[row], problem, "rows that the scene's car can have")
+    unsaid = [s for s in measured.numbers if accuracy is None and s.accuracy is None and not s.off.any()]
+    stated = _taken_for_granted(measured, poses.driven, here) if unsaid else here
+    if unsaid:
+        notes.append(_granted(unsaid, measured, scene))
+    reached_to = [
+        s.off + scene.tolerance if unsaid and s.meaning.kind == TRAVEL and not s.off.any() else s.off
+        for s in given
+    ]
+    around = [
+        (not given[i].said and bool(given[i].off.any()), [poses.at(e[:first], e[first:]) for e in ends])
+        for i, ends in at_either_end(values, reached_to)
+    ]
+    largest: dict[tuple[str, str], float] = {}
+    for s in measured.numbers:
+        of = s.meaning.quantity, s.meaning.per
+        largest[of] = max(largest.get(of, 0.0), float(np.nanmax(np.abs(s.values), initial=0.0)))
+    found, nothing = [], np.zeros(len(values[0]))
+    for s in measured.numbers:
+        mine, bound = ours_of(s, here, scene)
+        if mine is None or bound is None:
+            nan = np.full(len(nothing), np.nan)
+            found.append(Held(s, nan, nan, nothing, nothing, nothing, here.unrated or NO_NUMBERS))
+            continue
+        swing, supposed = nothing, nothing
+        for unstated, sides in around:
+            there = (ours_of(s, side, scene)[0] for side in sides)
+            gaps = [np.nan_to_num(_apart(other, mine, s)) for other in there if other is not None]
+            change = np.max([nothing, *gaps], axis=0)
+            swing, supposed = swing + change, supposed + unstated * change
+        own = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
+        rounding = 4.0 * EPS * largest[s.meaning.quantity, s.meaning.per]
+        allowed = s.off + swing + rounding + (0.0 if own is None else own) + bound
+        found.append(Held(s, mine, np.where(np.isfinite(mine), allowed, np.nan), swing, supposed, bound))
+    if unknown := [shown(h.series.column) for h in found if h.unknown]:
+        notes.append(f"{', '.join(unknown)} is not tested: {here.unrated or NO_NUMBERS}")
+    # Which columns have a wider tolerance by an independent one's rounding than by their own digits.
+    wide = [h for h in found if np.nanmax(h.supposed, initial=0.0) > np.nanmax(h.series.off, initial=0.0)]
+    if wide:
+        names = some_of([shown(h.series.column) for h in wide], NAMED)
+        notes.append(f"{names}: tolerance widened because {rounded(measured)}")
+    claims = {
+        quantity: {name: np.nan_to_num(bound) for name, bound in here.bounds[quantity].items()}
+        for quantity in here.bounds.keys() & here.numbers.keys()
+    }
+    instants = measured.instants
+    own_accuracy = Accuracy(np.ones(len(instants)), claims, proven=True)
+    return found, Solution(OURS, instants, here.numbers, own_accuracy), tuple(notes)
+
+
+def rounded(measured: Measured) -> str:
+    """Which columns that poses are taken from are taken as rounded unasked, and what to say of them."""
+    some = [s for s in (*measured.independent, *measured.rates) if not s.said and s.off.any()]
+    given = (f"{shown(s.column)} is given to +-{np.max(s.off) / s.factor:.3g}" for s in some)
+    lines = ", ".join(f"columns.{key_of(shown(s.column))}.printed = 0" for s in some)
+    return f"{' and '.join(given)}; if that is exact as written, add this line to a map: {lines}"
+
+
+def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found:
+    """Ours, held to what placing every point to the scene's tolerance makes of each number.
+
+    Where that says nothing of a number, its bound is NaN.
+    """
+    # Their packages are an extra that printed files need not.
+    from validate.formulations.input_rates import rates
+    from validate.formulations.stated_accuracy import accuracy_at
+
+    rows, scene = here.reached, driven.scene
+    places = {name: place[rows] for name, place in here.numbers[PLACES].items()}
+    over_time = measured.independent[0].meaning.kind == TIME
+
+    def bounds(going: Mapping[str, Array]) -> Numbers:
+        """By inputs with their first and second derivatives, (rows, 3)."""
+        stated = accuracy_at(scene, scene.tolerance, places, going)
+        blind = np.zeros(len(rows), dtype=bool)
+        blind[rows] = False if stated.blind is None else stated.blind
+        found = spread(stated.claims, slice(None), rows)
+        for claim in (claim for part in found.values() for claim in part.values()):
+            claim[blind] = np.nan
+        return found
+
+    def by(laws: Mapping[str, Array]) -> Numbers:
+        return bounds({n: np.column_stack([at[rows], laws[n][rows]]) for n, at in here.inputs.items()})
+
+    if not over_time:
+        slopes = {per: replace(slope, bounds=by(slope.laws)) for per, slope in here.slopes.items()}
+        return replace(here, bounds=by(here.laws), slopes=slopes)
+    times = measured.independent[0].values[rows]
+    own = replace(here, bounds=bounds({name: rates(law, times) for name, law in scene.inputs.items()}))
+    return replace(own, slopes={TIME: own})
+
+
+def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
+    names = some_of([shown(s.column) for s in unsaid], NAMED)
+    who = f"{names} {'are' if unsaid[1:] else 'is'}" if len(unsaid) < len(measured.numbers) else "the file is"
+    return (
+        f"compared with points placed within {scene.tolerance:g} mm, the scene's tolerance, and with what "
+        f"that makes of each number: {who} in full digits and no --accuracy is given"
+    )
+
+
+def _apart(one: Array, other: Array, series: Series) -> Array:
+    """How far numbers of a column are apart; whole turns apart is the same angle."""
+    gap = np.abs(one - other)
+    return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if series.meaning.unit == "rad" else gap
+
+
+def _out_of_reach(measured: Measured, found: Found) -> list[str]:
+    lost = sorted(found.reasons)
+    notes = [f"{measured.rows[i]} is left out: {found.reasons[i]}" for i in lost[:NAMED]]
+    others = [measured.rows[i] for i in lost[NAMED:]]
+    return [*notes, f"likewise left out: {some_of(others, NAMED)}"] if others else notes
