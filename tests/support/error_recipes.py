@@ -29,8 +29,8 @@ from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.parts.loading import run as run_python
-from validate.cost.store import Store as RowStore
-from validate.cost.store import measured_here
+from validate.cost.table import Store as RowStore
+from validate.cost.table import measured_here
 from validate.cost.way import Answer
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
@@ -445,10 +445,10 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cluster.rows_of(lambda task: [][task.number], Task("held", 7), "here"),
         ("held 7: IndexError: ",),
     ),
-    "validate.cost.store.StoreError": Recipe(
+    "validate.cost.table.StoreError": Recipe(
         lambda folder, _: RowStore(folder, measured_here()), ("cannot be read", "directory", "another file")
     ),
-    "validate.cost.race.LeftOut": Recipe(
+    "validate.cost.way.LeftOut": Recipe(
         lambda *_: ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), 1e-9),
         ("the strut that the paper prints",),
     ),

@@ -12,7 +12,7 @@ from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.taylor import Settings, build_chain
-from validate.cost.growth.chain import SWING, FourBarChain
+from validate.cost.chain import SWING, FourBarChain
 
 N = 120
 

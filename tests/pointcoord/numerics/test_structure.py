@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components, maximum_bipartite_matchin
 
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.structure import Structure, rows_too_many, structure_of
-from validate.cost.growth.chain import FourBarChain
+from validate.cost.chain import FourBarChain
 
 
 @dataclass(frozen=True)

@@ -59,8 +59,7 @@ def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     if len(scenes) > SCENES:
         yield Paragraph(f"Drawn are the first {SCENES} of {len(scenes)} scenes.")
     if of_this_run:
-        for table in cost.tables[:TABLES]:
-            yield Table(tuple(table.head), table.rows[:LINES], caption=table.title, folded=True)
+        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables()[:TABLES])
     for row in cost.rows:
         if row.verdict == "failed":
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")

@@ -28,7 +28,7 @@ from validate.extras import MissingPackage
 try:
     from mpmath import mp, mpf
 except ModuleNotFoundError as error:
-    raise MissingPackage("validate.cost.growth.chain", error) from None
+    raise MissingPackage("validate.cost.chain", error) from None
 
 Array = NDArray[np.float64]
 

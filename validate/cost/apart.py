@@ -14,33 +14,26 @@ import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-from validate.cost.parts.loading import environment
+import validate
 from validate.cost.race import Effort, Found, Runner, race
-from validate.cost.row import Row
+from validate.cost.table import Row
 
-PROGRAM = "from validate.cost.growth.child import answer; answer()"
+PROGRAM = "from validate.cost.apart import answer; answer()"
+THREADS = ("OPENBLAS", "OMP", "MKL", "NUMEXPR")
 GRACE = 60.0  # s, beyond what the runs may take: Python, imports, the check of the numbers
 STATUS, CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 RESTART_PEAK = "5"  # proc(5): the peak of resident memory becomes what is resident now
 
 
-class Task(Protocol):
-    """Work of some size. It travels to another process, so it is plain data."""
-
-    @property
-    def smallest(self) -> Task:
-        """The same work of the least size, which loads all that it needs."""
-        ...
-
-    def runner(self, row: Row) -> Runner:
-        """What is timed; what it is given is made here, and is no part of it."""
-        ...
+Make = Callable[[Row, int], Runner]
+"""What is timed of a row's work at a size; it travels to another process, so it is a function of a module, or
+a partial of one. What is given to the run is made here, and is no part of it."""
 
 
 @dataclass(frozen=True)
@@ -56,15 +49,19 @@ class Limits:
     memory: int = 8 * 2**30
 
 
-def measure_apart(task: Task, row: Row, limits: Limits) -> list[Row]:
-    """The rows of a task that is measured in a process of its own, by one thread."""
+def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
+    """The rows of a row's size, measured in a process of its own, by one thread.
+
+    Args:
+        least: the size that loads all that the work needs.
+    """
     # One run may take some times what was foreseen.
     patience = 5.0 * limits.seconds + GRACE
     failed = replace(row, poses=0, verdict="failed")
     try:
         done = subprocess.run(
             [sys.executable, "-c", PROGRAM],
-            input=pickle.dumps((task, row, limits)),
+            input=pickle.dumps((make, least, row, limits)),
             capture_output=True,
             timeout=patience,
             env=environment(),
@@ -86,21 +83,21 @@ def measure_apart(task: Task, row: Row, limits: Limits) -> list[Row]:
 
 
 def answer() -> None:
-    """In the process: measure the task that standard input brings, and write its rows."""
+    """In the process: measure what standard input brings, and write its rows."""
     # What libraries print must not mix with the answer.
     out = os.dup(1)
     os.dup2(2, 1)
-    task, row, limits = pickle.load(sys.stdin.buffer)
+    make, least, row, limits = pickle.load(sys.stdin.buffer)
     limit_memory(limits.memory)
-    text = json.dumps([asdict(one) for one in measured(task, row, limits)], allow_nan=False)
+    text = json.dumps([asdict(one) for one in measured(make, least, row, limits)], allow_nan=False)
     with open(out, "w", encoding="utf-8") as stream:
         stream.write(text)
 
 
-def measured(task: Task, row: Row, limits: Limits) -> Sequence[Row]:
-    """A task's rows in this process, with the peak of its first run."""
-    race([task.smallest.runner(row)], Effort(repeats=0))
-    runner = task.runner(row)
+def measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
+    """The rows in this process, with the peak of the first run."""
+    race([make(row, least)], Effort(repeats=0))
+    runner = make(row, row.size or 0)
     held = restart_peak()
     most = [0]
 
@@ -110,6 +107,13 @@ def measured(task: Task, row: Row, limits: Limits) -> Sequence[Row]:
 
     rows = race([replace(runner, found=found)], Effort(repeats=7, least=0.01, most=limits.seconds))
     return [replace(one, peak_bytes=most[0]) if one.verdict == "measured" else one for one in rows]
+
+
+def environment() -> dict[str, str]:
+    """That of a process that runs this package by one thread."""
+    source = str(Path(validate.__file__).parents[1])
+    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
+    return {**os.environ, **{f"{name}_NUM_THREADS": "1" for name in THREADS}, "PYTHONPATH": path}
 
 
 def restart_peak() -> int:
