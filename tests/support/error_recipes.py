@@ -27,8 +27,8 @@ from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
+from validate.cost.apart import run_python
 from validate.cost.errors import errors_of, truth_of
-from validate.cost.parts.loading import run as run_python
 from validate.cost.table import Store as RowStore
 from validate.cost.table import measured_here
 from validate.cost.way import Answer
@@ -455,7 +455,7 @@ RECIPES: dict[str, Recipe] = {
     "validate.cost.race.NoNumbers": Recipe(
         lambda *_: errors_of(Answer({}), truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
     ),
-    "validate.cost.parts.loading.NotRun": Recipe(
+    "validate.cost.apart.NotRun": Recipe(
         lambda *_: run_python("-c", "raise SystemExit('no such thing')"),
         ("ended with status 1", "no such thing"),
     ),

@@ -7,7 +7,6 @@ system can do that. A process that dies is a failed row with the reason.
 
 from __future__ import annotations
 
-import json
 import os
 import pickle
 import resource
@@ -16,12 +15,12 @@ import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import validate
-from validate.cost.race import Effort, Found, Runner, race
+from validate.cost.race import Effort, Found, Runner, absent, race
 from validate.cost.table import Row
 
 PROGRAM = "from validate.cost.apart import answer; answer()"
@@ -49,37 +48,59 @@ class Limits:
     memory: int = 8 * 2**30
 
 
+class NotRun(Exception):
+    """A process did not do what it was started for; says how it ended, and its last line."""
+
+
 def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
     """The rows of a row's size, measured in a process of its own, by one thread.
 
     Args:
         least: the size that loads all that the work needs.
     """
-    # One run may take some times what was foreseen.
-    patience = 5.0 * limits.seconds + GRACE
-    failed = replace(row, poses=0, verdict="failed")
+    given = pickle.dumps((make, least, row, limits))
+    try:
+        # One run may take some times what was foreseen.
+        found = run_python("-c", PROGRAM, given=given, patience=5.0 * limits.seconds + GRACE)
+        rows: list[Row] = pickle.loads(found)
+        return rows
+    except NotRun as error:
+        reason = str(error)
+    except (EOFError, pickle.UnpicklingError):
+        reason = "ended without an answer"
+    return [replace(row, **absent("failed", f"its process {reason}"))]
+
+
+def run_python(*words: str, given: bytes = b"", patience: float = 300.0) -> bytes:
+    """What Python writes, run to its end by one thread, with this package first on its path.
+
+    Args:
+        given: its standard input. patience: s.
+    Raises:
+        NotRun: it failed.
+    """
+    source = str(Path(validate.__file__).parents[1])
+    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
+    threads = {f"{name}_NUM_THREADS": "1" for name in THREADS}
     try:
         done = subprocess.run(
-            [sys.executable, "-c", PROGRAM],
-            input=pickle.dumps((make, least, row, limits)),
+            [sys.executable, *words],
+            input=given,
             capture_output=True,
             timeout=patience,
-            env=environment(),
+            env={**os.environ, **threads, "PYTHONPATH": path},
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return [replace(failed, reason=f"was ended after {patience:.0f} s")]
+        raise NotRun(f"was ended after {patience:.0f} s") from None
     if done.returncode < 0:
         name = signal.Signals(-done.returncode).name
         hint = ", as a system out of memory does" if name == "SIGKILL" else ""
-        return [replace(failed, reason=f"its process was ended by the signal {name}{hint}")]
-    try:
-        return [Row(**content) for content in json.loads(done.stdout)]
-    except (ValueError, TypeError):
-        lines = done.stderr.decode(errors="replace").strip().splitlines()
-        last = f": {lines[-1]}" if lines else ""
-        reason = f"its process ended with status {done.returncode} and no answer{last}"
-        return [replace(failed, reason=reason)]
+        raise NotRun(f"was ended by the signal {name}{hint}")
+    if done.returncode:
+        said = done.stderr.decode(errors="replace").strip().splitlines()
+        raise NotRun(f"ended with status {done.returncode}{': ' + said[-1] if said else ''}")
+    return done.stdout
 
 
 def answer() -> None:
@@ -89,9 +110,9 @@ def answer() -> None:
     os.dup2(2, 1)
     make, least, row, limits = pickle.load(sys.stdin.buffer)
     limit_memory(limits.memory)
-    text = json.dumps([asdict(one) for one in measured(make, least, row, limits)], allow_nan=False)
-    with open(out, "w", encoding="utf-8") as stream:
-        stream.write(text)
+    rows = measured(make, least, row, limits)
+    with open(out, "wb") as stream:
+        pickle.dump(rows, stream)
 
 
 def measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
@@ -107,13 +128,6 @@ def measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
 
     rows = race([replace(runner, found=found)], Effort(repeats=7, least=0.01, most=limits.seconds))
     return [replace(one, peak_bytes=most[0]) if one.verdict == "measured" else one for one in rows]
-
-
-def environment() -> dict[str, str]:
-    """That of a process that runs this package by one thread."""
-    source = str(Path(validate.__file__).parents[1])
-    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
-    return {**os.environ, **{f"{name}_NUM_THREADS": "1" for name in THREADS}, "PYTHONPATH": path}
 
 
 def restart_peak() -> int:

@@ -48,6 +48,16 @@ def timed(table: pd.DataFrame, part: str) -> pd.DataFrame:
     return found[found.error.notna()] if part in ("accuracy", "unrelated") else found
 
 
+def heights(errors: pd.Series) -> tuple[pd.Series, str]:
+    """Errors on a logarithmic axis, where nothing at all has no place, and words that say so.
+
+    An error of exactly nothing is drawn a tenth below the least one.
+    """
+    least = errors[errors > 0.0].min()
+    drawn = errors.clip(lower=0.1 * (1e-16 if math.isnan(least) else least))
+    return drawn, ", exactly 0 at the lower edge" if (errors == 0.0).any() else ""
+
+
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
     """By scene, quantity, way and accuracy the quickest setting that is accurate enough."""
     found = timed(table, "accuracy")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,16 +11,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from validate.cost.findings import ACCURACIES, LINE, grown, growths, quantities_of, timed, unit_of, words_of
-from validate.cost.looks import Look, looks
+from validate.cost.findings import (
+    ACCURACIES,
+    LINE,
+    grown,
+    growths,
+    heights,
+    quantities_of,
+    timed,
+    unit_of,
+    words_of,
+)
+from validate.cost.looks import KEY, Look, looks
+from validate.cost.words import power
 from validate.output.figure import GREY, SETTINGS, plain
 
 COLUMNS, WIDE, HIGH = 3, 3.7, 3.6  # of panels; inches of each
-KEY = (
-    "A line is a way, a mark one of its settings. Down is more accurate, left is quicker.\n"
-    "* and filled: one solve serves any instant. Grey lines: 1e-3, 1e-6 and 1e-9. Set-up is apart."
-)
-BELOW = 10.0  # an error of exactly nothing is drawn so far below the least one
 
 
 def headline(table: pd.DataFrame) -> Figure | None:
@@ -51,19 +56,18 @@ def _errors(here: pd.DataFrame, quantities: list[str]) -> Figure:
     page, panels = _page(title, len(quantities))
     for axes, quantity in zip(panels, quantities, strict=False):
         some = here[here.quantity == quantity]
-        least = some.error[some.error > 0.0].min()
-        floor = (1e-16 if math.isnan(least) else least) / BELOW
+        drawn, nothing = heights(some.error)
         for way, look in looks(some.way).items():
             line = some[some.way == way].sort_values("value", ascending=False)
-            heights = line.error.clip(lower=floor)
-            axes.plot(1e6 * line.time, heights, zorder=3, **_style(look, bool(line.dense.any())))
+            places = (1e6 * line.time, drawn[line.index])
+            axes.plot(*places, zorder=3, **_style(look, bool(line.dense.any())))
         for accuracy in ACCURACIES:
             axes.axhline(accuracy, color=GREY, linewidth=0.8, zorder=1)
-        nothing = "; exactly 0 at the lower edge" if (some.error == 0.0).any() else ""
         axes.set_title(words_of(quantity) + nothing, loc="left")
         axes.set_xlabel("time of a pose, us")
         axes.set_ylabel(f"largest error, {unit_of(quantity)}")
-    _legend(page, here, KEY)
+    grey = f"Grey: {', '.join(map(power, ACCURACIES))}; the set-up is apart."
+    _legend(page, here, KEY.replace(". ", ".\n") + f" {grey}")
     return page
 
 
@@ -78,8 +82,8 @@ def _growth(here: pd.DataFrame, title: str) -> Figure:
             line = values.loc[[(one.against, one.scene, one.way, one.setting, of)]]
             look = looks([one.way])[one.way]
             axes.plot(line["size"].astype(float), unit * line.value, **_style(look, bool(line.dense.any())))
-            power = "" if pd.isna(one.exponent) else f" {one.exponent:.2f}"
-            axes.annotate(power, (one.largest, unit * one.value), fontsize=7, color=look.colour)
+            exponent = "" if pd.isna(one.exponent) else f" {one.exponent:.2f}"
+            axes.annotate(exponent, (one.largest, unit * one.value), fontsize=7, color=look.colour)
         axes.set_title(of, loc="left")
         axes.set_xlabel(here.against.iloc[0])
         axes.set_ylabel(words)

@@ -60,7 +60,7 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
         missing = [runner for runner in runners if not store.has(runner.row)]
         if missing:
             store.write(race(missing, QUICK if study.quick else FULL, progress))
-    limits = (growth.QUICK if study.quick else growth.FULL).limits
+    limits = growth.LIMITS_QUICK if study.quick else growth.LIMITS
     growing = study.lines()
     for i, line in enumerate(growing):
         progress(f"growth in {line.row.against}: {line.row.scene}, {line.row.way}", i, len(growing))

@@ -10,7 +10,7 @@ solves it. Design number k is the same car in however large a batch.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -43,30 +43,19 @@ CHECKED = 16  # instants whose numbers are compared with the reference, which ta
 NOT_RIGHT = 1e-3  # of the shortest rocker: an answer that far off is another assembly, or none
 
 
-@dataclass(frozen=True)
-class Plan:
-    """What is measured.
-
-    Attributes:
-        limits: of each size. instants, designs, unknowns: sizes, increasing.
-        ways: of instants. design_ways: of designs. chain_ways: of unknowns.
-    """
-
-    limits: Limits
-    instants: tuple[int, ...] = (100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
-    designs: tuple[int, ...] = (1, 10, 100, 1_000, 10_000)
-    unknowns: tuple[int, ...] = (15, 45, 150, 450, 1_500)
-    ways: tuple[str, ...] = GROWING
-    design_ways: tuple[str, ...] = GROWING
-    chain_ways: tuple[str, ...] = (*GROWING, "scipy-root", "scipy-root-jac")
-
-
-FULL = Plan(limits=Limits(seconds=60.0))
-QUICK = Plan(
-    Limits(seconds=2.0),
-    *((100, 500), (1, 10), (15, 150)),
-    *(("series", "newton"), ("series",), ("series", "scipy-root-jac")),
-)
+Plan = Mapping[str, tuple[tuple[int, ...], tuple[str, ...]]]
+"""Sizes, increasing, of what is varied, and the ways that are measured."""
+FULL: Plan = {
+    "instants": ((100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000), GROWING),
+    "designs": ((1, 10, 100, 1_000, 10_000), GROWING),
+    "unknowns": ((15, 45, 150, 450, 1_500), (*GROWING, "scipy-root", "scipy-root-jac")),
+}
+QUICK: Plan = {
+    "instants": ((100, 500), ("series", "newton")),
+    "designs": ((1, 10), ("series",)),
+    "unknowns": ((15, 150), ("series", "scipy-root-jac")),
+}
+LIMITS, LIMITS_QUICK = Limits(seconds=60.0), Limits(seconds=2.0)
 
 
 @dataclass(frozen=True)
@@ -109,23 +98,26 @@ def lines_of(
     plan = plan or (QUICK if quick else FULL)
     alone = StudyScene(f"{study.name}, positions alone", study.positions_only())
     lines = []
+
+    def add(way: Way, against: str, poses: int, make: Make, least: int, **columns: Any) -> None:
+        sizes, names = plan[against]
+        if way.name in names:
+            value = nearest(way.values)
+            row = Row("growth", "", way.name, way.says(value), value, way.dense, against, quick=quick)
+            row = replace(row, **columns)
+            lines.append(Line(row, sizes, poses, make, least))
+
     for way in ways:
-        value = nearest(way.values)
-        row = Row("growth", "", way.name, way.says(value), value, way.dense, quick=quick)
-        of_alone = replace(row, scene=alone.name, digest=alone.digest)
-        if way.name in plan.ways:
-            for one in [alone, *([study] if study.scene.effects and not quick else [])]:
-                named = replace(row, scene=one.name, digest=one.digest, against="instants")
-                lines.append(Line(named, plan.instants, 1, partial(many_instants, one.scene), 2))
-        if way.name in plan.design_ways:
-            for words, make in (("together", designs_together), ("one by one", designs_one_by_one)):
-                if way.name == "series" or make is designs_one_by_one:
-                    setting = ", ".join(filter(None, (row.setting, words)))
-                    named = replace(of_alone, against="designs", setting=setting)
-                    lines.append(Line(named, plan.designs, INSTANTS, partial(make, alone.scene), 1))
-        if way.name in plan.chain_ways:
-            named = replace(row, scene=CHAIN, against="unknowns")
-            lines.append(Line(named, plan.unknowns, 0, long_chain, 6))
+        for one in [alone, *([study] if study.scene.effects and not quick else [])]:
+            make = partial(many_instants, one.scene)
+            add(way, "instants", 1, make, 2, scene=one.name, digest=one.digest)
+        for words, together in (("together", True), ("one by one", False)):
+            if way.name == "series" or not together:
+                setting = ", ".join(filter(None, (way.says(nearest(way.values)), words)))
+                make = partial(designs_together if together else designs_one_by_one, alone.scene)
+                of = {"scene": alone.name, "digest": alone.digest, "setting": setting}
+                add(way, "designs", INSTANTS, make, 1, **of)
+        add(way, "unknowns", 0, long_chain, 6, scene=CHAIN)
     return lines
 
 
