@@ -236,6 +236,16 @@ def test_pictures_without_matplotlib_are_refused_before_anything_is_measured(
     assert main(["cost", "--from-rows", "--rows", store]) == 0
 
 
+def test_without_what_writes_its_rows_nothing_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert main(["cost", "--rows", str(tmp_path / "new.parquet")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "'cost' needs the package 'pyarrow'" in line
+    assert "pip install 'pointcoord[validate]'" in line
+
+
 def test_a_folder_that_cannot_be_had_is_refused_before_anything_is_measured(
     store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

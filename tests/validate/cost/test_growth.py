@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from grown_tasks import LEAST, ending
 
+from pointcoord.simulation import scene_mechanism
 from validate.cost import apart as child
 from validate.cost.apart import Limits, measure_apart
 from validate.cost.chain import LANE, RISE, ROCKERS, SWING, TOLERANCE, FourBarChain
@@ -327,7 +328,7 @@ def test_another_assembly_is_no_answer_and_a_small_error_is_told_with_its_size()
 def test_a_chain_has_three_unknowns_a_rocker() -> None:
     for rockers, chain in ((5, FourBarChain.with_unknowns(15)), (50, FourBarChain.with_unknowns(150))):
         assert chain.rockers == rockers
-        assert chain.mechanism().map.unknowns == 3 * rockers
+        assert scene_mechanism(chain.scene()).map.unknowns == 3 * rockers
         assert all(one != other for one, other in pairwise(chain.tips))
     with pytest.raises(ValueError, match="allowed: 3, 6, 9"):
         FourBarChain.with_unknowns(16)
