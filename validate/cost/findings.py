@@ -54,7 +54,7 @@ def heights(errors: pd.Series) -> tuple[pd.Series, str]:
     An error of exactly nothing is drawn a tenth below the least one.
     """
     least = errors[errors > 0.0].min()
-    drawn = errors.clip(lower=0.1 * (1e-16 if math.isnan(least) else least))
+    drawn = errors.clip(lower=(1e-16 if math.isnan(least) else least) / 10.0)
     return drawn, ", exactly 0 at the lower edge" if (errors == 0.0).any() else ""
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from validate.output.document import code_digest, machine, program_version
-from validate.output.files import write_content
+from validate.output.files import OutputError, write_content
 
 # Imported where a table is made: it takes half a second, and most pages show no costs.
 if TYPE_CHECKING:
@@ -184,10 +184,13 @@ class Store:
         """Keep rows, now.
 
         Raises:
-            OutputError: the file cannot be written.
+            OutputError: the file cannot be written, or another program has written to it.
         """
-        # Another run may have written meanwhile.
-        self.rows += [row for row in self._read() if row.key not in self._known]
+        try:
+            # Another run may have written meanwhile.
+            self.rows += [row for row in self._read() if row.key not in self._known]
+        except StoreError as error:
+            raise OutputError("rows", str(error)) from None
         where = {what: getattr(self.here, what) for what in (*WHERE, "command")}
         self.rows += [replace(row, **where) for row in rows]
         self._known = {row.key for row in self.rows}

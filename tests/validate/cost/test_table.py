@@ -11,6 +11,7 @@ from made_rows import WHERE, study
 from pointcoord import Scene
 from validate.cost.scenes import StudyScene
 from validate.cost.table import Row, Store, StoreError, frame, latest, measured_here, read_rows
+from validate.output.files import OutputError
 
 HERE = Row("accuracy", "", "", **WHERE)
 ROW = replace(study()[0], error=1.0 / 3.0, rms=1e-300, **WHERE)
@@ -63,6 +64,14 @@ def test_rows_that_do_not_compare_are_not_gone_on_with_but_can_be_read(tmp_path:
     assert read_rows(path) == [ROW]
     # Another command adds to the same file.
     Store(path, replace(HERE, command="another")).write([replace(ROW, way="newton")])
+
+
+def test_what_another_program_wrote_meanwhile_is_not_written_over(tmp_path: Path) -> None:
+    store = Store(tmp_path / "rows", HERE)
+    (tmp_path / "rows").write_text("a thesis")
+    with pytest.raises(OutputError, match="is no Parquet file"):
+        store.write([ROW])
+    assert (tmp_path / "rows").read_text() == "a thesis"
 
 
 WHOLE = frame([ROW]).to_parquet()
