@@ -119,12 +119,12 @@ FIGURES = {
     ),
     "cost": Figure(
         "validate/cost/README.md",
-        "pointcoord cost --parts accuracy --rows {folder}/rows.jsonl --report {folder}/cost",
+        "pointcoord cost --parts accuracy --rows {folder}/rows.parquet --report {folder}/cost",
         _tables("accuracy of position"),
     ),
     "growth": Figure(
         "validate/cost/README.md",
-        "pointcoord cost --parts growth --rows {folder}/rows.jsonl --report {folder}/cost",
+        "pointcoord cost --parts growth --rows {folder}/rows.parquet --report {folder}/cost",
         _tables("Growth in"),
     ),
     "speed": Figure(

@@ -34,10 +34,10 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.results.named_columns import number_columns
-from validate.cost.growth.chain import TOLERANCE as OF_CHAIN
-from validate.cost.growth.chain import FourBarChain
-from validate.cost.growth.tasks import CHAIN_INSTANTS
-from validate.cost.instants import study_instants
+from validate.cost.chain import TOLERANCE as OF_CHAIN
+from validate.cost.chain import FourBarChain
+from validate.cost.parts.growth import CHAIN_INSTANTS
+from validate.cost.scenes import study_instants
 from validate.cost.ways.absolute import in_bodies
 from validate.cost.ways.registry import ways_named
 from validate.output.motion_tables import write_csv

@@ -27,10 +27,10 @@ from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
+from validate.cost.apart import run_python
 from validate.cost.errors import errors_of, truth_of
-from validate.cost.parts.loading import run as run_python
-from validate.cost.store import Store as RowStore
-from validate.cost.store import measured_here
+from validate.cost.table import Store as RowStore
+from validate.cost.table import measured_here
 from validate.cost.way import Answer
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
@@ -445,17 +445,17 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: cluster.rows_of(lambda task: [][task.number], Task("held", 7), "here"),
         ("held 7: IndexError: ",),
     ),
-    "validate.cost.store.StoreError": Recipe(
+    "validate.cost.table.StoreError": Recipe(
         lambda folder, _: RowStore(folder, measured_here()), ("cannot be read", "directory", "another file")
     ),
-    "validate.cost.race.LeftOut": Recipe(
+    "validate.cost.way.LeftOut": Recipe(
         lambda *_: ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), 1e-9),
         ("the strut that the paper prints",),
     ),
     "validate.cost.race.NoNumbers": Recipe(
         lambda *_: errors_of(Answer({}), truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
     ),
-    "validate.cost.parts.loading.NotRun": Recipe(
+    "validate.cost.apart.NotRun": Recipe(
         lambda *_: run_python("-c", "raise SystemExit('no such thing')"),
         ("ended with status 1", "no such thing"),
     ),

@@ -1,42 +1,32 @@
-"""Tasks of growth whose cost, memory or end is known."""
+"""Work that grows, whose cost, memory or end is known."""
 
 from __future__ import annotations
 
 import os
 import signal
 import time
-from dataclasses import dataclass, replace
 
 import numpy as np
 
-from validate.cost.race import Found, LeftOut, Runner
-from validate.cost.row import Row
+from validate.cost.race import Runner
+from validate.cost.table import Row
+from validate.cost.way import LeftOut
+
+LEAST = 1
 
 
-@dataclass(frozen=True)
-class Ends:
-    """A task in a process that ends as it is told when it is solved.
+def ending(how: str, taken: int, loading: int, row: Row, size: int) -> Runner:
+    """Work that ends its process as it is told; the least only takes memory and gives it back, as imports do.
 
-    At its smallest size it only takes memory and gives it back, as imports do.
+    Args:
+        taken, loading: bytes, of the work and of the least one.
     """
+    position = {"error": 1e-9, "rms": 5e-10, "radius": 1e-20, "numbers": 3}
 
-    how: str
-    bytes: int = 0
-    loading: int = 0
-    smallest_one: bool = False
-
-    @property
-    def smallest(self) -> Ends:
-        return replace(self, smallest_one=True)
-
-    def runner(self, row: Row) -> Runner:
-        position = {"error": 1e-9, "rms": 5e-10, "radius": 1e-20, "numbers": 3}
-        return Runner(row, lambda: self.solve, lambda answer: Found({"position": position}))
-
-    def solve(self) -> int:
-        if self.smallest_one:
-            return int(np.ones(self.loading // 8).sum())
-        match self.how:
+    def solve() -> int:
+        if size == LEAST:
+            return int(np.ones(loading // 8).sum())
+        match how:
             case "killed":
                 os.kill(os.getpid(), signal.SIGKILL)
             case "exits":
@@ -51,5 +41,7 @@ class Ends:
                 print("a library says hello")
                 os.system("echo so does another")
             case "takes and gives back":
-                return int(np.ones(self.bytes // 8)[-1])
+                return int(np.ones(taken // 8)[-1])
         return 1
+
+    return Runner(row, lambda: solve, lambda answer: {"position": position})

@@ -1,12 +1,11 @@
 """Rows of a study of cost that was never run: what must be found in them is known."""
 
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from validate.cost.row import Row
+from validate.cost.table import Row, frame, read_rows
 
 POSES = 100
 RATES = ("velocity", "acceleration", "angular_velocity", "angular_acceleration")
@@ -146,6 +145,6 @@ def study() -> list[Row]:
 
 def kept(path: Path, rows: Sequence[Row], **changed: Any) -> str:
     """Add rows to a file of rows, which another machine has measured."""
-    with path.open("a", encoding="utf-8") as stream:
-        stream.writelines(json.dumps(asdict(replace(row, **changed))) + "\n" for row in rows)
+    before = read_rows(path) if path.exists() else []
+    path.write_bytes(frame([*before, *(replace(row, **changed) for row in rows)]).to_parquet())
     return str(path)

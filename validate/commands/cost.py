@@ -6,8 +6,9 @@ import argparse
 import os
 import shlex
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 from pointcoord import UnknownName
 from validate.commands.reporting import Page
@@ -25,21 +26,19 @@ from validate.commands.usage import (
     write_result,
 )
 from validate.cost.report import Report
-from validate.cost.row import Part, Row
-from validate.cost.store import Store, StoreError, latest, measured_here, read_rows
+from validate.cost.table import PARTS, Part, Row, Store, StoreError, latest, measured_here
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.files import OutputError, require_writable, write_content
+from validate.output.files import require_writable, write_content
 from validate.output.progress import progress
 
 if TYPE_CHECKING:
     from validate.cost.study import Study
     from validate.cost.way import Way
 
-PARTS: tuple[Part, ...] = get_args(Part)
-ROWS = "pointcoord-cost.jsonl"
+ROWS = "pointcoord-cost.parquet"
 
 DESCRIPTION = """\
 What accuracy costs in time: every way to solve a scene, over the range of its settings, compared with
@@ -48,8 +47,8 @@ win; a picture shows error against time; tables hold the rest: what each effect 
 and memory grow with instants, designs and unknowns, what loading takes, and what a pose takes at
 inputs that have nothing to do with each other.
 
-What is measured is kept in a file, a row for each number: a run that is stopped goes on with the
-scene that it was in, and --from-rows makes the report again without measuring."""
+What is measured is kept in a Parquet file, a row for each number: a run that is stopped goes on
+with the scene that it was in, and --from-rows makes the report again without measuring."""
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -117,12 +116,14 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         _require_folder(options.report)
     if options.csv not in (None, "-"):
         require_writable(options.csv)
+    needed("cost", "pyarrow")
     journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
         status = _told(report, options, console)
         journal.close(report.data, status, True, _rows(len(report.rows)))
         return status
+    require_writable(options.rows)
     study = _study(options, parts)
     try:
         store = Store(Path(options.rows), measured_here(shlex.join(options.command)))
@@ -133,22 +134,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def _listing() -> str:
     """Ways, scenes and parts by name."""
-    of_study = needed("cost", "validate.cost.scenes")
-    registry = needed("cost", "validate.cost.ways.registry")
-    wide = max(len(way.name) for way in registry.WAYS)
-    return "\n".join(
-        (
-            "ways:",
-            *(f"  {way.name.ljust(wide)}  {way.words}{_needs(way)}" for way in registry.WAYS),
-            "scenes of the study; a scene of your own is measured by its file:",
-            *(f"  {name}" for name in of_study.STUDY_SCENES),
-            f"parts: {', '.join(PARTS)}",
-        )
-    )
-
-
-def _needs(way: Way) -> str:
-    return f" (needs the package {way.package})" if way.package else ""
+    scenes = needed("cost", "validate.cost.scenes").STUDY_SCENES
+    ways: tuple[Way, ...] = needed("cost", "validate.cost.ways.registry").WAYS
+    needs = {way.name: f" (needs the package {way.package})" if way.package else "" for way in ways}
+    wide = max(map(len, needs))
+    lines = ["ways:", *(f"  {way.name.ljust(wide)}  {way.words}{needs[way.name]}" for way in ways)]
+    lines += ["scenes of the study; a scene of your own is measured by its file:"]
+    return "\n".join([*lines, *(f"  {name}" for name in scenes), f"parts: {', '.join(PARTS)}"])
 
 
 def _check_options(options: argparse.Namespace) -> None:
@@ -175,17 +167,23 @@ def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
     if options.parts is None:
         about_scenes: tuple[Part, ...] = ("accuracy", "effects", "growth", "unrelated")
         return about_scenes if options.scenes and not options.from_rows else PARTS
-    asked = _listed(options.parts, "--parts", PARTS)
-    for name in asked:
-        if name not in PARTS:
-            raise UnknownName("part of the study", name, PARTS)
-    return tuple(part for part in PARTS if part in asked)
+    return tuple(
+        part for part in PARTS if part in _chosen(options.parts, "--parts", "part of the study", PARTS)
+    )
 
 
-def _listed(words: str, option: str, allowed: Sequence[str]) -> list[str]:
+def _chosen(words: str, option: str, what: str, allowed: Sequence[str]) -> list[str]:
+    """Names that an option lists.
+
+    Raises:
+        UsageError: it lists none. UnknownName: one is not allowed.
+    """
     names = [word.strip() for word in words.split(",") if word.strip()]
     if not names:
         raise UsageError(f"{option} {words!r} names nothing; there are: {', '.join(allowed)}")
+    for name in names:
+        if name not in allowed:
+            raise UnknownName(what, name, allowed)
     return names
 
 
@@ -196,7 +194,7 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     study = needed("cost", "validate.cost.study")
     ways = registry.WAYS
     if options.ways is not None:
-        ways = registry.ways_named(_listed(options.ways, "--ways", [way.name for way in ways]))
+        ways = registry.ways_named(_chosen(options.ways, "--ways", "way", [way.name for way in ways]))
     scenes = []
     for name in dict.fromkeys(options.scenes):
         with told_as(name_of(name)):
@@ -231,8 +229,6 @@ def _measured(
                 rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
                 raise
             ending.status = _told(report(rows), options, console)
-    except StoreError as error:
-        raise OutputError("rows", str(error)) from None
     finally:
         console.written.insert(0, f"{options.rows} holds {_rows(len(store.rows))}")
     return ending.status
@@ -241,34 +237,23 @@ def _measured(
 def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
     """The rows of a file, chosen as they would be measured."""
     try:
-        found = read_rows(Path(options.rows))
-        if not found:
-            raise StoreError(f"{options.rows}: holds no rows; measure them first")
+        report = Report.of_file(options.rows, shlex.join(options.command), options.quick)
     except StoreError as error:
         raise UsageError(f"--rows {error}") from None
-    quick = options.quick or all(row.quick for row in found)
-    rows = [row for row in latest(found, quick) if row.part in parts]
+    rows = [row for row in report.rows if row.part in parts]
     if options.scenes:
-        names = [name_of(name) for name in options.scenes]
+        names, there = [name_of(name) for name in options.scenes], _names(row.scene for row in rows)
+        # A part of a scene's effects is named after a comma.
+        about = {name: [one for one in there if f"{one}, ".startswith(f"{name}, ")] for name in names}
         for name in names:
-            if not any(_about(row, name) for row in rows):
-                raise UnknownName(
-                    f"scene of the rows in {options.rows}", name, _names(row.scene for row in rows)
-                )
-        rows = [row for row in rows if any(_about(row, name) for name in names)]
+            if not about[name]:
+                raise UnknownName(f"scene of the rows in {options.rows}", name, there)
+        rows = [row for row in rows if any(row.scene in about[name] for name in names)]
     if options.ways is not None:
         there = _names(row.way for row in rows if row.part != "loading")
-        asked = _listed(options.ways, "--ways", there)
-        for name in asked:
-            if name not in there:
-                raise UnknownName(f"way in the rows of {options.rows}", name, there)
+        asked = _chosen(options.ways, "--ways", f"way in the rows of {options.rows}", there)
         rows = [row for row in rows if row.way in asked or row.part == "loading"]
-    return Report(options.rows, shlex.join(options.command), quick, tuple(rows))
-
-
-def _about(row: Row, scene: str) -> bool:
-    """Whether a row is about a scene; a part of its effects is told after a comma."""
-    return row.scene == scene or row.scene.startswith(f"{scene}, ")
+    return replace(report, rows=tuple(rows))
 
 
 def _names(names: Iterable[str]) -> list[str]:

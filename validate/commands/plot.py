@@ -149,8 +149,8 @@ def _draw(
     console: Console,
 ) -> None:
     # Imported here: matplotlib takes a second.
-    from validate.cost.picture.look import drawn
     from validate.curves.picture import figure
+    from validate.output.figure import drawn
 
     count = options.instants or max(len(motion.times), SMOOTH)
     own = options.instants is None and count == len(motion.times)

@@ -13,7 +13,7 @@ from pointcoord import built_in_scenes
 from validate.commands.comparison import add_options, compare_scenes
 from validate.commands.reporting import Page
 from validate.cost.report import Report
-from validate.cost.store import StoreError, latest, read_rows
+from validate.cost.table import StoreError
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.html.hard_cases import HardCases, read_hard_cases
@@ -120,7 +120,7 @@ def _with_more(
     if options.cost is None:
         what = "more than a first look at accuracy against time" if whole else "accuracy against time"
         left_out.append(
-            (what, "pointcoord cost --rows cost.jsonl; then pointcoord report with --cost cost.jsonl")
+            (what, "pointcoord cost --rows cost.parquet; then pointcoord report with --cost cost.parquet")
         )
     if not whole:
         what = "the paper's figures, tables and errata, other programs' tables"
@@ -152,8 +152,8 @@ def _some_hard_cases(head: Head, console: Console) -> HardCases:
 def _first_look_at_cost(head: Head, console: Console) -> Report:
     # So does the study of cost.
     from validate.cost.scenes import own_scene, study_scene
-    from validate.cost.store import Store, measured_here
     from validate.cost.study import Study, measure
+    from validate.cost.table import Store, measured_here
     from validate.cost.ways.registry import ways_named
 
     command = shlex.join(head.command)
@@ -165,10 +165,6 @@ def _first_look_at_cost(head: Head, console: Console) -> Report:
 
 def _kept_cost(options: argparse.Namespace) -> Report:
     try:
-        rows = read_rows(Path(options.cost))
-        if not rows:
-            raise StoreError(f"{options.cost}: holds no rows; measure them first")
+        return Report.of_file(options.cost)
     except StoreError as error:
         raise UsageError(f"--cost {error}") from None
-    quick = all(row.quick for row in rows)
-    return Report(options.cost, rows[0].command, quick, tuple(latest(rows, quick)))

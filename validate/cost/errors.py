@@ -15,8 +15,9 @@ what anybody can be given: half a unit in the last place of an angle is no error
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -25,11 +26,12 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import DIGITS, reference_motion
-from validate.cost.race import Found, NoNumbers
+from validate.cost.race import Found, NoNumbers, absent
 from validate.cost.way import Answer
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import shape_of
+from validate.reference import NoReferenceError
 
 try:
     from mpmath import mp, mpf
@@ -59,9 +61,41 @@ class Truth:
     exact: Mapping[str, Mapping[str, Exact]]
     radius: Mapping[str, float]
 
-    def of(self, *quantities: str) -> Truth:
-        """The same of some quantities."""
-        return Truth({q: names for q, names in self.exact.items() if q in quantities}, self.radius)
+
+@dataclass(frozen=True)
+class Judge:
+    """Tells errors of answers at instants, (N,), s; the reference is solved once, for the first answer.
+
+    Attributes:
+        places: numbers of the instants that are looked at; all if None.
+    """
+
+    scene: Scene
+    instants: Array
+    places: Sequence[int] | None = None
+
+    @cached_property
+    def truth(self) -> Truth | NoReferenceError:
+        """The reference, or why there is none."""
+        try:
+            return truth_of(self.scene, self.instants if self.places is None else self.instants[self.places])
+        except NoReferenceError as error:
+            return error
+
+    def __call__(self, answer: Answer, positions: bool | None = None) -> Found:
+        """Errors, see `errors_of`; of positions alone, or of all else, where that is said.
+
+        Raises:
+            NoNumbers: it is no answer, or there is no reference.
+        """
+        if isinstance(self.truth, NoReferenceError):
+            raise NoNumbers(f"there is no reference to compare it with: {self.truth}")
+        if self.places is not None:
+            some = {q: {n: x[self.places] for n, x in of.items()} for q, of in answer.numbers.items()}
+            answer = Answer(some, answer.work)
+        exact = self.truth.exact
+        asked = {q: names for q, names in exact.items() if positions in (None, q == "position")}
+        return errors_of(answer, Truth(asked, self.truth.radius))
 
 
 def truth_of(scene: Scene, instants: Array) -> Truth:
@@ -93,34 +127,34 @@ def truth_of(scene: Scene, instants: Array) -> Truth:
 
 
 def errors_of(answer: Answer, truth: Truth) -> Found:
-    """Errors by quantity, and why there is none of the others that the scene asks for.
+    """Columns of a row for each quantity that the scene asks for; one that is not given is left out.
 
     A quantity that is given at all must be given whole.
 
     Raises:
         NoNumbers: a number is none, or it or its point is missing.
     """
-    found: dict[str, dict[str, float | int]] = {}
-    not_given: dict[str, str] = {}
+    found: Found = {}
+    work = ", ".join(f"{name} {count}" for name, count in answer.work.items())
     for quantity, names in truth.exact.items():
         given = answer.numbers.get(quantity) or {}
         if not any(name in given for name in names):
             if quantity == "position":
                 raise NoNumbers("gives no positions")
-            not_given[quantity] = f"gives no {QUANTITIES[quantity].words}"
+            found[quantity] = absent("left out", f"gives no {QUANTITIES[quantity].words}")
             continue
         parts = [_error(quantity, name, given, exact) for name, exact in names.items()]
         errors = np.abs(np.concatenate([part.ravel() for part in parts]))
-        largest = float(errors.max())
-        # In parts of the largest, so that no square is too large or too small for a double.
-        mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
-        found[quantity] = {
-            "error": largest,
-            "rms": largest * mean**0.5,
-            "radius": truth.radius[quantity],
-            "numbers": errors.size,
-        }
-    return Found(found, not_given, ", ".join(f"{name} {int(n)}" for name, n in answer.work.items()))
+        found[quantity] = {**summed_up(errors), "radius": truth.radius[quantity], "work": work}
+    return found
+
+
+def summed_up(errors: Array) -> dict[str, Any]:
+    """Columns of a row: the largest of some errors, and their root mean square."""
+    largest = float(errors.max())
+    # In parts of the largest, so that no square is too large or too small for a double.
+    mean = float(np.mean((errors / largest) ** 2)) if largest > 0.0 else 0.0
+    return {"error": largest, "rms": largest * mean**0.5, "numbers": errors.size}
 
 
 def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Exact) -> Array:

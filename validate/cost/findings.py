@@ -8,8 +8,6 @@ quartiles overlap are a tie. Nothing is averaged over quantities, scenes or ways
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import asdict, fields
 from itertools import product
 
 import numpy as np
@@ -17,22 +15,15 @@ import pandas as pd
 from scipy.stats import linregress
 
 from pointcoord.effects.registry import QUANTITIES
-from validate.cost.row import Row
 from validate.cost.ways.registry import OURS
 from validate.cost.words import duration, listed, power, span, times
 
+LINE = ["against", "scene", "way", "setting"]
+"""The columns that say what grows."""
 ACCURACIES = (1e-3, 1e-6, 1e-9)
 """In the unit of each quantity: mm of positions."""
 DECADES = 2.0  # below the largest size: an exponent is fitted where fixed costs have been left behind
 LISTED = 6  # ways that a sentence names
-
-
-def frame(rows: Iterable[Row]) -> pd.DataFrame:
-    """Rows as a data frame; of what is not there, nothing."""
-    columns = {field.name: str(field.type).removesuffix(" | None") for field in fields(Row)}
-    kinds = {"Count": "Int64", "Size": "float64", "bool": "bool"}
-    found = pd.DataFrame([asdict(row) for row in rows], columns=list(columns))
-    return found.astype({name: kinds.get(kind, "str") for name, kind in columns.items()})
 
 
 def unit_of(quantity: str) -> str:
@@ -57,15 +48,22 @@ def timed(table: pd.DataFrame, part: str) -> pd.DataFrame:
     return found[found.error.notna()] if part in ("accuracy", "unrelated") else found
 
 
+def heights(errors: pd.Series) -> tuple[pd.Series, str]:
+    """Errors on a logarithmic axis, where nothing at all has no place, and words that say so.
+
+    An error of exactly nothing is drawn a tenth below the least one.
+    """
+    least = errors[errors > 0.0].min()
+    drawn = errors.clip(lower=(1e-16 if math.isnan(least) else least) / 10.0)
+    return drawn, ", exactly 0 at the lower edge" if (errors == 0.0).any() else ""
+
+
 def cheapest(table: pd.DataFrame) -> pd.DataFrame:
     """By scene, quantity, way and accuracy the quickest setting that is accurate enough."""
     found = timed(table, "accuracy")
-    entries = []
-    for accuracy in ACCURACIES:
-        near = found[found.error + found.radius <= accuracy]
-        best = near.groupby(["scene", "quantity", "way"], sort=False).time.idxmin()
-        entries.append(near.loc[best].assign(accuracy=accuracy))
-    return pd.concat(entries)
+    near = pd.concat([found[found.error + found.radius <= a].assign(accuracy=a) for a in ACCURACIES])
+    near = near.sort_values("time", kind="stable")
+    return near.drop_duplicates(["scene", "quantity", "way", "accuracy"])
 
 
 def races(table: pd.DataFrame) -> pd.DataFrame:
@@ -76,64 +74,52 @@ def races(table: pd.DataFrame) -> pd.DataFrame:
         found.groupby(["scene", "quantity"], sort=False).groups, ACCURACIES
     ):
         here = best[(best.scene == scene) & (best.quantity == quantity) & (best.accuracy == accuracy)]
-        here = here.sort_values("time")
-        ours, others = here[here.way.isin(OURS)].head(1), here[~here.way.isin(OURS)].head(1)
-        one, other = (next(side.itertuples(), None) for side in (ours, others))
+        one, other = (
+            next(side.itertuples(), None) for side in (here[here.way.isin(OURS)], here[~here.way.isin(OURS)])
+        )
         if one is None or other is None:
             verdict = "only ours" if one else "only others" if other else "nobody"
         elif one.upper < other.lower or other.upper < one.lower:
             verdict = "ours" if one.time < other.time else "other"
         else:
             verdict = "tie"
-        lines.append(
-            {
-                "scene": scene,
-                "quantity": quantity,
-                "accuracy": accuracy,
-                "verdict": verdict,
-                "ours": one.way if one else None,
-                "other": other.way if other else None,
-                "ratio": other.time / one.time if one and other else None,
-                "reached": here[["way", "setting", "time"]].to_dict("records"),
-            }
-        )
-    return pd.DataFrame(
-        lines, columns=["scene", "quantity", "accuracy", "verdict", "ours", "other", "ratio", "reached"]
-    )
+        names = [None if side is None else side.way for side in (one, other)]
+        ratio = other.time / one.time if one and other else None
+        reached = here[["way", "setting", "time"]].to_dict("records")
+        lines.append((scene, quantity, accuracy, verdict, *names, ratio, reached))
+    columns = ["scene", "quantity", "accuracy", "verdict", "ours", "other", "ratio", "reached"]
+    return pd.DataFrame(lines, columns=columns)
+
+
+def grown(table: pd.DataFrame) -> pd.DataFrame:
+    """What every size takes: `of` time or memory, with its `value`, s a run or bytes; sizes increase.
+
+    Against instants without the set-up, which is the same for any number of them.
+    """
+    found = timed(table, "growth").sort_values("size", kind="stable")
+    found = found.drop_duplicates([*LINE, "size"], keep="last")
+    set_up = found.set_up.where(found.against != "instants", 0.0)
+    time = found.assign(of="time", value=found.time * found.poses.astype(float) + set_up)
+    both = pd.concat([time, found.assign(of="memory", value=found.peak_bytes.astype(float))])
+    return both[both.value > 0.0]
 
 
 def growths(table: pd.DataFrame) -> pd.DataFrame:
-    """How time (s a run) and memory (bytes) grow: value = factor x size^exponent, of the largest sizes.
+    """How time and memory grow: value = factor x size^exponent, of the largest sizes.
 
-    The exponent is the slope of the logarithms, with its standard error; None from fewer than three sizes.
+    The exponent is the slope of the logarithms, with its standard error; NaN from fewer than three sizes.
     """
-    found = timed(table, "growth").sort_values("size", kind="stable")
-    found = found.drop_duplicates(["against", "scene", "way", "setting", "size"], keep="last")
-    set_up = found.set_up.where(found.against != "instants", 0.0)
     lines = []
-    for of, values in (
-        ("time", found.time * found.poses.astype(float) + set_up),
-        ("memory", found.peak_bytes),
-    ):
-        some = found.assign(value=values.astype(float))
-        some = some[some.value > 0.0]
-        for key, line in some.groupby(["against", "scene", "way", "setting"], sort=False):
-            sizes, points = line["size"].to_numpy(float), line.value.to_numpy()
-            large = sizes >= sizes[-1] * 10.0**-DECADES * (1.0 - 1e-9)
-            large[-3:] = True
-            fit = linregress(np.log(sizes[large]), np.log(points[large])) if len(sizes) > 1 else None
-            lines.append(
-                {
-                    **dict(zip(("against", "scene", "way", "setting"), key, strict=True)),
-                    "of": of,
-                    "exponent": None if fit is None else float(fit.slope),
-                    "error": float(fit.stderr) if fit is not None and large.sum() > 2 else None,
-                    "largest": float(sizes[-1]),
-                    "value": float(points[-1]),
-                }
-            )
-    columns = ["against", "scene", "way", "setting", "of", "exponent", "error", "largest", "value"]
-    return pd.DataFrame(lines, columns=columns)
+    for key, line in grown(table).groupby([*LINE, "of"], sort=False):
+        sizes, values = line["size"].to_numpy(float), line.value.to_numpy(float)
+        large = sizes >= sizes[-1] * 10.0**-DECADES * (1.0 - 1e-9)
+        large[-3:] = True
+        slope = error = math.nan
+        if len(sizes) > 1:
+            fit = linregress(np.log(sizes[large]), np.log(values[large]))
+            slope, error = float(fit.slope), float(fit.stderr) if large.sum() > 2 else math.nan
+        lines.append((*key, slope, error, float(sizes[-1]), float(values[-1])))
+    return pd.DataFrame(lines, columns=[*LINE, "of", "exponent", "error", "largest", "value"])
 
 
 def dials(table: pd.DataFrame) -> pd.DataFrame:
@@ -160,26 +146,24 @@ def _quickest(table: pd.DataFrame) -> str:
     finest = best[(best.quantity == "position") & (best.accuracy == ACCURACIES[-1])]
     if finest.empty:
         return ""
-    order = finest.groupby("way", sort=False).time.median().sort_values().index
-    told = [f"{way} {span(finest[finest.way == way].time, duration)}" for way in order[:LISTED]]
-    made = finest[finest.way == "map"].set_up
-    if "map" in order[:LISTED]:
-        place = list(order).index("map")
-        told[place] += f" (once its map is made, which takes {span(made, duration)})"
+    order = list(finest.groupby("way", sort=False).time.median().sort_values().index)
+    told = {way: f"{way} {span(finest[finest.way == way].time, duration)}" for way in order[:LISTED]}
+    if "map" in told:
+        made = span(finest[finest.way == "map"].set_up, duration)
+        told["map"] += f" (once its map is made, which takes {made})"
     asked = timed(table, "accuracy")
-    missed = [way for way in dict.fromkeys(asked[asked.quantity == "position"].way) if way not in set(order)]
+    missed = [way for way in dict.fromkeys(asked[asked.quantity == "position"].way) if way not in order]
     rest = f"; {listed(missed)} do not reach it" if missed else ""
     goal = f"{power(ACCURACIES[-1])} mm of position"
-    return f"A pose to {goal} takes {listed(told)}, the quickest of {len(order)} ways{rest}."
+    return f"A pose to {goal} takes {listed([*told.values()])}, the quickest of {len(order)} ways{rest}."
 
 
 def _digits(table: pd.DataFrame) -> str:
     found = dials(table)
     if found.empty:
         return ""
-    ours = found[found.way.isin(OURS)]
+    ours, others = found[found.way.isin(OURS)], found[~found.way.isin(OURS)].times
     told = ", ".join(f"{way} {span(line.times, times)}" for way, line in ours.groupby("way", sort=False))
-    others = found[~found.way.isin(OURS)].times
     more = f"; other ways {span(others, times)}" if len(others) else ""
     digits = span(found.digits, lambda digits: f"{digits:.0f}")
     return (
@@ -194,7 +178,7 @@ def _races(table: pd.DataFrame) -> str:
         return ""
     counts = found.verdict.value_counts()
     lost = found[found.verdict.isin(["other", "only others"])]
-    winners = f" ({listed(list(lost.other.value_counts().index[:LISTED]))})" if len(lost) else ""
+    winners = f" ({listed([*lost.other.value_counts().index[:LISTED]])})" if len(lost) else ""
     nobody = f", and nobody reaches {counts['nobody']}" if "nobody" in counts else ""
     slower = int(without.verdict.isin(["other", "only others"]).sum())
     unmade = f"; without the map, whose making is not counted, others win {slower}"

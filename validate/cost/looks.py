@@ -22,6 +22,12 @@ MARKERS = (
 )
 
 
+KEY = (
+    "A line is a way, a mark one of its settings; down is more accurate, left is quicker. Filled and with a "
+    "star: one solve serves any instant; hollow: every instant is solved."
+)
+
+
 @dataclass(frozen=True)
 class Look:
     """How a way is drawn.

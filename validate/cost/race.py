@@ -20,7 +20,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,8 @@ from threadpoolctl import threadpool_limits
 
 from pointcoord import PointcoordError
 from pointcoord.errors import visible
-from validate.cost.row import Row, Verdict
+from validate.cost.table import Row, Verdict
+from validate.cost.way import LeftOut
 
 Clock = Callable[[], int]
 """Nanoseconds since some instant."""
@@ -36,10 +37,6 @@ Progress = Callable[[str, int, int], None]
 """Is called before anything is measured: what, how much is done, of how much."""
 SEED = 20221122
 MOST_LOOPS = 10_000
-
-
-class LeftOut(Exception):
-    """A way does not apply to a scene, as the paper's formulas not to a double wishbone; says why."""
 
 
 class NoNumbers(Exception):
@@ -64,13 +61,8 @@ class Effort:
 FULL, QUICK = Effort(), Effort(repeats=5, least=0.002, most=4.0)
 
 
-@dataclass(frozen=True)
-class Found:
-    """Columns of a row by quantity, what is not given and why, and what the run did."""
-
-    quantities: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    not_given: Mapping[str, str] = field(default_factory=dict)
-    work: str = ""
+Found = dict[str, Mapping[str, Any]]
+"""Columns of a row for each quantity."""
 
 
 @dataclass(frozen=True)
@@ -99,110 +91,104 @@ def race(
     clock: Clock = time.perf_counter_ns,
 ) -> list[Row]:
     """Run all of them against each other, and give their rows in their order."""
-    rows: dict[int, list[Row]] = {}
-    loops: dict[int, int] = {}
-    samples: dict[int, list[tuple[float, float]]] = {}
-    steps = len(runners) * (effort.repeats + 1)
-    with threadpool_limits(limits=1), warnings.catch_warnings():
-        # What overflows is seen in the numbers.
-        warnings.simplefilter("ignore")
-        for i, runner in enumerate(runners):
-            progress(_words(runner.row), i, steps)
-            try:
-                with no_garbage_collector():
-                    *first, answer = _run(runner, clock)
-                found = runner.found(answer)
-                del answer
-                rows[i] = [replace(row, first=sum(first)) for row in _rows(runner.row, found)]
-                samples[i] = [(first[0], first[1])]
-                if 2.0 * sum(first) <= effort.most:
-                    samples[i] = []
-                    seconds = max(sum(_sample(runner, 1, clock)), 1e-9)
-                    loops[i] = min(max(math.ceil(effort.least / seconds), 1), MOST_LOOPS)
-            except Exception as error:
-                rows[i] = [_without_numbers(runner.row, error)]
+    racers = [_Racer(runner, effort, clock) for runner in runners]
+    steps = len(racers) * (effort.repeats + 1)
+    with _undisturbed():
+        for i, racer in enumerate(racers):
+            progress(racer.words, i, steps)
+            racer.attempt(racer.first)
         for number in range(effort.repeats):
             gc.collect()
-            for i in order_of_round(list(loops), number):
-                progress(f"{_words(runners[i].row)}, repeat {number + 1}", len(runners) * (number + 1), steps)
-                took = loops[i] * sum(map(sum, samples[i]))
-                if samples[i] and took * (1.0 + 1.0 / len(samples[i])) > effort.most:
-                    continue
-                try:
-                    samples[i].append(_sample(runners[i], loops[i], clock))
-                except Exception as error:
-                    rows[i] = [_without_numbers(runners[i].row, error)]
-                    del loops[i]
-    return [row for i in rows for row in (_timed(rows[i], samples[i]) if samples.get(i) else rows[i])]
-
-
-def order_of_round(names: Sequence[int], number: int) -> list[int]:
-    """A shuffle that the seed, the number of the round and how many there are decide."""
-    order = list(names)
-    random.Random(f"{SEED} {number}").shuffle(order)
-    return order
+            order = [racer for racer in racers if racer.loops]
+            random.Random(f"{SEED} {number}").shuffle(order)
+            for racer in order:
+                progress(f"{racer.words}, repeat {number + 1}", len(racers) * (number + 1), steps)
+                racer.attempt(racer.repeat)
+    return [row for racer in racers for row in racer.timed()]
 
 
 @contextmanager
-def no_garbage_collector() -> Iterator[None]:
-    """Nothing is collected while this lasts."""
+def _undisturbed() -> Iterator[None]:
+    """One thread, no warnings, as what overflows is seen in the numbers, and no garbage collector."""
     was_on = gc.isenabled()
     gc.disable()
     try:
-        yield
+        with threadpool_limits(limits=1), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
     finally:
         if was_on:
             gc.enable()
 
 
-def _run(runner: Runner, clock: Clock) -> tuple[float, float, Any]:
-    """Seconds of the set-up and of the rest, and the answer."""
-    begun = clock()
-    run = runner.set_up()
-    ready = clock()
-    answer = run()
-    return 1e-9 * (ready - begun), 1e-9 * (clock() - ready), answer
+class _Racer:
+    """A runner in a race.
+
+    Attributes:
+        rows: with errors, or the one that says why there are none. loops: runs of a sample; none where there
+            is no time for a second run. samples: seconds of the set-up and of the rest.
+    """
+
+    def __init__(self, runner: Runner, effort: Effort, clock: Clock) -> None:
+        row = runner.row
+        self.runner, self.effort, self.clock = runner, effort, clock
+        self.words = " ".join(filter(None, (f"{row.scene}:" if row.scene else "", row.way, row.setting)))
+        self.rows: list[Row] = []
+        self.loops = 0
+        self.samples: list[tuple[float, float]] = []
+
+    def attempt(self, step: Callable[[], None]) -> None:
+        """Go a step; one that breaks down leaves the reason: failed, or that it does not apply."""
+        try:
+            step()
+        except Exception as error:
+            known = isinstance(error, PointcoordError | NoNumbers | LeftOut | ImportError)
+            verdict: Verdict = "left out" if isinstance(error, LeftOut | ImportError) else "failed"
+            why = absent(verdict, str(error) if known else f"{type(error).__name__}: {error}")
+            self.rows, self.loops = [replace(self.runner.row, **why)], 0
+
+    def first(self) -> None:
+        """The first run, whose answer is looked at, and the second."""
+        *first, answer = self._run()
+        found = self.runner.found(answer)
+        del answer
+        gc.collect()
+        row = replace(self.runner.row, first=sum(first))
+        self.rows = [replace(row, quantity=quantity, **columns) for quantity, columns in found.items()]
+        self.samples = [(first[0], first[1])]
+        if 2.0 * sum(first) <= self.effort.most:
+            seconds = max(sum(self._run()[:2]), 1e-9)
+            self.samples = []
+            self.loops = min(max(math.ceil(self.effort.least / seconds), 1), MOST_LOOPS)
+
+    def repeat(self) -> None:
+        """A sample, if there is time for it: the mean of some runs."""
+        took = self.loops * sum(map(sum, self.samples))
+        if not self.samples or took * (1.0 + 1.0 / len(self.samples)) <= self.effort.most:
+            times = [self._run()[:2] for _ in range(self.loops)]
+            set_up, rest = (sum(each) / self.loops for each in zip(*times, strict=True))
+            self.samples.append((set_up, rest))
+
+    def _run(self) -> tuple[float, float, Any]:
+        """Seconds of the set-up and of the rest, and the answer."""
+        begun = self.clock()
+        run = self.runner.set_up()
+        ready = self.clock()
+        answer = run()
+        return 1e-9 * (ready - begun), 1e-9 * (self.clock() - ready), answer
+
+    def timed(self) -> list[Row]:
+        """The rows; median and quartiles of the samples are in every one that has numbers."""
+        if not self.samples:
+            return self.rows
+        set_up, rest = np.transpose(self.samples)
+        poses = max(self.runner.row.poses, 1)
+        lower, median, upper = (float(q) / poses for q in np.quantile(rest, (0.25, 0.5, 0.75)))
+        columns: dict[str, Any] = {"time": median, "lower": lower, "upper": upper, "repeats": len(rest)}
+        columns["set_up"] = float(np.median(set_up))
+        return [replace(row, **columns) if row.verdict == "measured" else row for row in self.rows]
 
 
-def _sample(runner: Runner, loops: int, clock: Clock) -> tuple[float, float]:
-    """The same, means of some runs."""
-    with no_garbage_collector():
-        times = [_run(runner, clock)[:2] for _ in range(loops)]
-    set_up, rest = (sum(each) / loops for each in zip(*times, strict=True))
-    return set_up, rest
-
-
-def _rows(row: Row, found: Found) -> list[Row]:
-    return [
-        *(replace(row, quantity=q, work=found.work, **columns) for q, columns in found.quantities.items()),
-        *(
-            replace(row, quantity=quantity, poses=0, verdict="left out", reason=reason)
-            for quantity, reason in found.not_given.items()
-        ),
-    ]
-
-
-def _timed(rows: Sequence[Row], samples: Sequence[tuple[float, float]]) -> list[Row]:
-    """Median and quartiles of the samples, in every row that has numbers."""
-    poses = max(rows[0].poses, 1)
-    lower, median, upper = (float(q) / poses for q in np.quantile([s[1] for s in samples], (0.25, 0.5, 0.75)))
-    set_up, count = float(np.median([s[0] for s in samples])), len(samples)
-    return [
-        replace(row, time=median, lower=lower, upper=upper, repeats=count, set_up=set_up)
-        if row.verdict == "measured"
-        else row
-        for row in rows
-    ]
-
-
-def _without_numbers(row: Row, error: Exception) -> Row:
-    """The row of a run that gave no numbers: left out where it does not apply, and else failed."""
-    said = str(error)
-    if not isinstance(error, PointcoordError | NoNumbers | LeftOut | ImportError):
-        said = f"{type(error).__name__}: {said}"
-    verdict: Verdict = "left out" if isinstance(error, LeftOut | ImportError) else "failed"
-    return replace(row, poses=0, verdict=verdict, reason=visible(" ".join(said.split())))
-
-
-def _words(row: Row) -> str:
-    return " ".join(word for word in (f"{row.scene}:" if row.scene else "", row.way, row.setting) if word)
+def absent(verdict: Verdict, reason: str) -> dict[str, Any]:
+    """Columns of a row that has no numbers."""
+    return {"poses": 0, "verdict": verdict, "reason": visible(" ".join(reason.split()))}

@@ -1,4 +1,4 @@
-"""The report of a study from its table: sentences and short tables, a page, data, and a folder with pictures.
+"""The report of a study from its table: sentences and tables, a page, data, and a folder with pictures.
 
 The same rows give the same bytes: nothing in it depends on when or where it is made.
 """
@@ -9,17 +9,17 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
-from validate.cost.row import Row
-from validate.cost.words import literal, wrapped
+from validate.cost.table import WHERE, Row, StoreError, frame, latest, read_rows
 from validate.output.document import json_text
-from validate.output.table import Part, text_of
+from validate.output.table import Part, Table, markdown, text_of
 
+# Imported where they are needed: pandas takes half a second, and most pages show no costs.
 if TYPE_CHECKING:
     import pandas as pd
-
-    from validate.cost.tables import Table
 
 TITLE = "What accuracy costs in time"
 NOTHING = "nothing was measured, so that there is nothing to say"
@@ -31,6 +31,8 @@ TIMES = (
     "medians of interleaved repeats, by one thread, the garbage collector off; from instants to arrays, "
     "positions alone where positions are judged; the set-up apart"
 )
+WIDTH = 110  # columns of a terminal
+MEASURED_BY = ("command", *WHERE)
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,22 @@ class Report:
     quick: bool
     rows: tuple[Row, ...]
 
+    @classmethod
+    def of_file(cls, store: str, command: str = "", quick: bool = False) -> Report:
+        """That of a file: of its rows that are not quick, unless quick ones are asked for or all there are.
+
+        Raises:
+            StoreError: it cannot be read, or holds none.
+        """
+        found = read_rows(Path(store))
+        if not found:
+            raise StoreError(f"{store}: holds no rows; measure them first")
+        quick = quick or all(row.quick for row in found)
+        return cls(store, command or found[0].command, quick, tuple(latest(found, quick)))
+
     @cached_property
     def table(self) -> pd.DataFrame:
         """The rows as a data frame."""
-        # Imported here and below: pandas takes half a second, and most pages tell of no cost.
-        from validate.cost.findings import frame
-
         return frame(self.rows)
 
     @cached_property
@@ -62,39 +74,47 @@ class Report:
 
         return sentences(self.table)
 
-    @cached_property
-    def tables(self) -> list[Table]:
-        """The same with its numbers."""
+    def tables(self, *quantities: str) -> list[Table]:
+        """The same with its numbers; of errors those of some quantities, or of all."""
         from validate.cost.tables import tables_of
 
-        return tables_of(self.table)
+        return tables_of(self.table, quantities)
 
     @property
     def measured(self) -> int:
         """How many rows hold numbers."""
         return sum(row.verdict == "measured" for row in self.rows)
 
+    def measured_by(self) -> dict[str, str] | None:
+        """Command, program and machine of the first row."""
+        return {what: getattr(self.rows[0], what) for what in MEASURED_BY} if self.rows else None
+
     def head(self) -> list[tuple[str, str]]:
         """Machine, versions and commands."""
+        from validate.cost.tables import KEY
+
         counts = {v: sum(row.verdict == v for row in self.rows) for v in ("failed", "left out")}
         rest = "".join(f", {count} {verdict}" for verdict, count in counts.items() if count)
-        first = self.rows[0] if self.rows else None
         return [
             ("command", self.command),
             ("rows", f"{self.store}: {self.measured} measured{rest}"),
-            *((what, getattr(first, what)) for what in _WHERE if first and getattr(first, what)),
+            *((what, value) for what, value in (self.measured_by() or {}).items() if value),
             ("errors", REFERENCE),
             ("times", TIMES),
+            ("tables", KEY),
             *((("quick", "fewer settings, instants and repeats: a first look"),) if self.quick else ()),
         ]
 
     def parts(self) -> tuple[Part, ...]:
-        """For a terminal: sentences, short tables, and by what it was measured."""
+        """For a terminal: sentences, tables, of errors those of positions, and by what it was measured."""
+        from validate.cost.tables import KEY
+
         said = self.sentences or ([] if self.measured else [NOTHING])
-        tables = [part for table in self.tables if table.brief for part in ("", *table.parts())]
+        shown = [part for table in self.tables("position") for part in ("", _wrapped(table.caption), table)]
         where = [f"{row.program}, {row.machine}" for row in self.rows[:1]]
-        last = [wrapped(f"{self.store}: {self.measured} rows measured by {words}") for words in where]
-        return ("\n".join(map(wrapped, (TITLE, *said))), *tables, "", *last)
+        last = [_wrapped(f"{self.store}: {self.measured} rows measured by {words}") for words in where]
+        key = [KEY] if any(row.part == "accuracy" and row.time is not None for row in self.rows) else []
+        return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", *key, *last)
 
     def text(self) -> str:
         """The same in lines."""
@@ -102,13 +122,12 @@ class Report:
 
     def markdown(self, pictures: Sequence[str] = ()) -> str:
         """For a page: sentences, pictures by the names of their files, and all tables."""
-        said = self.sentences or [NOTHING]
         blocks = [
             f"# {TITLE}",
-            "\n".join(f"- {literal(sentence)}" for sentence in said),
+            "\n".join(f"- {markdown(sentence)}" for sentence in self.sentences or [NOTHING]),
             *(f"![{name.removesuffix('.svg')}]({name})" for name in pictures),
-            *(table.markdown() for table in self.tables),
-            "\n".join(f"- {name}: {literal(value)}" for name, value in self.head()),
+            *(f"**{markdown(table.caption)}**\n\n{table.markdown}" for table in self.tables()),
+            "\n".join(f"- {name}: {markdown(value)}" for name, value in self.head()),
         ]
         return "\n\n".join(blocks) + "\n"
 
@@ -120,11 +139,10 @@ class Report:
         """As plain data: see the schema of the documents, kind `cost`."""
         from validate.cost.findings import growths, races
 
-        first = self.rows[0] if self.rows else None
         return {
             "quick": self.quick,
             "store": self.store,
-            "measured_by": None if first is None else {what: getattr(first, what) for what in _WHERE},
+            "measured_by": self.measured_by(),
             "sentences": self.sentences,
             "races": _records(races(self.table)),
             "growths": _records(growths(self.table)),
@@ -137,8 +155,8 @@ class Report:
         Raises:
             ImportError: matplotlib is not there.
         """
-        from validate.cost.picture.figures import headline
-        from validate.cost.picture.look import drawn
+        from validate.cost.picture import headline
+        from validate.output.figure import drawn
 
         figure = headline(self.table)
         return None if figure is None else drawn(figure, "svg")
@@ -149,21 +167,20 @@ class Report:
         Raises:
             ImportError: matplotlib is not there.
         """
-        from validate.cost.picture.figures import figures
-        from validate.cost.picture.look import drawn
+        from validate.cost.picture import figures
+        from validate.output.figure import drawn
 
-        found: dict[str, Any] = {}
+        names: list[str] = []
         for name, figure in figures(self.table):
-            found[_free(_slug(name), found)] = figure
-        for name, figure in found.items():
+            plain = re.sub(r"[^A-Za-z0-9]+", "-", name.removesuffix(".toml")).strip("-")
+            # Two scenes may have names that differ by signs alone.
+            same = sum(re.fullmatch(rf"{plain}(-\d+)?", other) is not None for other in names)
+            names.append(f"{plain}-{same + 1}" if plain in names else plain)
             for ending in ("svg", "png"):
-                yield f"{name}.{ending}", drawn(figure, ending)
-        yield "report.md", self.markdown([f"{name}.svg" for name in found]).encode()
+                yield f"{names[-1]}.{ending}", drawn(figure, ending)
+        yield "report.md", self.markdown([f"{name}.svg" for name in names]).encode()
         yield "table.csv", self.csv().encode()
         yield "rows.json", json_text(self.data()).encode()
-
-
-_WHERE = ("command", "program", "machine", "python", "packages")
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
@@ -171,14 +188,6 @@ def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
     return list(table.astype(object).where(table.notna(), None).to_dict("records"))
 
 
-def _slug(name: str) -> str:
-    """A name with a scene's as the name of a file."""
-    return re.sub(r"[^A-Za-z0-9]+", "-", name.removesuffix(".toml")).strip("-")
-
-
-def _free(name: str, taken: Any) -> str:
-    """The name, with a number if there is one like it."""
-    number, free = 2, name
-    while free in taken:
-        free, number = f"{name}-{number}", number + 1
-    return free
+def _wrapped(text: str) -> str:
+    """A paragraph for a terminal; lines after the first stand further in."""
+    return fill(text, WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)

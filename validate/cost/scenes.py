@@ -1,15 +1,32 @@
-"""The scenes of the study: those that it takes by itself, and how a user's own are taken."""
+r"""The scenes of the study, and the instants at which every way solves and errors are measured.
+
+The instants must be special to no way: not the ends of a chain's segments, where Newton's method has just
+been, nor an even grid, on which differences and sums of periodic motions cancel. So the time of a scene is
+cut into N equal parts, and instant i lies in its part i at the golden ratio's offset,
+
+    t_i = start + (i + frac((i + 1) / phi)) (stop - start) / N,        i = 0 .. N - 1,
+
+whose multiples keep from any fraction of small denominator as well as multiples of a number can (Hurwitz).
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import resources
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.toml_text import parsed
-from validate.cost.store import scene_digest
+
+Array = NDArray[np.float64]
 
 NEAR_TOGGLE = "near-toggle"
 STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
@@ -17,19 +34,22 @@ STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double
 QUICK_SCENE = "bounce-and-steer"
 """That of a quick study, and that whose car is solved at unrelated inputs: both inputs move."""
 RATES = ("velocity", "acceleration", "knuckle_rates")
+GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
+MOST, MOST_QUICK = 200, 24  # the reference takes some 5 ms for each, and more tell no more about an error
 
 
 @dataclass(frozen=True)
 class StudyScene:
-    """A scene as it is measured.
-
-    Attributes:
-        name: in rows. digest: of its content.
-    """
+    """A scene as it is measured, under its name in rows."""
 
     name: str
     scene: Scene
-    digest: str
+
+    @cached_property
+    def digest(self) -> str:
+        """Of what the scene says, whatever its title."""
+        content = self.scene.model_dump(mode="json", exclude={"title"})
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
     def positions_only(self) -> Scene:
         """The scene without any effect."""
@@ -45,7 +65,7 @@ def study_scene(name: str, scene: Scene) -> StudyScene:
     if plan_effects(scene.effects).derivative > 0:
         asked = {*scene.effects, *RATES}
         scene = scene.model_copy(update={"effects": tuple(effect for effect in EFFECTS if effect in asked)})
-    return StudyScene(name, scene, scene_digest(scene))
+    return StudyScene(name, scene)
 
 
 def own_scene(name: str) -> Scene:
@@ -58,3 +78,17 @@ def own_scene(name: str) -> Scene:
         text = resources.files("validate.cost").joinpath("scenes", f"{NEAR_TOGGLE}.toml").read_bytes()
         return Scene.from_mapping(parsed(text, name), name)
     return Scene.load(name)
+
+
+def study_instants(scene: Scene, count: int | None = None, *, quick: bool = False) -> Array:
+    """Instants inside a scene's time, increasing, shape (N,), s.
+
+    Args:
+        count: N; as many as the scene has samples, but at most 200, or 24 of a quick study, if None.
+    """
+    if scene.time.start == scene.time.stop:
+        return np.array([scene.time.start])
+    count = count or min(scene.time.samples, MOST_QUICK if quick else MOST)
+    places = np.arange(count) + np.modf(np.arange(1, count + 1) / GOLDEN)[0]
+    instants = scene.time.start + places * ((scene.time.stop - scene.time.start) / count)
+    return np.asarray(np.clip(instants, scene.time.start, scene.time.stop))

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from validate.cost.growth import lines
-from validate.cost.parts import accuracy, effects, loading, unrelated
+from validate.cost.parts import accuracy, effects, growth, loading, unrelated
 from validate.cost.race import FULL, QUICK, Progress, Runner, race, silent
-from validate.cost.row import Part, Row
 from validate.cost.scenes import QUICK_SCENE, StudyScene
-from validate.cost.store import Store
+from validate.cost.table import Part, Row, Store
 from validate.cost.way import Way
 
 
@@ -42,9 +40,9 @@ class Study:
                 elif part == "unrelated" and (self.own or scene.name == QUICK_SCENE):
                     yield unrelated.runners_of(scene, self.ways, self.quick)
 
-    def lines(self) -> Sequence[lines.Line]:
+    def lines(self) -> Sequence[growth.Line]:
         """What is measured as it grows."""
-        return lines.lines_of(self.scenes[0], self.ways, self.quick) if "growth" in self.parts else ()
+        return growth.lines_of(self.scenes[0], self.ways, self.quick) if "growth" in self.parts else ()
 
 
 def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row]:
@@ -54,7 +52,7 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
     with the race that it was in.
 
     Raises:
-        StoreError: the store cannot be written.
+        OutputError: the store cannot be written.
     """
     wanted: set[tuple[object, ...]] = set()
     for runners in study.races():
@@ -62,7 +60,7 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
         missing = [runner for runner in runners if not store.has(runner.row)]
         if missing:
             store.write(race(missing, QUICK if study.quick else FULL, progress))
-    limits = (lines.QUICK if study.quick else lines.FULL).limits
+    limits = growth.LIMITS_QUICK if study.quick else growth.LIMITS
     growing = study.lines()
     for i, line in enumerate(growing):
         progress(f"growth in {line.row.against}: {line.row.scene}, {line.row.way}", i, len(growing))

@@ -3,91 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
-from validate.cost.findings import (
-    ACCURACIES,
-    cheapest,
-    growths,
-    quantities_of,
-    timed,
-    unit_of,
-    words_of,
-)
+from validate.cost.findings import ACCURACIES, cheapest, growths, quantities_of, timed, unit_of, words_of
 from validate.cost.parts.effects import NO_EFFECT
-from validate.cost.words import bytes_words, duration, literal, power, times, wrapped
-from validate.output.table import Part
-from validate.output.table import Table as Columns
+from validate.cost.words import BYTES, SECONDS, duration, in_units, power, times
+from validate.output.table import Table
+
+KEY = "*: one solve serves any instant; in brackets: the setting"
 
 
-@dataclass(frozen=True)
-class Table:
-    """A table with what must be known to read it below.
+def tables_of(table: pd.DataFrame, quantities: tuple[str, ...] = ()) -> list[Table]:
+    """All of them.
 
-    Attributes:
-        brief: whether a terminal shows it.
+    Args:
+        quantities: whose times to an accuracy are shown; all if none is given.
     """
-
-    title: str
-    head: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    notes: tuple[str, ...] = ()
-    brief: bool = True
-
-    def parts(self) -> tuple[Part, ...]:
-        """For a terminal."""
-        return (wrapped(self.title), Columns(self.head, self.rows), *map(wrapped, self.notes))
-
-    def markdown(self) -> str:
-        """For a page."""
-        lines = [self.head, tuple("---" for _ in self.head), *self.rows]
-        body = "\n".join("| " + " | ".join(c.replace("|", "\\|") for c in line) + " |" for line in lines)
-        return "\n\n".join(
-            (f"**{literal(self.title)}**", body, *(f"- {literal(note)}" for note in self.notes))
-        )
+    found = [*_reached(table, quantities), *_effects(table), *_growths(table), *_loading(table)]
+    return [*found, *_unrelated(table), *_without_numbers(table)]
 
 
-def tables_of(table: pd.DataFrame) -> list[Table]:
-    """All of them; of each scene what a pose takes to an accuracy, quantity by quantity."""
-    found = [*_reached(table), *_effects(table), *_growths(table), *_loading(table), *_unrelated(table)]
-    return [*found, *_without_numbers(table)]
+def _table(caption: str, head: tuple[str, ...], rows: Any) -> Table:
+    return Table(head, tuple(map(tuple, rows)), caption=caption)
 
 
-def _reached(table: pd.DataFrame) -> Iterator[Table]:
+def _named(one: Any) -> str:
+    return f"{one.way} {one.setting}".strip()
+
+
+def _reached(table: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[Table]:
     """Time of a pose by the cheapest setting that reaches an accuracy, the quickest first."""
-    best, found = cheapest(table), timed(table, "accuracy")
-    for scene, here in found.groupby("scene", sort=False):
+    best = cheapest(table)
+    for scene, here in timed(table, "accuracy").groupby("scene", sort=False):
         for quantity in quantities_of(here):
+            if quantities and quantity not in quantities:
+                continue
             these = here[here.quantity == quantity]
             near = best[(best.scene == scene) & (best.quantity == quantity)]
             lines = []
             for way, line in these.groupby("way", sort=False):
                 mine = {one.accuracy: one for one in near[near.way == way].itertuples()}
-                cells = [_reach(mine.get(accuracy)) for accuracy in ACCURACIES]
                 order = [mine[a].time if a in mine else float("inf") for a in reversed(ACCURACIES)]
-                star = "*" if line.dense.any() else ""
-                lines.append(
-                    (order, (f"{way}{star}", *cells, f"{line.error.min():.1e}", duration(line.set_up.min())))
-                )
+                ends = (f"{line.error.min():.1e}", duration(line.set_up.min()))
+                name = f"{way}*" if line.dense.any() else way
+                lines.append((order, (name, *(_reach(mine.get(a)) for a in ACCURACIES), *ends)))
             unit = unit_of(quantity)
-            yield Table(
-                f"{scene}: time of a pose to an accuracy of {words_of(quantity)}, by the cheapest setting",
+            yield _table(
+                f"{scene}: time of a pose to an accuracy of {words_of(quantity)}, by the cheapest setting; "
+                f"{these.poses.max()} poses a run, reference to {these.radius.max():.0e} {unit}",
                 ("way", *(f"{power(a)} {unit}" for a in ACCURACIES), f"floor, {unit}", "set-up"),
-                tuple(cells for _, cells in sorted(lines, key=lambda line: line[0])),
-                (
-                    "*: one solve serves any instant; in brackets: the number that is dialled; "
-                    f"{these.poses.max()} poses a run; the reference's own proven error: "
-                    f"{these.radius.max():.0e} {unit}",
-                ),
-                brief=quantity == "position",
+                (cells for _, cells in sorted(lines, key=lambda line: line[0])),
             )
 
 
 def _reach(one: Any) -> str:
-    """The time of a row of the table, with the number that was dialled; None where no row is there."""
+    """The time of a row, with its setting; None where no row is there."""
     if one is None:
         return "not reached"
     return duration(one.time) + ("" if pd.isna(one.value) else f" ({power(one.value)})")
@@ -96,21 +68,19 @@ def _reach(one: Any) -> str:
 def _effects(table: pd.DataFrame) -> Iterator[Table]:
     """What reading a scene takes with each effect, beside a copy and beside positions alone."""
     for scene, here in timed(table, "effects").groupby("scene", sort=False):
-        wide = here.pivot_table(index="setting", columns="quantity", values="time", sort=False)
-        alone = wide["read"].get(NO_EFFECT, float("nan"))
-        numbers = here.groupby("setting").numbers.max()
-        yield Table(
+        wide = here.pivot_table(index=["setting", "numbers"], columns="quantity", values="time", sort=False)
+        alone = wide["read"].get(NO_EFFECT, pd.Series(float("nan"))).max()
+        yield _table(
             f"Reading {scene} at {here.poses.max()} instants, by effects",
             ("asked for", "numbers", "an instant", "of a copy", "of positions"),
-            tuple(
+            (
                 (
-                    str(name),
-                    str(numbers[name]),
+                    name,
+                    str(numbers),
                     duration(one["read"]),
-                    times(one["read"] / one["copy"]),
-                    times(one["read"] / alone),
+                    *map(times, (one["read"] / one["copy"], one["read"] / alone)),
                 )
-                for name, one in wide.iterrows()
+                for (name, numbers), one in wide.iterrows()
             ),
         )
 
@@ -120,69 +90,54 @@ def _growths(table: pd.DataFrame) -> Iterator[Table]:
     for (against, scene), here in growths(table).groupby(["against", "scene"], sort=False):
         lines = []
         for one in here.itertuples():
-            measure = duration if one.of == "time" else bytes_words
+            units = SECONDS if one.of == "time" else BYTES
             fit = "-" if pd.isna(one.exponent) else f"{one.exponent:.2f}"
             fit += "" if pd.isna(one.error) else f" +- {one.error:.2f}"
-            name = f"{one.way} {one.setting}".strip()
-            lines.append(
-                (name, one.of, fit, f"{one.largest:g}", measure(one.value), measure(one.value / one.largest))
-            )
-        yield Table(
+            each = in_units(one.value / one.largest, units)
+            lines.append((_named(one), one.of, fit, f"{one.largest:g}", in_units(one.value, units), each))
+        yield _table(
             f"Growth in {against} of {scene}: value = factor x size^exponent, of the largest sizes",
             ("way and setting", "of", "exponent", "largest", "takes", "each"),
-            tuple(lines),
+            lines,
         )
 
 
 def _loading(table: pd.DataFrame) -> Iterator[Table]:
     here = timed(table, "loading")
     if not here.empty:
-        lines = [
-            (one.way, duration(one.time), f"{duration(one.lower)} to {duration(one.upper)}")
-            for one in here.itertuples()
-        ]
-        yield Table("Loading, the start of Python included", ("what", "median", "quartiles"), tuple(lines))
+        yield _table(
+            "Loading, the start of Python included",
+            ("what", "median", "quartiles"),
+            (
+                (one.way, duration(one.time), f"{duration(one.lower)} to {duration(one.upper)}")
+                for one in here.itertuples()
+            ),
+        )
 
 
 def _unrelated(table: pd.DataFrame) -> Iterator[Table]:
     """What a pose takes at inputs that have nothing to do with each other, quickest first."""
     for scene, here in timed(table, "unrelated").groupby("scene", sort=False):
-        lines = [
-            (
-                f"{one.way} {one.setting}".strip(),
-                f"{one.poses:,}",
-                duration(one.time),
-                f"{one.error:.1e}",
-                duration(one.set_up),
-            )
-            for one in here.sort_values("time").itertuples()
-        ]
-        yield Table(
-            f"A pose of {scene} at inputs that have nothing to do with each other",
+        yield _table(
+            f"A pose of {scene} at inputs that have nothing to do with each other; errors of the first poses",
             ("way", "poses", "a pose", "error, mm", "set-up"),
-            tuple(lines),
-            ("errors are those of the first poses, against the reference",),
+            (
+                (_named(one), f"{one.poses:,}", duration(one.time), f"{one.error:.1e}", duration(one.set_up))
+                for one in here.sort_values("time").itertuples()
+            ),
         )
 
 
 def _without_numbers(table: pd.DataFrame) -> Iterator[Table]:
     """What failed or was left out: each reason with its runs."""
     here = table[table.verdict != "measured"]
-    if here.empty:
-        return
+    by = ["scene", "way", "verdict", "reason"]
     lines = []
-    for (scene, way, verdict, reason), some in here.groupby(
-        ["scene", "way", "verdict", "reason"], sort=False
-    ):
-        what = dict.fromkeys([*some.setting, *map(words_of, some.quantity)])
-        sizes = [
-            f"{size:g} {against}" for size, against in zip(some["size"], some.against, strict=True) if against
-        ]
-        lines.append(
-            (
-                f"{scene} {way}".strip(),
-                verdict,
-                ": ".join(filter(None, (", ".join([*filter(None, what), *sizes]), reason))),
-            )
-        )
-    yield Table("Without numbers", ("what", "verdict", "where"), tuple(lines))
+    for (scene, way, verdict, reason), some in here.groupby(by, sort=False):
+        grew = some[some.against != ""]
+        sizes = [f"{size} {against}" for size, against in zip(grew["size"], grew.against, strict=True)]
+        what = dict.fromkeys([*some.setting, *map(words_of, some.quantity), *sizes])
+        where = ", ".join(filter(None, what))
+        lines.append((f"{scene} {way}".strip(), verdict, ": ".join(filter(None, (where, reason)))))
+    if lines:
+        yield _table("Without numbers", ("what", "verdict", "where"), lines)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,10 @@ Array = NDArray[np.float64]
 DIGITS = tuple(10.0**-digits for digits in range(2, 14))
 
 
+class LeftOut(Exception):
+    """A way does not apply to a scene, as the paper's formulas not to a double wishbone; says why."""
+
+
 @dataclass(frozen=True)
 class Answer:
     """What a way computed, by quantity and name, in the scene's axes and units, and what it did for that."""
@@ -30,6 +36,11 @@ Solve = Callable[[Array], Answer]
 """Solves at increasing instants, (N,), s; the first may lie after the scene's start."""
 
 
+def laws_at(scene: Scene, instants: Array) -> dict[str, Array]:
+    """Value, rate and acceleration of every input, (N, 3), rad or mm, and s."""
+    return {name: law.series(instants, 2) * (1.0, 1.0, 2.0) for name, law in scene.functions.items()}
+
+
 @dataclass(frozen=True)
 class Way:
     """A way to solve scenes. Adding one is a file with one of these, and a line of the registry.
@@ -39,7 +50,7 @@ class Way:
         prepare: makes a scene ready for the value of a setting, which is the set-up. It raises `LeftOut`
             where the way does not apply, and whatever the way refuses a scene with. The scene's own
             instants mean nothing here; what it asks for does.
-        values: what can be dialled, the coarsest first; None where there is nothing to set.
+        values: of the setting, the coarsest first; None where there is nothing to set.
         setting: a value in words.
         dense: whether one solve serves any instant, so that more instants cost their evaluation only.
         rates_only: whether its positions are those of another way.
@@ -58,3 +69,22 @@ class Way:
     def says(self, value: float | None) -> str:
         """A setting in words, such as `1e-9 mm`."""
         return "" if value is None else self.setting.format(power(value))
+
+    def ready(self, scene: Scene, value: float | None, instants: Array) -> Callable[[], Answer]:
+        """The set-up, for a scene at instants.
+
+        Raises:
+            LeftOut: its package is not installed, or it does not apply; and whatever it refuses a scene with.
+        """
+        require(self.package)
+        return partial(self.prepare(scene, value), instants)
+
+
+def require(package: str) -> None:
+    """See that an optional package is there.
+
+    Raises:
+        LeftOut: it is not.
+    """
+    if package and find_spec(package) is None:
+        raise LeftOut(f"needs the package {package!r}, which is not installed")

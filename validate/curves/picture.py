@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Samples
-from validate.cost.picture.look import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, plain
 from validate.curves.numbers import TRAVEL, Curves, Number
 from validate.extras import MissingPackage
+from validate.output.figure import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, plain
 from validate.plain_text import shown
 
 try:

@@ -26,6 +26,8 @@ SCHEMA_VERSION = 2
 PACKAGES = ("numpy", "scipy", "pin", "mpmath", "python-flint", "mujoco", "exudyn")
 # Environment variables that say how many threads the linear algebra takes.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+# Kinds of runs that hold nothing to anything: times, numbers and designs are neither right nor wrong.
+COMPARES_NOTHING = ("cost", "sweep", "fit", "hard-list")
 PAUSE = 9.0  # between two writings of a journal, in times that the first took
 
 
@@ -104,8 +106,8 @@ class Head:
         return cls(kind, tuple(command), now() if timed else None)
 
     def verdict(self, status: ExitStatus) -> str:
-        """A status in words; times are neither right nor wrong."""
-        compared = self.kind != "cost" or status is not ExitStatus.AGREE
+        """A status in words."""
+        compared = self.kind not in COMPARES_NOTHING or status is not ExitStatus.AGREE
         return status.verdict if compared else "nothing compared"
 
     def document(

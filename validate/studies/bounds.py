@@ -263,8 +263,8 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
         data[part] = {}
         for variant in variants():
             here = checks[(checks["suspension"] == variant.words) & (checks["part"] == part)]
-            parts += _set_parts(what.format(variant.words), here)
-            data[part][variant.words] = _set_data(here)
+            data[part][variant.words], said = _looked_at(what.format(variant.words), here)
+            parts += said
     parts += [
         f"refused: {len(refusals)}",
         *(f"  {count}  {reason}" for reason, count in reasons),
@@ -288,9 +288,21 @@ def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
     return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
 
-def _set_parts(name: str, checks: pd.DataFrame) -> tuple[Part, ...]:
+def _looked_at(name: str, checks: pd.DataFrame) -> tuple[dict[str, Any], tuple[Part, ...]]:
+    """One set of poses of one suspension, as plain data and for people."""
+    by_rounding, by_distance = error_over_rounding(checks), error_over_distance(checks)
+    quantiles = _quantiles(checks)
+    data = {
+        "count": len(checks),
+        "bound_over_error": {name.replace(" ", "_"): at for name, at in quantiles.items()},
+        "error_over_rounding": asdict(by_rounding),
+        "error_over_distance": asdict(by_distance),
+        "largest_loss": None if checks.empty else float(checks["loss"].max()),
+        "largest_error_over_bound": None if checks.empty else float(checks["share"].max()),
+        "checks": _records(checks),
+    }
     if checks.empty:
-        return (f"{name}: none",)
+        return data, (f"{name}: none",)
     rows = [
         (
             f"1e{decade:.0f} to 1e{decade + 1:.0f}",
@@ -308,19 +320,16 @@ def _set_parts(name: str, checks: pd.DataFrame) -> tuple[Part, ...]:
         *("distance / range", "poses", "condition", "error / size", "loss", "largest loss"),
         *("bound / error", "largest error / bound"),
     )
-    quantiles = [
-        (points, *(f"{ratio:.3g}" for ratio in at.values())) for points, at in _quantiles(checks).items()
-    ]
-    by_rounding, by_distance = error_over_rounding(checks), error_over_distance(checks)
+    loose = ((points, *(f"{ratio:.3g}" for ratio in at.values())) for points, at in quantiles.items())
     nearest, worst = (
         checks.iloc[[int(checks[name].to_numpy().argmax())]].to_dict("records")[0]
         for name in ("share", "loss")
     )
-    return (
+    return data, (
         f"{len(checks)} {name}; medians, unless it says largest",
         "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
         Table(head, tuple(rows)),
-        Table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), tuple(quantiles)),
+        Table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), tuple(loose)),
         f"error over eps (condition size + far): slope {by_rounding.slope:.3f} (rounding alone: 1), "
         f"scatter {by_rounding.scatter:.2f} decades",
         f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
@@ -340,18 +349,6 @@ def _case(row: Mapping[Hashable, Any]) -> str:
         + ("" if math.isnan(carried) else f"carried points {carried:.2e} mm, ")
         + f"condition {row['condition']:.2e}, loss {row['loss']:.2g}"
     )
-
-
-def _set_data(checks: pd.DataFrame) -> dict[str, Any]:
-    return {
-        "count": len(checks),
-        "bound_over_error": {name.replace(" ", "_"): at for name, at in _quantiles(checks).items()},
-        "error_over_rounding": asdict(error_over_rounding(checks)),
-        "error_over_distance": asdict(error_over_distance(checks)),
-        "largest_loss": None if checks.empty else float(checks["loss"].max()),
-        "largest_error_over_bound": None if checks.empty else float(checks["share"].max()),
-        "checks": _records(checks),
-    }
 
 
 def _records(checks: pd.DataFrame) -> list[dict[Hashable, Any]]:

@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import Any
+
+import pandas as pd
 
 from pointcoord import SceneError
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
@@ -174,74 +176,61 @@ def _shares(outcome: Outcome) -> Row:
 
 def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
     """Every outcome counted, and the largest share of each tolerance."""
-    total, shares = (
-        Counter((row["suspension"], row["kind"], row["outcome"]) for row in rows),
-        _shares_of(rows),
-    )
-    kept = [row for row in rows if row.get("scene") is not None]
+    table = pd.DataFrame(rows, columns=["number", "seconds", *COLUMNS])
+    kept = table[table["scene"].notna()]
+    counts = table.groupby(["suspension", "kind", "outcome"]).size().reset_index(name="scenes")
+    shares: list[dict[str, Any]] = [
+        {"quantity": quantity, "share": float(worst[name]), "scene": int(worst["number"])}
+        for quantity in SHARED
+        if table[name := f"share_{quantity}"].notna().any()
+        for worst in [table.sort_values([name, "number"], na_position="first").iloc[-1]]
+    ]
+    names = ["number", "suspension", "kind", "outcome", "reason"]
+    written = kept[names].astype(object).where(kept[names].notna(), None).to_dict("records")
+    scenes = ({"scene": json.loads(scene)} for scene in kept["scene"])
     data = {
         **settings,
-        "scenes": len(rows),
-        "outcomes": [
-            {"suspension": suspension, "kind": kind, "outcome": outcome, "scenes": count}
-            for (suspension, kind, outcome), count in sorted(total.items())
-        ],
-        "largest_shares": [
-            {"quantity": quantity, "share": share, "scene": number}
-            for quantity, (share, number) in shares.items()
-        ],
-        "written_down": [
-            {name: row[name] for name in ("number", "suspension", "kind", "outcome", "reason")}
-            | {"scene": json.loads(row["scene"])}
-            for row in kept
-        ],
+        "scenes": len(table),
+        "outcomes": counts.to_dict("records"),
+        "largest_shares": shares,
+        "written_down": [{**one, **scene} for one, scene in zip(written, scenes, strict=True)],
     }
-    parts: list[Part] = [_summary(total)]
+    parts: list[Part] = [_summary(table)]
     for variant in variants():
-        parts += ["", f"{variant.words}:", _outcomes(total, variant.words)]
+        parts += ["", f"{variant.words}:", _outcomes(table[table["suspension"] == variant.words])]
     if shares:
-        lines = ((q.replace("_", " "), f"{share:.3g}", str(scene)) for q, (share, scene) in shares.items())
+        lines = ((o["quantity"].replace("_", " "), f"{o['share']:.3g}", str(o["scene"])) for o in shares)
         head = ("quantity", "largest share of tolerance", "scene")
         parts += ["", "Where both agreed:", Table(head, tuple(lines))]
     recorded = (
-        f"{len(rows):,} scene{'' if len(rows) == 1 else 's'} recorded, {len(kept):,} of them as a whole"
+        f"{len(table):,} scene{'' if len(table) == 1 else 's'} recorded, {len(kept):,} of them as a whole"
     )
-    seconds = sum(row["seconds"] for row in rows)
-    parts += [
-        "",
-        f"{recorded} scene, to be looked into; {seconds:.0f} s of work, of all runs and processes.",
-    ]
-    faulty = any(word in outcome for _, _, outcome in total for word in FAULTY)
-    return Findings(tuple(parts), data, ExitStatus.DISAGREE if faulty else ExitStatus.AGREE)
+    seconds = table["seconds"].sum()
+    last = f"{recorded} scene, to be looked into; {seconds:.0f} s of work, of all runs and processes."
+    status = ExitStatus.DISAGREE if table["outcome"].map(_is_faulty).any() else ExitStatus.AGREE
+    return Findings((*parts, "", last), data, status)
 
 
-def _shares_of(rows: Sequence[Row]) -> dict[str, tuple[float, int]]:
-    """Per quantity, the largest share of its tolerance and the scene that used it."""
-    given = {q: [(r[n], r["number"]) for r in rows if r.get(n := f"share_{q}") is not None] for q in SHARED}
-    return {quantity: max(shares) for quantity, shares in given.items() if shares}
+def _is_faulty(outcome: str) -> bool:
+    return any(word in outcome for word in FAULTY)
 
 
-def _summary(total: Counter[tuple[str, str, str]]) -> Table:
+def _summary(table: pd.DataFrame) -> Table:
     """A row for each suspension and closure."""
     rows = []
     for variant in variants():
-        here = {outcome: 0 for _, _, outcome in total}
-        for (suspension, _, outcome), count in total.items():
-            here[outcome] += count * (suspension == variant.words)
-        begun = [sum(n for outcome, n in here.items() if outcome.startswith(h)) for h in HEADS]
-        faulty = sum(n for outcome, n in here.items() if any(word in outcome for word in FAULTY))
-        rows.append((variant.words, *map(str, (sum(here.values()), *begun, faulty))))
+        here = list(table["outcome"][table["suspension"] == variant.words])
+        begun = [sum(outcome.startswith(head) for outcome in here) for head in HEADS]
+        rows.append((variant.words, *map(str, (len(here), *begun, sum(map(_is_faulty, here))))))
     return Table(("suspension", "scenes", *HEADS, "of these wrong"), tuple(rows))
 
 
-def _outcomes(total: Counter[tuple[str, str, str]], suspension: str) -> Table:
-    outcomes = sorted({outcome for where, _, outcome in total if where == suspension}, key=_order)
-    rows = []
-    for outcome in outcomes:
-        counts = [total[suspension, kind, outcome] for kind in KINDS]
-        rows.append((outcome, str(sum(counts)), *(str(count) for count in counts)))
-    tried = [sum(total[suspension, kind, outcome] for outcome in outcomes) for kind in KINDS]
-    rows.append(("mechanisms tried", str(sum(tried)), *(str(n) for n in tried)))
+def _outcomes(here: pd.DataFrame) -> Table:
+    """How often each outcome came, by kind of scene."""
+    counts = pd.crosstab(here["outcome"], here["kind"]).reindex(columns=KINDS, fill_value=0)
+    counts = counts.loc[sorted(counts.index, key=_order)]
+    counts.loc["mechanisms tried"] = counts.sum()
+    rows = ((outcome, str(sum(line)), *map(str, line)) for outcome, *line in counts.itertuples())
     return Table(("outcome", "all", *KINDS), tuple(rows))
 
 

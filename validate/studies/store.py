@@ -20,11 +20,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from validate.errors import UsageError
 from validate.extras import MissingPackage
-from validate.output.files import unwritable, write_whole
+from validate.output.files import unwritable, write_content, write_whole
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
 
@@ -104,7 +104,7 @@ class Store:
         pa = _arrow()
         schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in self.columns.items()])
         table = pa.Table.from_pylist(list(rows), schema=schema)
-        _put(file, lambda stream: _arrow("parquet").write_table(table, stream))
+        write_whole(str(file), lambda stream: _arrow("parquet").write_table(table, stream))
 
 
 def look(folder: Path) -> Store:
@@ -147,8 +147,7 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
         _take(lock, folder)
         if there is None or not there.files():
             head = {name: value for name, value in vars(store).items() if name != "folder"}
-            text = json.dumps(head, indent=1) + "\n"
-            _put(folder / HEAD, lambda stream: stream.write(text.encode()))
+            write_content(str(folder / HEAD), json.dumps(head, indent=1) + "\n")
         yield store
     finally:
         os.close(lock)
@@ -156,13 +155,6 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
             for name in (HEAD, LOCK):
                 (folder / name).unlink(missing_ok=True)
             folder.rmdir()
-
-
-def _put(file: Path, write: Any) -> None:
-    def put(stream: BinaryIO) -> None:
-        write(stream)
-
-    write_whole(str(file), put)
 
 
 def _require_same(there: Store, here: Store) -> None:

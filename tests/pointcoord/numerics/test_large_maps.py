@@ -10,9 +10,10 @@ from pointcoord.numerics.block_inverse import inverse_by_blocks, product_of_few_
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
+from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.taylor import Settings, build_chain
-from validate.cost.growth.chain import SWING, FourBarChain
+from validate.cost.chain import SWING, FourBarChain
 
 N = 120
 
@@ -166,7 +167,7 @@ def test_a_long_chain_goes_the_same_way_by_blocks_as_without(monkeypatch: pytest
     settings, stop = Settings(1e-12, 0), 0.25
 
     def solved() -> tuple[np.ndarray, object]:
-        mechanism = chain.mechanism()
+        mechanism = scene_mechanism(chain.scene())
         start = assemble(mechanism, {"arm_angle": SWING.series(0.0, 0)[0]}, closed=close_drawing(mechanism))
         built = build_chain(mechanism, {"arm_angle": SWING}, start, 0.0, stop, settings)
         last = built.segments[-1]

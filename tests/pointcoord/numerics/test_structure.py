@@ -13,7 +13,8 @@ from scipy.sparse.csgraph import connected_components, maximum_bipartite_matchin
 
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.structure import Structure, rows_too_many, structure_of
-from validate.cost.growth.chain import FourBarChain
+from pointcoord.simulation import scene_mechanism
+from validate.cost.chain import FourBarChain
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ def test_blocks_of_a_suspension_are_those_of_scipy_and_make_its_jacobian_a_block
 
 @pytest.mark.parametrize("rockers", [1, 2, 30])
 def test_a_chain_of_rockers_is_solved_rocker_after_rocker(rockers: int) -> None:
-    system = FourBarChain(rockers).mechanism().map
+    system = scene_mechanism(FourBarChain(rockers).scene()).map
     assert [b.unknowns for b in system.structure.blocks] == [
         (3 * j, 3 * j + 1, 3 * j + 2) for j in range(rockers)
     ]

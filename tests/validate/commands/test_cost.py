@@ -5,22 +5,19 @@ import io
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import jsonschema
 import pytest
 from made_rows import kept, measured, study
-from program import run as run_program
 
 from validate.cli import main
-from validate.commands import cost
 from validate.cost import study as studying
-from validate.cost.row import Row
 from validate.cost.scenes import STUDY_SCENES
-from validate.cost.store import Store, StoreError, measured_here, read_rows
 from validate.cost.study import Study
+from validate.cost.table import PARTS, Row, Store, frame, measured_here, read_rows
 from validate.output.document import schema_text
 
 CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))
@@ -30,7 +27,7 @@ ROWS = study()
 @pytest.fixture
 def store(tmp_path: Path) -> str:
     """A file of rows, measured elsewhere."""
-    return kept(tmp_path / "rows.jsonl", ROWS)
+    return kept(tmp_path / "rows.parquet", ROWS)
 
 
 @pytest.fixture
@@ -71,14 +68,13 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
     assert Path(store).read_bytes() == before
 
 
-def test_the_same_rows_give_the_same_bytes_twice(
-    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_same_rows_give_the_same_bytes_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    few = [row for row in ROWS if row.quantity == "position" and row.scene == "double-wishbone"]
     words = [
         "cost",
         "--from-rows",
         "--rows",
-        store,
+        kept(tmp_path / "rows.parquet", few),
         "--csv",
         str(tmp_path / "x.csv"),
         "--report",
@@ -186,78 +182,33 @@ def test_a_wrong_command_ends_with_2_and_one_line_before_anything_is_measured(
     (line,) = err.splitlines()
     for part in parts:
         assert part in line
-    assert {path.name for path in tmp_path.iterdir()} == {"rows.jsonl"}
+    assert {path.name for path in tmp_path.iterdir()} == {"rows.parquet"}
 
 
-@pytest.mark.parametrize(
-    ("content", "parts"),
-    [
-        ("not rows\n", ["line 1", "is no row", "Invalid JSON", "give another file"]),
-        ('{"cost of accuracy": 1}\n', ["line 1 is no row", "part: Field required"]),
-        (
-            json.dumps({**asdict(ROWS[0]), "time": "soon"}),
-            ["time: Input should be a valid number, not 'soon'"],
-        ),
-        (json.dumps(asdict(ROWS[0]))[:-1] + f', "size": {"9" * 5000}}}', ["number out of range"]),
-        ("", ["holds no rows", "measure them first"]),
-    ],
-)
-def test_a_broken_file_of_rows_ends_with_2_and_is_not_touched(
-    content: str,
-    parts: list[str],
+@pytest.mark.parametrize("content", [b"not rows", b"", frame([]).to_parquet()])
+def test_a_broken_or_empty_file_of_rows_ends_with_2_and_is_not_touched(
+    content: bytes,
     tmp_path: Path,
     fake: Callable[..., None],
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    path = tmp_path / "rows.jsonl"
-    path.write_text(content)
+    path = tmp_path / "rows.parquet"
+    path.write_bytes(content)
+    words = "holds no rows" if content[:3] == b"PAR" else "is no Parquet file of what accuracy costs"
     assert main(["cost", "--from-rows", "--rows", str(path)]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     (line,) = err.splitlines()
-    for part in ("--rows", str(path), *parts):
-        assert part in line
-    assert path.read_text() == content
-    if content:
+    assert f"--rows {path}: {words}" in line
+    if words.startswith("is no"):
         fake(planted(end=AssertionError("measured")))
         assert main(["cost", "--rows", str(path)]) == 2
-        assert path.read_text() == content
-    assert main(["cost", "--from-rows", "--rows", str(tmp_path / "none.jsonl")]) == 2
-
-
-def test_a_torn_last_line_is_no_row_and_the_others_count(
-    store: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with open(store, "a", encoding="utf-8") as stream:
-        stream.write('\n{"row": {"part": "accur')
-    assert main(["cost", "--from-rows", "--rows", store, "--json", "-"]) == 0
-    assert len(document(capsys.readouterr().out)["rows"]) == len(ROWS)
-
-
-def test_rows_of_another_machine_are_reported_and_not_gone_on_with(
-    store: str, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
-) -> None:
-    fake(planted(end=AssertionError("measured")))
-    assert main(["cost", "--rows", store]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "a made machine" in line
-    assert "give another file" in line
-
-
-def test_of_a_scene_that_was_changed_the_last_rows_count(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = tmp_path / "rows.jsonl"
-    for way in ("series", "newton"):
-        kept(path, measured("mine.toml", way, "", {"position": 1e-3}, 1e-3), digest="before")
-    kept(path, measured("mine.toml", "series", "", {"position": 1e-9}, 1e-5), digest="after")
-    assert main(["cost", "--from-rows", "--rows", str(path), "--json", "-"]) == 0
-    (row,) = document(capsys.readouterr().out)["rows"]
-    assert row["error"] == 1e-9
+    assert path.read_bytes() == content
+    assert main(["cost", "--from-rows", "--rows", str(tmp_path / "none.parquet")]) == 2
 
 
 def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "rows.jsonl"
+    path = tmp_path / "rows.parquet"
     kept(path, measured("bounce", "series", "", {"position": 1e-3}, 1e-3), quick=True)
     words = ["cost", "--from-rows", "--rows", str(path), "--json", "-"]
     # Where there are no others the quick ones are shown, and called quick.
@@ -274,25 +225,35 @@ def test_pictures_without_matplotlib_are_refused_before_anything_is_measured(
     store: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert main(["cost", "--rows", str(tmp_path / "new.jsonl"), "--report", str(tmp_path / "r")]) == 2
+    assert main(["cost", "--rows", str(tmp_path / "new.parquet"), "--report", str(tmp_path / "r")]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     (line,) = err.splitlines()
     assert "matplotlib" in line
     assert "pip install 'pointcoord[plot]'" in line
-    assert {path.name for path in tmp_path.iterdir()} == {"rows.jsonl"}
+    assert {path.name for path in tmp_path.iterdir()} == {"rows.parquet"}
     # All but the pictures does without.
     assert main(["cost", "--from-rows", "--rows", store]) == 0
+
+
+def test_without_what_writes_its_rows_nothing_is_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert main(["cost", "--rows", str(tmp_path / "new.parquet")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "'cost' needs the package 'pyarrow'" in line
+    assert "pip install 'pointcoord[validate]'" in line
 
 
 def test_a_folder_that_cannot_be_had_is_refused_before_anything_is_measured(
     store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("mine")
-    assert main(["cost", "--rows", str(tmp_path / "new.jsonl"), "--report", str(tmp_path / "file")]) == 2
+    assert main(["cost", "--rows", str(tmp_path / "new.parquet"), "--report", str(tmp_path / "file")]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "is a file; allowed: a folder" in line
-    assert not (tmp_path / "new.jsonl").exists()
+    assert not (tmp_path / "new.parquet").exists()
     assert (tmp_path / "file").read_text() == "mine"
 
 
@@ -316,20 +277,8 @@ def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., list[
 def test_ctrl_c_keeps_and_names_what_was_measured(
     tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    fake(planted(ONE, replace(ONE, way="newton"), end=KeyboardInterrupt()))
-    path = tmp_path / "rows.jsonl"
-    assert main(["cost", "--rows", str(path)]) == 130
-    out, err = told(capsys)
-    assert out == ""
-    assert err == [f"pointcoord: interrupted; {path} holds 2 rows"]
-    assert main(["cost", "--from-rows", "--rows", str(path)]) == 0
-
-
-def test_json_of_an_interrupted_run_holds_what_was_measured(
-    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
-) -> None:
     fake(planted(ONE, end=KeyboardInterrupt()))
-    path, target = tmp_path / "rows.jsonl", tmp_path / "x.json"
+    path, target = tmp_path / "rows.parquet", tmp_path / "x.json"
     assert main(["cost", "--rows", str(path), "--json", str(target)]) == 130
     _, (line,) = told(capsys)
     assert f"{path} holds 1 row" in line
@@ -342,34 +291,24 @@ def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
     tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
 ) -> None:
     fake(planted(Row("accuracy", "bounce", "series", verdict="failed", reason="locked at 2 s")))
-    assert main(["cost", "--rows", str(tmp_path / "rows.jsonl")]) == 3
+    assert main(["cost", "--rows", str(tmp_path / "rows.parquet")]) == 3
     out, err = told(capsys)
     assert "locked at 2 s" in out
     assert "nothing could be measured" in err[0]
 
 
-def test_rows_that_cannot_be_written_end_with_4(
+def test_rows_that_cannot_be_written_end_with_4_before_anything_is_measured(
     tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    fake(planted(ONE, end=StoreError("rows.jsonl: 3 of 90 bytes written; is the disk full?")))
-    assert main(["cost", "--rows", str(tmp_path / "rows.jsonl")]) == 4
-    assert "is the disk full?" in told(capsys)[1][0]
-
-
-def test_a_pipe_has_no_line_that_is_written_over_and_a_quiet_run_none_at_all(
-    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
-) -> None:
-    fake(planted(ONE))
-    assert main(["cost", "--rows", str(tmp_path / "a.jsonl")]) == 0
-    assert "\r" not in capsys.readouterr().err
-    assert main(["cost", "--rows", str(tmp_path / "c.jsonl"), "--quiet"]) == 0
-    assert capsys.readouterr().err == ""
+    fake(planted(end=AssertionError("measured")))
+    assert main(["cost", "--rows", str(tmp_path / "no folder" / "rows.parquet")]) == 4
+    assert "rows.parquet: cannot be written (there is no folder" in told(capsys)[1][0]
 
 
 @pytest.mark.parametrize(
     ("words", "scenes", "parts"),
     [
-        ([], STUDY_SCENES, cost.PARTS),
+        ([], STUDY_SCENES, PARTS),
         (["--quick"], ("bounce-and-steer",), ("accuracy",)),
         (["--quick", "--parts", "growth,loading"], ("bounce-and-steer",), ("growth", "loading")),
         (
@@ -395,7 +334,7 @@ def test_what_is_measured_is_what_the_options_say(
         return [ONE]
 
     fake(measure)
-    assert main(["cost", *words, "--rows", str(tmp_path / "rows.jsonl"), "--quiet"]) == 0
+    assert main(["cost", *words, "--rows", str(tmp_path / "rows.parquet"), "--quiet"]) == 0
     (study,) = asked
     assert (tuple(scene.name for scene in study.scenes), study.parts) == (scenes, parts)
     assert study.quick == ("--quick" in words)
@@ -409,14 +348,14 @@ def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     fake(planted(ONE))
-    path = tmp_path / "mine.jsonl"
+    path = tmp_path / "mine.parquet"
     assert main(["cost", "--quick", "--rows", str(path)]) == 0
     assert f"the picture: {tmp_path / 'mine.svg'}" in capsys.readouterr().out
     assert (tmp_path / "mine.svg").read_text().startswith("<?xml")
     (tmp_path / "mine.svg").unlink()
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for name in [name for name in sys.modules if name.startswith("validate.cost.picture")]:
-        monkeypatch.delitem(sys.modules, name)
+    for name in ("validate.cost.picture", "validate.output.figure"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
     assert main(["cost", "--quick", "--rows", str(path)]) == 0
     assert "pip install 'pointcoord[plot]'" in capsys.readouterr().err
     assert not (tmp_path / "mine.svg").exists()
@@ -425,7 +364,7 @@ def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(
 def test_a_real_run_of_one_way_goes_on_with_what_it_has(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = tmp_path / "rows.jsonl"
+    path = tmp_path / "rows.parquet"
     words = ["cost", "steer", "--quick", "--ways", "series", "--rows", str(path)]
     assert main(words) == 0
     out = capsys.readouterr().out
@@ -449,20 +388,6 @@ def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]
         "accuracy, effects, growth, loading, unrelated",
     ):
         assert name in out
-
-
-def test_help_says_what_is_measured_and_where_rows_go(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["cost", "--help"]) == 0
-    out = capsys.readouterr().out
-    for word in ("--from-rows", "--quick", "--ways", "--parts", "--report", cost.ROWS, "exit status"):
-        assert word in out
-
-
-def test_the_program_reports_rows_as_a_shell_runs_it(store: str) -> None:
-    done = run_program("cost", "--from-rows", "--rows", store)
-    assert done.returncode == 0
-    assert done.stderr == ""
-    assert done.stdout.startswith("What accuracy costs in time")
 
 
 def test_effects_and_parts_both_say_what_to_measure(capsys: pytest.CaptureFixture[str]) -> None:

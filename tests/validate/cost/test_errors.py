@@ -8,10 +8,9 @@ from toy_ways import reference_numbers
 
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.cost.errors import errors_of, truth_of
-from validate.cost.instants import study_instants
+from validate.cost.errors import Judge, errors_of, truth_of
 from validate.cost.race import Found, NoNumbers
-from validate.cost.scenes import own_scene
+from validate.cost.scenes import own_scene, study_instants
 from validate.cost.way import Answer
 from validate.formulations.protocol import Numbers
 from validate.reference.exact import as_fraction
@@ -43,7 +42,7 @@ def test_the_error_of_a_double_is_its_distance_from_the_reference_in_many_digits
     places = numbers["position"]
     for array in places.values():
         array += ulps * np.spacing(array)
-    error = found(numbers).quantities["position"]
+    error = found(numbers)["position"]
     exact = exact_errors(places)
     rms = float(sum(e * e for e in exact) / len(exact)) ** 0.5
     # Two doubles know the reference to 2^-106 of 1000 mm, 1e-29 mm; the difference rounds by 2^-53 of itself.
@@ -55,7 +54,7 @@ def test_the_error_of_a_double_is_its_distance_from_the_reference_in_many_digits
 
 
 def test_the_radius_is_far_below_any_error_of_doubles() -> None:
-    for quantity, error in found(reference_numbers(SCENE, INSTANTS)).quantities.items():
+    for quantity, error in found(reference_numbers(SCENE, INSTANTS)).items():
         assert 0.0 < error["radius"] < 1e-9 * error["error"], quantity
 
 
@@ -64,7 +63,7 @@ def test_a_number_that_is_wrong_by_a_known_amount_has_that_error_in_its_quantity
     numbers = reference_numbers(SCENE, INSTANTS)
     name = list(numbers[quantity])[-1]
     numbers[quantity][name].reshape(len(INSTANTS), -1)[3, -1] += 2.0**-6
-    errors = found(numbers).quantities
+    errors = found(numbers)
     assert errors[quantity]["error"] == pytest.approx(2.0**-6, rel=1e-9)
     assert errors[quantity]["rms"] == pytest.approx(2.0**-6 / errors[quantity]["numbers"] ** 0.5, rel=1e-9)
     assert all(error["error"] < 1e-10 for other, error in errors.items() if other != quantity)
@@ -75,7 +74,7 @@ def test_an_error_too_large_or_too_small_to_be_squared_has_its_root_mean_square(
         numbers = reference_numbers(SCENE, INSTANTS)
         for array in numbers["velocity"].values():
             array += size
-        error = found(numbers).quantities["velocity"]
+        error = found(numbers)["velocity"]
         assert 0.0 < error["rms"] <= error["error"] < 1.1e200
 
 
@@ -104,9 +103,10 @@ def test_a_quantity_that_is_not_given_is_said_and_no_error_of_zero() -> None:
     numbers = reference_numbers(SCENE, INSTANTS)
     del numbers["acceleration"]
     numbers["wheel"] = {}
-    errors, not_given = found(numbers).quantities, found(numbers).not_given
-    assert set(not_given) == {"acceleration", "wheel"}
-    assert not set(errors) & set(not_given)
+    without = {quantity: columns for quantity, columns in found(numbers).items() if "error" not in columns}
+    assert set(without) == {"acceleration", "wheel"}
+    assert without["wheel"]["verdict"] == "left out"
+    assert without["wheel"]["reason"].startswith("gives no ")
     with pytest.raises(NoNumbers, match="gives no position"):
         found({})
 
@@ -125,8 +125,12 @@ def test_an_answer_for_other_instants_has_the_error_of_that() -> None:
     for arrays in numbers.values():
         for name in arrays:
             arrays[name] = np.roll(arrays[name], 1, axis=0)
-    assert found(numbers).quantities["position"]["error"] > 1.0
+    assert found(numbers)["position"]["error"] > 1.0
 
 
-def test_some_quantities_are_judged_alone() -> None:
-    assert set(TRUTH.of("velocity").exact) == {"velocity"}
+def test_positions_are_judged_alone_and_some_instants_for_all() -> None:
+    answer = Answer(reference_numbers(SCENE, INSTANTS))
+    judge = Judge(SCENE, INSTANTS, range(1, 3))
+    assert set(judge(answer, positions=True)) == {"position"}
+    assert set(judge(answer, positions=False)) == set(TRUTH.exact) - {"position"}
+    assert judge(answer)["position"]["numbers"] == 2 * 3 * len(MOVING)

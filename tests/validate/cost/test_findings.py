@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from made_rows import alike, dialled, grown, measured, study
 
-from validate.cost.findings import cheapest, dials, frame, growths, races, sentences
-from validate.cost.row import Row
-from validate.cost.words import bytes_words, duration, listed, power
+from validate.cost.findings import cheapest, dials, growths, races, sentences
+from validate.cost.table import Row, frame
+from validate.cost.words import BYTES, duration, in_units, listed, power
 
 
 def verdicts(rows: Sequence[Row], quantity: str = "position") -> dict[float, str]:
@@ -134,5 +134,5 @@ def test_numbers_are_written_with_three_digits_and_their_unit() -> None:
         "99 ns",
         "1 s",
     ]
-    assert [bytes_words(n) for n in (12.0, 34.5e6)] == ["12 B", "34.5 MB"]
+    assert [in_units(n, BYTES) for n in (12.0, 34.5e6)] == ["12 B", "34.5 MB"]
     assert (listed(["a"]), listed(["a", "b", "c"]), power(1e-9)) == ("a", "a, b and c", "1e-9")

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -10,17 +11,32 @@ from typing import Any
 import grown_tasks
 import numpy as np
 import pytest
-from grown_tasks import Ends
+from grown_tasks import LEAST, ending
 
-from validate.cost.findings import frame, growths
-from validate.cost.growth import child, tasks
-from validate.cost.growth.chain import LANE, RISE, ROCKERS, SWING, TOLERANCE, FourBarChain
-from validate.cost.growth.child import Limits, measure_apart
-from validate.cost.growth.lines import FULL, QUICK, Line, Plan, foreseen, lines_of, nearest
-from validate.cost.growth.tasks import CHAIN_INSTANTS, LongChain, ManyDesigns, ManyInstants
+from pointcoord.simulation import scene_mechanism
+from validate.cost import apart as child
+from validate.cost.apart import Limits, measure_apart
+from validate.cost.chain import LANE, RISE, ROCKERS, SWING, TOLERANCE, FourBarChain
+from validate.cost.findings import growths
+from validate.cost.parts import growth
+from validate.cost.parts.growth import (
+    CHAIN_INSTANTS,
+    FULL,
+    QUICK,
+    Line,
+    Plan,
+    chain_errors,
+    designs_one_by_one,
+    designs_together,
+    foreseen,
+    lines_of,
+    long_chain,
+    many_instants,
+    nearest,
+)
 from validate.cost.race import Effort, NoNumbers, race
-from validate.cost.row import Row
 from validate.cost.scenes import own_scene, study_scene
+from validate.cost.table import Row, frame
 from validate.cost.way import Answer
 from validate.cost.ways.registry import WAYS
 
@@ -39,13 +55,13 @@ def _tasks_can_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", str(Path(grown_tasks.__file__).parent))
 
 
-def apart(task: Any, limits: Limits = LIMITS) -> Row:
-    (row,) = measure_apart(task, ROW, limits)
+def apart(how: str, taken: int = 0, loading: int = 0, limits: Limits = LIMITS) -> Row:
+    (row,) = measure_apart(partial(ending, how, taken, loading), LEAST, ROW, limits)
     return row
 
 
 def test_what_a_library_prints_does_not_spoil_the_answer() -> None:
-    row = apart(Ends("prints"))
+    row = apart("prints")
     assert (row.verdict, row.reason, row.error, row.numbers) == ("measured", "", 1e-9, 3)
     assert row.time is not None
     assert row.size == 10
@@ -55,33 +71,33 @@ def test_what_a_library_prints_does_not_spoil_the_answer() -> None:
     ("how", "verdict", "words"),
     [
         ("killed", "failed", "its process was ended by the signal SIGKILL, as a system out of memory does"),
-        ("exits", "failed", "its process ended with status 3 and no answer"),
+        ("exits", "failed", "its process ended with status 3"),
         ("raises", "failed", "ZeroDivisionError: a pivot is zero"),
         ("does not apply", "left out", "only struts"),
     ],
 )
 def test_a_process_that_dies_is_a_failure_with_its_reason(how: str, verdict: str, words: str) -> None:
-    row = apart(Ends(how))
+    row = apart(how)
     assert (row.verdict, row.reason) == (verdict, words)
     assert (row.time, row.peak_bytes, row.poses) == (None, None, 0)
 
 
 def test_a_process_that_never_ends_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(child, "GRACE", 1.0)
-    assert apart(Ends("never ends"), Limits(seconds=0.1)).reason == "was ended after 2 s"
+    assert apart("never ends", limits=Limits(seconds=0.1)).reason == "its process was ended after 2 s"
 
 
 def test_more_memory_than_allowed_is_a_failure_and_not_the_end_of_the_machine() -> None:
-    row = apart(Ends("takes and gives back", bytes=600 * MB), Limits(0.5, memory=256 * MB))
+    row = apart("takes and gives back", 600 * MB, limits=Limits(0.5, memory=256 * MB))
     assert row.verdict == "failed"
     assert "MemoryError: Unable to allocate 600" in row.reason
 
 
 def test_peak_memory_is_the_runs_own_and_not_of_those_who_started_it() -> None:
     ballast = np.ones(300 * MB // 8)
-    taken = apart(Ends("takes and gives back", bytes=100 * MB)).peak_bytes
-    loaded = apart(Ends("takes and gives back", bytes=50 * MB, loading=200 * MB)).peak_bytes
-    nothing = apart(Ends("prints")).peak_bytes
+    taken = apart("takes and gives back", 100 * MB).peak_bytes
+    loaded = apart("takes and gives back", 50 * MB, loading=200 * MB).peak_bytes
+    nothing = apart("prints").peak_bytes
     assert ballast[-1] == 1.0
     # What loading gave back is used again, and Python keeps some pages beside: a MB or two.
     assert taken is not None
@@ -94,13 +110,14 @@ def test_peak_memory_is_the_runs_own_and_not_of_those_who_started_it() -> None:
 
 def test_the_environment_stays() -> None:
     before = dict(os.environ)
-    (row,) = measure_apart(LongChain("newton", 15), ROW, Limits(seconds=100.0))
+    (row,) = measure_apart(long_chain, 6, replace(ROW, way="newton", size=15), Limits(seconds=100.0))
     assert row.verdict == "measured", row.reason
     assert row.repeats == 7
     assert dict(os.environ) == before
 
 
-SMALL = Plan(Limits(20.0), (100, 1000, 10_000), (1, 10, 100), (15, 45, 150))
+SIZES = {"instants": (100, 1000, 10_000), "designs": (1, 10, 100), "unknowns": (15, 45, 150)}
+SMALL = {against: (SIZES[against], ways) for against, (_, ways) in FULL.items()}
 
 
 def in_proportion(size: int) -> tuple[float, int]:
@@ -112,21 +129,21 @@ class Planned:
 
     def __init__(self, law: Callable[[int], tuple[float, int]] = in_proportion) -> None:
         self.law = law
-        self.measured: list[Any] = []
+        self.measured: list[int | None] = []
 
-    def __call__(self, task: Any, row: Row, limits: Limits) -> list[Row]:
-        self.measured.append(task)
-        seconds, bytes_ = self.law(task.size)
+    def __call__(self, make: Any, least: int, row: Row, limits: Limits) -> list[Row]:
+        self.measured.append(row.size)
+        seconds, bytes_ = self.law(row.size or 0)
         time = {"time": seconds / row.poses, "lower": 0.0, "upper": 0.0, "set_up": 0.0}
         return [replace(row, quantity="position", peak_bytes=bytes_, **time)]
 
 
 def line(sizes: tuple[int, ...]) -> Line:
-    return Line(replace(ROW, size=None), sizes, 1, lambda size: LongChain("series", size))
+    return Line(replace(ROW, size=None), sizes, 1, long_chain, 6)
 
 
 def rows_of(one: Line, measure: Any = None, known: Sequence[Row] = ()) -> list[Row]:
-    return [row for rows in one.rows(known, SMALL.limits, measure or Planned()) for row in rows]
+    return [row for rows in one.rows(known, Limits(20.0), measure or Planned()) for row in rows]
 
 
 def test_every_size_of_every_way_has_a_row_that_says_what_was_varied() -> None:
@@ -150,16 +167,16 @@ def test_every_size_of_every_way_has_a_row_that_says_what_was_varied() -> None:
 def test_what_would_take_too_much_is_left_out_with_the_reason(law: Any, words: str) -> None:
     planned = Planned(law)
     found = rows_of(line((100, 1000, 100_000, 1_000_000)), planned)
-    assert [task.size for task in planned.measured] == [100, 1000]
+    assert planned.measured == [100, 1000]
     assert [row.verdict for row in found] == ["measured", "measured", "left out", "left out"]
     assert found[2].reason.startswith(f"{words}; allowed: ")
 
 
 def test_sizes_above_one_that_failed_are_left_out() -> None:
-    def measure(task: Any, row: Row, limits: Limits) -> list[Row]:
-        if task.size == 1000:
+    def measure(make: Any, least: int, row: Row, limits: Limits) -> list[Row]:
+        if row.size == 1000:
             return [replace(row, verdict="failed", reason="died")]
-        return Planned()(task, row, limits)
+        return Planned()(make, least, row, limits)
 
     found = rows_of(line((100, 1000, 10_000)), measure)
     assert [(row.size, row.verdict, row.reason) for row in found] == [
@@ -187,17 +204,17 @@ def test_a_forecast_is_the_more_of_two_laws() -> None:
 
 @pytest.mark.parametrize("plan", [FULL, QUICK])
 def test_plans_name_ways_that_there_are(plan: Plan) -> None:
-    for sizes in (plan.instants, plan.designs, plan.unknowns):
+    for sizes, ways in plan.values():
         assert list(sizes) == sorted(set(sizes))
-    assert all(size % 3 == 0 for size in plan.unknowns)
-    assert {*plan.ways, *plan.design_ways, *plan.chain_ways} <= {way.name for way in WAYS}
+        assert set(ways) <= {way.name for way in WAYS}
+    assert all(size % 3 == 0 for size in plan["unknowns"][0])
     assert (nearest((1e-3, 1e-8, 1e-12)), nearest((None,))) == (1e-8, None)
 
 
 def test_numbers_at_many_instants_are_held_to_the_reference_the_last_ones_too() -> None:
-    runner = ManyInstants(STEER.scene, "series", 50).runner(ROW)
+    runner = many_instants(STEER.scene, ROW, 50)
     answer = runner.set_up()()
-    good = runner.found(answer).quantities
+    good = runner.found(answer)
     assert good["position"]["error"] <= 1e-9
     assert {"velocity", "acceleration"} <= set(good)
     places = dict(answer.numbers["position"])
@@ -205,23 +222,23 @@ def test_numbers_at_many_instants_are_held_to_the_reference_the_last_ones_too() 
         places["wheel_centre"] + np.array([0.0, 0.0, 1e-3]) * (np.arange(50) == 49)[:, None]
     )
     spoilt = Answer({**answer.numbers, "position": places})
-    assert runner.found(spoilt).quantities["position"]["error"] == pytest.approx(1e-3, rel=1e-5)
+    assert runner.found(spoilt)["position"]["error"] == pytest.approx(1e-3, rel=1e-5)
 
 
 @pytest.mark.parametrize("name", ["steer", "double-wishbone", "off-axis-strut"])
 def test_designs_together_and_one_by_one_are_the_same_cars_held_to_the_reference(name: str) -> None:
     scene = study_scene(name, own_scene(name)).positions_only()
     places = {}
-    for together in (True, False):
-        runner = ManyDesigns(scene, "series", together, 4).runner(ROW)
+    for together, make in ((True, designs_together), (False, designs_one_by_one)):
+        runner = make(scene, ROW, 4)
         answers = runner.set_up()()
-        assert runner.found(answers).quantities["position"]["error"] < 2e-9
+        assert runner.found(answers)["position"]["error"] < 2e-9
         places[together] = [answers(k).numbers["position"]["wheel_centre"] for k in range(4)]
         # A wrong design is seen, whichever it is.
         swapped = {0: 1, 1: 0, 2: 2, 3: 3}
-        assert runner.found(lambda k, a=answers, s=swapped: a(s[k])).quantities["position"]["error"] > 1e-3
+        assert runner.found(lambda k, a=answers, s=swapped: a(s[k]))["position"]["error"] > 1e-3
     np.testing.assert_allclose(places[True], places[False], atol=4e-9)
-    few, many = (tasks.drawn_at_random(scene, count) for count in (3, 7))
+    few, many = (growth.drawn_at_random(scene, count, None) for count in (3, 7))
     assert few.design(0).mechanism.points == scene.mechanism.points
     assert few.design(2).mechanism.points != many.design(1).mechanism.points
 
@@ -265,14 +282,14 @@ def test_rockers_of_a_long_chain_turn_as_those_of_the_single_linkage() -> None:
     assert long[0, 500, 0] == 500 * LANE
 
 
-@pytest.mark.parametrize("way", FULL.chain_ways)
+@pytest.mark.parametrize("way", FULL["unknowns"][1])
 @pytest.mark.parametrize("unknowns", [6, 15, 48])
 def test_every_way_finds_the_closed_form(way: str, unknowns: int) -> None:
     # As it is measured: with the setting of the study.
     row = next(
         one.row for one in lines_of(STEER, WAYS) if (one.row.against, one.row.way) == ("unknowns", way)
     )
-    (found,) = race([LongChain(way, unknowns).runner(row)], Effort(repeats=1))
+    (found,) = race([long_chain(row, unknowns)], Effort(repeats=1))
     if found.error is None:
         # Powell's method, which makes up its Jacobian by differences, ends early at some starts and not at
         # others that differ in the last digit; it must say so, and no other way may.
@@ -285,7 +302,7 @@ def test_every_way_finds_the_closed_form(way: str, unknowns: int) -> None:
 
 
 def test_another_assembly_is_no_answer_and_a_small_error_is_told_with_its_size() -> None:
-    task, chain = LongChain("series", 12), FourBarChain.with_unknowns(12)
+    chain = FourBarChain.with_unknowns(12)
     right = chain.closed_form(CHAIN_INSTANTS)
 
     def answer(tips: np.ndarray) -> Answer:
@@ -293,7 +310,7 @@ def test_another_assembly_is_no_answer_and_a_small_error_is_told_with_its_size()
 
     off = right.copy()
     off[3, 2, 1] += 1e-6
-    assert task.check(answer(off)).quantities["position"]["error"] == pytest.approx(1e-6, rel=1e-6)
+    assert chain_errors(12, answer(off))["position"]["error"] == pytest.approx(1e-6, rel=1e-6)
     other = right.copy()
     # The last rocker on the other side of the line from the tip before it to its own pivot.
     pivot, before = np.array([0.0, RISE]), right[:, 2, 1:]
@@ -303,15 +320,15 @@ def test_another_assembly_is_no_answer_and_a_small_error_is_told_with_its_size()
     rods = [np.linalg.norm(tips[:, 3] - tips[:, 2], axis=-1) for tips in (right, other)]
     assert np.allclose(*rods, rtol=1e-12)
     with pytest.raises(NoNumbers, match="tip_3"):
-        task.check(answer(other))
+        chain_errors(12, answer(other))
     with pytest.raises(NoNumbers, match="tip_0 is nan"):
-        task.check(answer(np.full_like(right, np.nan)))
+        chain_errors(12, answer(np.full_like(right, np.nan)))
 
 
 def test_a_chain_has_three_unknowns_a_rocker() -> None:
     for rockers, chain in ((5, FourBarChain.with_unknowns(15)), (50, FourBarChain.with_unknowns(150))):
         assert chain.rockers == rockers
-        assert chain.mechanism().map.unknowns == 3 * rockers
+        assert scene_mechanism(chain.scene()).map.unknowns == 3 * rockers
         assert all(one != other for one, other in pairwise(chain.tips))
     with pytest.raises(ValueError, match="allowed: 3, 6, 9"):
         FourBarChain.with_unknowns(16)

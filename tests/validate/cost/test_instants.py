@@ -5,8 +5,7 @@ import pytest
 
 from pointcoord import Scene, simulate
 from pointcoord.results.states import StatesOfChain
-from validate.cost.instants import GOLDEN, MOST, MOST_QUICK, study_instants
-from validate.cost.scenes import STUDY_SCENES, own_scene
+from validate.cost.scenes import GOLDEN, MOST, MOST_QUICK, STUDY_SCENES, own_scene, study_instants
 
 
 @pytest.mark.parametrize("count", [1, 2, 7, 131])

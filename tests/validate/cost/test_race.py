@@ -6,8 +6,9 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 from toy_ways import FakeClock, Toy
 
-from validate.cost.race import FULL, QUICK, Effort, LeftOut, race
-from validate.cost.row import Row
+from validate.cost.race import FULL, QUICK, Effort, race
+from validate.cost.table import Row
+from validate.cost.way import LeftOut
 
 
 def raced(*toys: Toy, effort: Effort = FULL) -> list[Row]:

@@ -13,18 +13,14 @@ import pytest
 
 from pointcoord import Scene, solve_poses
 from validate.cost import study as studying
-from validate.cost.growth import lines
-from validate.cost.instants import study_instants
-from validate.cost.parts import accuracy, effects, loading, unrelated
+from validate.cost.parts import accuracy, effects, growth, loading, unrelated
 from validate.cost.parts.effects import CHOICES, NO_EFFECT
 from validate.cost.parts.unrelated import NEAR, OTHERS, as_scene, drawn
-from validate.cost.race import Effort, Found, Runner, race
-from validate.cost.row import Row
-from validate.cost.scenes import STUDY_SCENES, own_scene, study_scene
-from validate.cost.store import Store, measured_here, read_rows
+from validate.cost.race import Effort, Runner, race
+from validate.cost.scenes import STUDY_SCENES, own_scene, study_instants, study_scene
 from validate.cost.study import Study, measure
-from validate.cost.way import Way
-from validate.cost.ways.inputs import laws_at
+from validate.cost.table import Row, Store, measured_here, read_rows
+from validate.cost.way import Way, laws_at
 from validate.cost.ways.registry import WAYS, ways_named
 
 STEER = study_scene("steer", own_scene("steer"))
@@ -76,7 +72,7 @@ def test_a_scene_without_a_pose_fails_with_the_reason_of_the_reference() -> None
         return lambda instants: None
 
     rows = race(accuracy.runners_of(far, [Way("a", "", solves, (1.0,))]), FEW)
-    assert all(row.reason.startswith("there is no reference to hold it to: ") for row in rows)
+    assert all(row.reason.startswith("there is no reference to compare it with: ") for row in rows)
 
 
 def test_what_is_kept_is_not_measured_again_and_more_is_added(tmp_path: Path, few: None) -> None:
@@ -90,7 +86,7 @@ def test_what_is_kept_is_not_measured_again_and_more_is_added(tmp_path: Path, fe
     more = measure(replace(study, ways=ways_named(["series", "map"])), Store(path, here))
     assert more[: len(rows)] == rows
     assert {row.way for row in more[len(rows) :]} == {"map"}
-    changed = replace(STEER, digest="another")
+    changed = study_scene("steer", STEER.positions_only())
     assert not {row.key for row in measure(replace(study, scenes=(changed,)), Store(path, here))} & {
         row.key for row in rows
     }
@@ -100,15 +96,15 @@ PROGRAM = """
 import sys, time
 from pathlib import Path
 from validate.cost import study
-from validate.cost.race import Found, Runner
-from validate.cost.row import Row
-from validate.cost.store import Store, measured_here
+from validate.cost.race import Runner
+from validate.cost.table import Row
+from validate.cost.table import Store, measured_here
 from validate.cost.scenes import study_scene, own_scene
 def runners(scene, ways, quick):
     def run():
         time.sleep(0.0 if scene.name == "a" else 1000.0)
     row = Row("accuracy", scene.name, "w", digest=scene.digest)
-    return [Runner(row, lambda: run, lambda _: Found({"position": {}}))]
+    return [Runner(row, lambda: run, lambda _: {"position": {}})]
 study.accuracy.runners_of = runners
 scenes = tuple(study_scene(name, own_scene("steer")) for name in "ab")
 study.measure(study.Study(("accuracy",), scenes, ()), Store(Path(sys.argv[1]), measured_here()))
@@ -126,8 +122,8 @@ def test_a_killed_run_keeps_the_scenes_that_it_has_done_and_goes_on_with_the_nex
     finally:
         process.send_signal(signal.SIGKILL)
         process.wait()
-    assert [row.scene for row in read_rows(path)] == ["a"]
-    kept = path.read_bytes()
+    (kept,) = read_rows(path)
+    assert kept.scene == "a"
     raced: list[str] = []
 
     def runners(scene: Any, ways: Any, quick: bool) -> list[Runner]:
@@ -135,14 +131,14 @@ def test_a_killed_run_keeps_the_scenes_that_it_has_done_and_goes_on_with_the_nex
             raced.append(scene.name)
 
         row = Row("accuracy", scene.name, "w", digest=scene.digest)
-        return [Runner(row, lambda: run, lambda _: Found({"position": {}}))]
+        return [Runner(row, lambda: run, lambda _: {"position": {}})]
 
     monkeypatch.setattr(accuracy, "runners_of", runners)
     scenes = tuple(study_scene(name, own_scene("steer")) for name in "ab")
     rows = measure(Study(("accuracy",), scenes, ()), Store(path, measured_here()))
     assert [row.scene for row in rows] == ["a", "b"]
     assert set(raced) == {"b"}
-    assert path.read_bytes().startswith(kept)
+    assert rows[0] == kept
 
 
 def test_growth_goes_on_with_the_size_that_it_was_stopped_at(
@@ -150,13 +146,13 @@ def test_growth_goes_on_with_the_size_that_it_was_stopped_at(
 ) -> None:
     done: list[int | None] = []
 
-    def planted(task: Any, row: Row, limits: Any) -> list[Row]:
+    def planted(make: Any, least: int, row: Row, limits: Any) -> list[Row]:
         if len(done) == 3:
             raise KeyboardInterrupt
         done.append(row.size)
         return [replace(row, quantity="position", time=1e-9, set_up=0.0)]
 
-    monkeypatch.setattr(lines.Line.rows, "__defaults__", (planted,))
+    monkeypatch.setattr(growth.Line.rows, "__defaults__", (planted,))
     study = Study(("growth",), (STEER,), ways_named(["series"]), quick=True)
     path = tmp_path / "rows"
     with pytest.raises(KeyboardInterrupt):

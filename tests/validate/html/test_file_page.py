@@ -153,7 +153,7 @@ def test_a_file_over_time_that_agrees_has_a_page_by_either_command(
         (["validate", "--save-baseline", "b.npz"], "a file brings rows of its own"),
         (["validate", "--baseline", "b.npz"], "without --data it is kept of SCENE"),
         (["report", "page", "--hard", "hard.json"], "--hard is not about a file of results"),
-        (["report", "page", "--cost", "cost.jsonl"], "--cost is not about a file of results"),
+        (["report", "page", "--cost", "cost.parquet"], "--cost is not about a file of results"),
     ],
 )
 def test_what_is_not_done_for_a_file_is_told_with_what_to_do(

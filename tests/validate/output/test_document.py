@@ -124,6 +124,7 @@ def test_hard_cases_keep_to_the_schema(words: list[str], capsys: pytest.CaptureF
     assert main(["hard", *words, "--json", "-"]) == 0
     data = document(capsys.readouterr().out)
     assert data["kind"] == ("hard-list" if "--list" in words else "hard")
+    assert data["verdict"] == ("nothing compared" if "--list" in words else "agree")
 
 
 @pytest.mark.parametrize(

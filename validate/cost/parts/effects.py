@@ -18,8 +18,8 @@ from pointcoord import Motion, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.results.even_instants import even_instants
 from validate.cost.race import Found, Runner
-from validate.cost.row import Row
 from validate.cost.scenes import StudyScene
+from validate.cost.table import Row
 
 INSTANTS, INSTANTS_QUICK = 100_000, 10_000
 NO_EFFECT = "no effect"
@@ -43,23 +43,22 @@ def runners_of(study: StudyScene, quick: bool = False) -> list[Runner]:
         return simulate(scene.model_copy(update={"effects": CHOICES[choice]}))
 
     @cache
-    def room(height: int) -> tuple[Any, Any]:
-        return np.zeros((height, count)), np.zeros((height, count))
+    def arrays(height: int) -> Any:
+        return np.zeros((2, height, count))
 
-    def reading(choice: str) -> Callable[[], Any]:
+    def ready(choice: str, quantity: str) -> Callable[[], Any]:
         solved = motion(choice)
-        return partial(solved.at, instants, room(solved.height)[0])
-
-    def copying(choice: str) -> Callable[[], Any]:
-        out, other = room(motion(choice).height)
-        return partial(np.copyto, other, out)
+        out, other = arrays(solved.height)
+        return partial(solved.at, instants, out) if quantity == "read" else partial(np.copyto, other, out)
 
     def found(choice: str, quantity: str, _: Any) -> Found:
-        return Found({quantity: {"numbers": motion(choice).height}})
+        return {quantity: {"numbers": motion(choice).height}}
 
     row = Row("effects", study.name, "series", dense=True, poses=count, digest=study.digest, quick=quick)
     return [
-        Runner(replace(row, setting=choice), partial(make, choice), partial(found, choice, quantity))
+        Runner(
+            replace(row, setting=choice), partial(ready, choice, quantity), partial(found, choice, quantity)
+        )
         for choice in CHOICES
-        for quantity, make in (("read", reading), ("copy", copying))
+        for quantity in ("read", "copy")
     ]

@@ -6,22 +6,16 @@ needs: the part that no change of ours can save. Files are in the system's cache
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 
-import validate
 from pointcoord import Scene
-from validate.cost.parts.accuracy import require
+from validate.cost.apart import run_python
 from validate.cost.race import Found, Runner
-from validate.cost.row import Row
+from validate.cost.table import Row
+from validate.cost.way import require
 
 SCENE = "steer"
-PATIENCE = 300.0  # s, for a process
-THREADS = ("OPENBLAS", "OMP", "MKL", "NUMEXPR")
 
 LOADED = {
     "python": ("-c", "pass"),
@@ -35,58 +29,25 @@ LOADED = {
 """Words of the command line after Python's own name. `import pointcoord` alone imports no library."""
 
 
-class NotRun(Exception):
-    """A process did not do what it was started for; says what it said."""
-
-
 def runners_of(quick: bool = False) -> list[Runner]:
     """A runner for each process, and one for a scene that is loaded in this one."""
 
     def row(way: str) -> Row:
         return Row("loading", "", way, poses=1, quantity="loading", quick=quick)
 
-    def started(words: tuple[str, ...]) -> Callable[[], None]:
+    def started(words: tuple[str, ...]) -> Callable[[], bytes]:
         require("pinocchio" if "validate" in words else "")
-        return partial(run, *words)
-
-    def found(_: object) -> Found:
-        return Found({"loading": {}})
+        return partial(run_python, *words)
 
     return [
-        Runner(row(f"Scene.load({SCENE!r})"), lambda: partial(Scene.load, SCENE), found),
+        Runner(row(f"Scene.load({SCENE!r})"), lambda: partial(Scene.load, SCENE), _timed_alone),
         *(
-            Runner(row(way), partial(started, words), found)
+            Runner(row(way), partial(started, words), _timed_alone)
             for way, words in LOADED.items()
             if not (quick and "validate" in words)
         ),
     ]
 
 
-def run(*words: str) -> None:
-    """Run Python to its end, by one thread, with this package first on its path.
-
-    Raises:
-        NotRun: it failed.
-    """
-    try:
-        ended = subprocess.run(
-            [sys.executable, *words],
-            capture_output=True,
-            text=True,
-            stdin=subprocess.DEVNULL,
-            timeout=PATIENCE,
-            env=environment(),
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise NotRun(f"was ended after {PATIENCE:g} s") from None
-    if ended.returncode != 0:
-        said = ended.stderr.strip().splitlines()
-        raise NotRun(f"ended with status {ended.returncode}{': ' + said[-1] if said else ''}")
-
-
-def environment() -> dict[str, str]:
-    """That of a process that runs this package by one thread."""
-    source = str(Path(validate.__file__).parents[1])
-    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
-    return {**os.environ, **{f"{name}_NUM_THREADS": "1" for name in THREADS}, "PYTHONPATH": path}
+def _timed_alone(_: object) -> Found:
+    return {"loading": {}}

@@ -13,22 +13,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, kinematic_map, solve_poses
-from validate.cost.errors import Truth, errors_of, truth_of
-from validate.cost.instants import study_instants
-from validate.cost.parts.accuracy import made_ready
+from validate.cost.errors import Judge
 from validate.cost.race import Found, NoNumbers, Runner
-from validate.cost.row import Row
-from validate.cost.scenes import StudyScene
-from validate.cost.way import Answer, Way
-from validate.cost.ways.inputs import laws_at
-from validate.reference import NoReferenceError
+from validate.cost.scenes import StudyScene, study_instants
+from validate.cost.table import Row
+from validate.cost.way import Answer, Way, laws_at
+from validate.cost.words import power
 
 Array = NDArray[np.float64]
 
@@ -49,20 +46,8 @@ def runners_of(
     count, fewer = poses or ((POSES_QUICK, FEWER_QUICK) if quick else (POSES, FEWER))
     scene = study.positions_only()
     ranges, inputs = drawn(scene, count)
-    fewer = min(fewer, count)
-    checked = min(CHECKED, fewer)
-
-    @cache
-    def jumping() -> tuple[Scene, Array]:
-        return as_scene(scene, inputs, fewer)
-
-    @cache
-    def truth() -> Truth:
-        few, instants = jumping()
-        try:
-            return truth_of(few, instants[:checked])
-        except NoReferenceError as error:
-            raise NoNumbers(f"there is no reference to hold it to: {error}") from None
+    few, instants = as_scene(scene, inputs, min(fewer, count))
+    judge = Judge(few, instants, range(min(CHECKED, len(instants))))
 
     def by_map() -> Callable[[], Any]:
         made = kinematic_map(scene, ranges, NEAR)
@@ -75,44 +60,22 @@ def runners_of(
 
         return solve
 
-    def another(way: Way) -> Callable[[], Answer]:
-        few, instants = jumping()
-        return made_ready(way, few, OTHERS[way.name], instants)
-
     def ours(answer: Any) -> Found:
         position, bound = answer
         if not bound <= NEAR:
             raise NoNumbers(f"is proven to {bound:.2g} mm only, not to {NEAR:.0e} mm")
-        return theirs(Answer({"position": position}))
+        return judge(Answer({"position": {name: np.asarray(place) for name, place in position.items()}}))
 
-    def theirs(answer: Answer) -> Found:
-        first = {name: np.asarray(p)[:checked] for name, p in answer.numbers["position"].items()}
-        return errors_of(Answer({"position": first}, answer.work), truth())
-
-    row = Row(
-        "unrelated",
-        study.name,
-        "",
-        f"{NEAR:.0e} mm",
-        NEAR,
-        poses=count,
-        quantity="position",
-        digest=study.digest,
-        quick=quick,
-    )
-    return [
-        Runner(replace(row, way="map"), by_map, ours),
-        Runner(replace(row, way="one by one"), one_by_one, ours),
-        *(
-            Runner(
-                replace(row, way=way.name, setting=way.says(OTHERS[way.name]), poses=fewer),
-                partial(another, way),
-                theirs,
-            )
-            for way in ways
-            if way.name in OTHERS
-        ),
-    ]
+    row = Row("unrelated", study.name, "", f"{power(NEAR)} mm", NEAR, poses=count, quantity="position")
+    row = replace(row, digest=study.digest, quick=quick)
+    runners = [Runner(replace(row, way="map"), by_map, ours)]
+    runners.append(Runner(replace(row, way="one by one"), one_by_one, ours))
+    for way in ways:
+        if way.name in OTHERS:
+            value = OTHERS[way.name]
+            mine = replace(row, way=way.name, setting=way.says(value), poses=len(instants))
+            runners.append(Runner(mine, partial(way.ready, few, value, instants), judge))
+    return runners
 
 
 def drawn(scene: Scene, count: int) -> tuple[dict[str, tuple[float, float]], dict[str, Array]]:

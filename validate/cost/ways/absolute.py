@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
-from validate.cost.way import Answer, Solve, Way
-from validate.cost.ways.inputs import laws_at
+from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.modelled import asked_of
 

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from pointcoord.method import NEWTON, SERIES, Method
-from validate.cost.race import LeftOut
-from validate.cost.way import Answer, Solve, Way
+from validate.cost.way import Answer, LeftOut, Solve, Way
 from validate.cost.ways.point_coordinates import motion_at, numbers_of, task_of, work_of
 
 Array = NDArray[np.float64]

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
-from validate.cost.way import Answer, Solve, Way
-from validate.cost.ways.inputs import laws_at
+from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.formulations.modelled import asked_of, require_the_drawn_car
 from validate.formulations.outside_programs import linkage_in
 from validate.formulations.registry import OUTSIDE, WORDS, engine_of

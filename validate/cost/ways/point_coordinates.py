@@ -18,8 +18,7 @@ from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.numerics.counters import Work
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, checked_task, solve_by_map, solve_task
-from validate.cost.race import LeftOut
-from validate.cost.way import Answer, Solve, Way
+from validate.cost.way import Answer, LeftOut, Solve, Way
 
 Array = NDArray[np.float64]
 

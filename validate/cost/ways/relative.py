@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
-from validate.cost.way import Answer, Solve, Way
-from validate.cost.ways.inputs import laws_at
+from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.formulations.modelled import asked_of
 from validate.formulations.protocol import Numbers
 from validate.spanning_tree.chassis import ChassisMotion
@@ -29,21 +28,12 @@ def in_joints(scene: Scene, tolerance: float) -> Solve:
     def solve(instants: Array) -> Answer:
         laws = laws_at(scene, instants)
         poses = model.poses(laws, instants, tolerance)
-        found: Numbers = {"position": model.positions(poses)}
-        if moves:
-            motion = model.rates(poses, laws)
-            found = {
-                **found,
-                "velocity": model.velocities(motion),
-                "acceleration": model.accelerations(motion),
-                "angular_velocity": model.angular_velocities(motion),
-                "angular_acceleration": model.angular_accelerations(motion),
-            }
         chassis = ChassisMotion.of(plain, laws)
-        turn = None if chassis is None else chassis.turn[0]
-        found = found if chassis is None else chassis.moved(found)
+        found: Numbers = {"position": model.positions(poses)}
         if scene.effects:
-            found = {**found, "wheel": model.angles(poses, turn)}
+            rates = model.rates(poses, laws) if moves else None
+            found = model.numbers(poses, rates, None if chassis is None else chassis.turn[0])
+        found = found if chassis is None else chassis.moved(found)
         return Answer(asked_of(found, scene), {"newton_steps": poses.steps, "residuals": poses.evaluations})
 
     return solve

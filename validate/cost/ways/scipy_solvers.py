@@ -7,8 +7,8 @@ Jacobian, eqs. 19 and 22 of the paper) and what is read off the coordinates are 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,80 +40,65 @@ class SolverStopped(Exception):
         super().__init__(f"scipy.optimize.{solver} at t = {instant:.6g} s: {problem}")
 
 
-@dataclass(frozen=True)
-class InScipy:
-    """A solver of SciPy, as pointcoord takes solvers for poses.
+def in_scipy(
+    solver: str,
+    with_jacobian: bool,
+    size: float,
+    mechanism: Mechanism,
+    functions: Mapping[str, TimeFunction],
+    pose: Pose,
+    times: Array,
+    derivative: int,
+    term: SquareVelocityTerm,
+    tolerance: float,
+    /,
+) -> Solved:
+    """Poses and their rates, the first pose being given; what is proven of them is nothing.
 
-    Attributes:
+    Args:
         solver: `root`, by Powell's hybrid method, or `least_squares`, by a trust region.
         with_jacobian: whether it is given the Jacobian, or takes differences of the equations for it.
         size: its relative tolerance; of least_squares all three.
+    Raises:
+        SolverStopped: it ends without success, or came to another assembly: the sign of the Jacobian's
+            determinant changes where two of them meet.
     """
+    system, n = mechanism.map, mechanism.map.unknowns
+    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
+    y, here, residuals, jacobians = np.empty((len(times), system.size)), pose.y.copy(), 0, 0
 
-    solver: str
-    with_jacobian: bool
-    size: float
+    def at(u: Array) -> Array:
+        here[:n] = u
+        return here
 
-    def __call__(
-        self,
-        mechanism: Mechanism,
-        functions: Mapping[str, TimeFunction],
-        pose: Pose,
-        times: Array,
-        derivative: int,
-        term: SquareVelocityTerm,
-        tolerance: float,
-        /,
-    ) -> Solved:
-        """Poses and their rates, the first pose being given; what is proven of them is nothing.
-
-        Raises:
-            SolverStopped: it ends without success, or came to another assembly: the sign of the Jacobian's
-                determinant changes where two of them meet.
-        """
-        system, n = mechanism.map, mechanism.map.unknowns
-        known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
-        y, here, residuals, jacobians = np.empty((len(times), system.size)), pose.y.copy(), 0, 0
-
-        def residual(u: Array) -> Array:
-            here[:n] = u
-            return system.residual(here)
-
-        def jacobian(u: Array) -> Array:
-            here[:n] = u
-            return system.jacobian(here)
-
-        y[0] = here
-        for i, instant in enumerate(times.tolist()[1:], 1):
-            here[n:], u = known[i, 0], here[:n].copy()
-            if self.solver == "root":
-                told = jacobian if self.with_jacobian else None
-                found = root(residual, u, jac=told, method="hybr", options={"xtol": self.size})
-            else:
-                slope = jacobian if self.with_jacobian else "2-point"
-                found = least_squares(residual, u, jac=slope, xtol=self.size, ftol=self.size, gtol=self.size)
-            if not found.success:
-                raise SolverStopped(self.solver, instant, " ".join(str(found.message).split()))
-            left = float(np.abs(found.fun).max())
-            if not left <= 10.0 * self.size + NOISE:
-                # A least sum of squares may be none of the equations' roots.
-                raise SolverStopped(self.solver, instant, f"the equations are left at {left:.3g}")
-            here[:n] = found.x
-            y[i] = here
-            residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
-        signs = np.linalg.slogdet(system.jacobian(y))[0]
-        other = np.flatnonzero(signs != signs[0])
-        if len(other):
-            raise SolverStopped(
-                self.solver, float(times[other[0]]), "it came to another assembly than is drawn"
-            )
-        work = Work(residuals=residuals, factorisations=jacobians)
-        return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
+    slope: Any = (lambda u: system.jacobian(at(u))) if with_jacobian else None
+    if solver == "root":
+        solve = partial(root, jac=slope, method="hybr", options={"xtol": size})
+    else:
+        solve = partial(least_squares, jac=slope or "2-point", xtol=size, ftol=size, gtol=size)
+    y[0] = here
+    for i, instant in enumerate(times.tolist()[1:], 1):
+        here[n:] = known[i, 0]
+        found = solve(lambda u: system.residual(at(u)), here[:n].copy())
+        if not found.success:
+            raise SolverStopped(solver, instant, " ".join(str(found.message).split()))
+        left = float(np.abs(found.fun).max())
+        if not left <= 10.0 * size + NOISE:
+            # A least sum of squares may be none of the equations' roots.
+            raise SolverStopped(solver, instant, f"the equations are left at {left:.3g}")
+        y[i] = at(found.x)
+        residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
+    signs = np.linalg.slogdet(system.jacobian(y))[0]
+    for instant in times[signs != signs[0]][:1]:
+        raise SolverStopped(solver, float(instant), "it came to another assembly than is drawn")
+    work = Work(residuals=residuals, factorisations=jacobians)
+    return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
 
 
 def by_scipy(solver: str, with_jacobian: bool, scene: Scene, size: float) -> Solve:
     """The equations solved by SciPy."""
-    return by_method(Method("scipy", at_instants=InScipy(solver, with_jacobian, size)), scene, TOLERANCE)
+    method = Method("scipy", at_instants=partial(in_scipy, solver, with_jacobian, size))
+    return by_method(method, scene, TOLERANCE)
 
 
 WAYS = tuple(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -18,15 +17,9 @@ if TYPE_CHECKING:
 
     from validate.cost.looks import Look
 
-# An error of exactly nothing has no place on a logarithmic axis; it is drawn so far below the least one.
-BELOW = 10.0
 # Scenes whose curves are drawn, and full tables and their lines, at most: a page stays small.
 SCENES, TABLES, LINES = 8, 60, 120
 LINE = 1.5  # pixels, of a curve
-KEY = (
-    "A line is a way, a mark one of its settings; down is more accurate, left is quicker. Filled and with a "
-    "star: one solve serves any instant; hollow: every instant is solved."
-)
 
 
 def _blocks(run: Run) -> Sequence[Block]:
@@ -36,7 +29,7 @@ def _blocks(run: Run) -> Sequence[Block]:
 def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     # Imported here: pandas takes half a second, and most pages tell of no cost.
     from validate.cost.findings import quantities_of, timed
-    from validate.cost.looks import looks
+    from validate.cost.looks import KEY, looks
 
     accuracy = timed(cost.table, "accuracy")
     ways, scenes = looks(accuracy.way), list(dict.fromkeys(accuracy.scene))
@@ -59,35 +52,33 @@ def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     if len(scenes) > SCENES:
         yield Paragraph(f"Drawn are the first {SCENES} of {len(scenes)} scenes.")
     if of_this_run:
-        for table in cost.tables[:TABLES]:
-            yield Table(tuple(table.head), table.rows[:LINES], caption=table.title, folded=True)
+        yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables()[:TABLES])
     for row in cost.rows:
         if row.verdict == "failed":
             yield Paragraph(f"{row.scene}, {row.way} {row.setting}: failed: {row.reason}")
 
 
 def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel:
-    from validate.cost.findings import unit_of, words_of
+    from validate.cost.findings import heights, unit_of, words_of
 
-    least = here.error[here.error > 0.0].min()
-    floor = (1e-16 if math.isnan(least) else least) / BELOW
-    traces = [_trace(way, ways[way], line, floor) for way, line in here.groupby("way", sort=False)]
+    drawn, nothing = heights(here.error)
+    here = here.assign(error=drawn)
+    traces = [_trace(way, ways[way], line) for way, line in here.groupby("way", sort=False)]
     layout = {
         "xaxis": axis("time a pose [us]", logarithmic=True),
         "yaxis": axis(f"largest error [{plain(unit_of(quantity))}]", logarithmic=True),
     }
-    nothing = ", exactly 0 at the lower edge" if (here.error == 0.0).any() else ""
     return Panel(f"{words_of(quantity)}: largest error over time{nothing}", tuple(traces), layout)
 
 
-def _trace(way: str, look: Look, line: pd.DataFrame, floor: float) -> Mapping[str, Any]:
+def _trace(way: str, look: Look, line: pd.DataFrame) -> Mapping[str, Any]:
     """As in the pictures: filled markers and a star for a way whose one solve serves any instant."""
     dash, dense = ",".join(f"{LINE * length:g}px" for length in look.dash), bool(line.dense.any())
     # Thin symbols have no inside.
     edge = {"width": LINE, "color": look.colour}
     return {
         "x": numbers(1e6 * line.time.to_numpy(), 4),
-        "y": numbers(line.error.clip(lower=floor).to_numpy(), 3),
+        "y": numbers(line.error.to_numpy(), 3),
         "name": plain(way) + ("*" if dense else ""),
         "mode": "lines+markers",
         "line": {"color": look.colour, "width": LINE, **({"dash": dash} if dash else {})},

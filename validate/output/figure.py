@@ -1,16 +1,18 @@
-"""How a picture looks: its letters and frame, and the look of each way as matplotlib has it."""
+"""How pictures by matplotlib look: their letters, frame and colours. It is of the extra `plot`."""
 
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import matplotlib as mpl
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from validate.extras import MissingPackage
 
-if TYPE_CHECKING:
-    from validate.cost.looks import Look
+try:
+    import matplotlib as mpl
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+except ImportError as error:
+    raise MissingPackage("validate.output.figure", error, "plot") from None
 
 # Okabe and Ito, Color Universal Design, 2008; yellow is left out, being too light for lines on paper.
 ORANGE, SKY, GREEN, BLUE, RED, PINK = (
@@ -41,20 +43,6 @@ SETTINGS: Any = {
     "savefig.facecolor": "white",
 }
 DOTS = 200  # to an inch, of a PNG
-
-
-def style(look: Look, dense: bool) -> dict[str, Any]:
-    """As matplotlib's options; markers are filled for a dense way, else hollow."""
-    return {
-        "color": look.colour,
-        "marker": look.marker,
-        "markersize": 5.5,
-        "markerfacecolor": look.colour if dense else "white",
-        "markeredgecolor": look.colour,
-        "markeredgewidth": 1.1,
-        "linewidth": 1.3,
-        "linestyle": (0, look.dash) if look.dash else "-",
-    }
 
 
 def plain(axes: Axes) -> None:

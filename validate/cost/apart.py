@@ -7,40 +7,32 @@ system can do that. A process that dies is a failed row with the reason.
 
 from __future__ import annotations
 
-import json
 import os
 import pickle
 import resource
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
-from validate.cost.parts.loading import environment
-from validate.cost.race import Effort, Found, Runner, race
-from validate.cost.row import Row
+import validate
+from validate.cost.race import Effort, Found, Runner, absent, race
+from validate.cost.table import Row
 
-PROGRAM = "from validate.cost.growth.child import answer; answer()"
+PROGRAM = "from validate.cost.apart import answer; answer()"
+THREADS = ("OPENBLAS", "OMP", "MKL", "NUMEXPR")
 GRACE = 60.0  # s, beyond what the runs may take: Python, imports, the check of the numbers
 STATUS, CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 RESTART_PEAK = "5"  # proc(5): the peak of resident memory becomes what is resident now
 
 
-class Task(Protocol):
-    """Work of some size. It travels to another process, so it is plain data."""
-
-    @property
-    def smallest(self) -> Task:
-        """The same work of the least size, which loads all that it needs."""
-        ...
-
-    def runner(self, row: Row) -> Runner:
-        """What is timed; what it is given is made here, and is no part of it."""
-        ...
+Make = Callable[[Row, int], Runner]
+"""What is timed of a row's work at a size; it travels to another process, so it is a function of a module, or
+a partial of one. What is given to the run is made here, and is no part of it."""
 
 
 @dataclass(frozen=True)
@@ -56,51 +48,77 @@ class Limits:
     memory: int = 8 * 2**30
 
 
-def measure_apart(task: Task, row: Row, limits: Limits) -> list[Row]:
-    """The rows of a task that is measured in a process of its own, by one thread."""
-    # One run may take some times what was foreseen.
-    patience = 5.0 * limits.seconds + GRACE
-    failed = replace(row, poses=0, verdict="failed")
+class NotRun(Exception):
+    """A process did not do what it was started for; says how it ended, and its last line."""
+
+
+def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
+    """The rows of a row's size, measured in a process of its own, by one thread.
+
+    Args:
+        least: the size that loads all that the work needs.
+    """
+    given = pickle.dumps((make, least, row, limits))
+    try:
+        # One run may take some times what was foreseen.
+        found = run_python("-c", PROGRAM, given=given, patience=5.0 * limits.seconds + GRACE)
+        rows: list[Row] = pickle.loads(found)
+        return rows
+    except NotRun as error:
+        reason = str(error)
+    except (EOFError, pickle.UnpicklingError):
+        reason = "ended without an answer"
+    return [replace(row, **absent("failed", f"its process {reason}"))]
+
+
+def run_python(*words: str, given: bytes = b"", patience: float = 300.0) -> bytes:
+    """What Python writes, run to its end by one thread, with this package first on its path.
+
+    Args:
+        given: its standard input. patience: s.
+    Raises:
+        NotRun: it failed.
+    """
+    source = str(Path(validate.__file__).parents[1])
+    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
+    threads = {f"{name}_NUM_THREADS": "1" for name in THREADS}
     try:
         done = subprocess.run(
-            [sys.executable, "-c", PROGRAM],
-            input=pickle.dumps((task, row, limits)),
+            [sys.executable, *words],
+            input=given,
             capture_output=True,
             timeout=patience,
-            env=environment(),
+            env={**os.environ, **threads, "PYTHONPATH": path},
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return [replace(failed, reason=f"was ended after {patience:.0f} s")]
+        raise NotRun(f"was ended after {patience:.0f} s") from None
     if done.returncode < 0:
         name = signal.Signals(-done.returncode).name
         hint = ", as a system out of memory does" if name == "SIGKILL" else ""
-        return [replace(failed, reason=f"its process was ended by the signal {name}{hint}")]
-    try:
-        return [Row(**content) for content in json.loads(done.stdout)]
-    except (ValueError, TypeError):
-        lines = done.stderr.decode(errors="replace").strip().splitlines()
-        last = f": {lines[-1]}" if lines else ""
-        reason = f"its process ended with status {done.returncode} and no answer{last}"
-        return [replace(failed, reason=reason)]
+        raise NotRun(f"was ended by the signal {name}{hint}")
+    if done.returncode:
+        said = done.stderr.decode(errors="replace").strip().splitlines()
+        raise NotRun(f"ended with status {done.returncode}{': ' + said[-1] if said else ''}")
+    return done.stdout
 
 
 def answer() -> None:
-    """In the process: measure the task that standard input brings, and write its rows."""
+    """In the process: measure what standard input brings, and write its rows."""
     # What libraries print must not mix with the answer.
     out = os.dup(1)
     os.dup2(2, 1)
-    task, row, limits = pickle.load(sys.stdin.buffer)
+    make, least, row, limits = pickle.load(sys.stdin.buffer)
     limit_memory(limits.memory)
-    text = json.dumps([asdict(one) for one in measured(task, row, limits)], allow_nan=False)
-    with open(out, "w", encoding="utf-8") as stream:
-        stream.write(text)
+    rows = measured(make, least, row, limits)
+    with open(out, "wb") as stream:
+        pickle.dump(rows, stream)
 
 
-def measured(task: Task, row: Row, limits: Limits) -> Sequence[Row]:
-    """A task's rows in this process, with the peak of its first run."""
-    race([task.smallest.runner(row)], Effort(repeats=0))
-    runner = task.runner(row)
+def measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
+    """The rows in this process, with the peak of the first run."""
+    race([make(row, least)], Effort(repeats=0))
+    runner = make(row, row.size or 0)
     held = restart_peak()
     most = [0]
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
+from typing import Any
 
 import matplotlib as mpl
 import pandas as pd
@@ -11,16 +11,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from validate.cost.findings import ACCURACIES, growths, quantities_of, timed, unit_of, words_of
-from validate.cost.looks import looks
-from validate.cost.picture.look import GREY, SETTINGS, plain, style
+from validate.cost.findings import (
+    ACCURACIES,
+    LINE,
+    grown,
+    growths,
+    heights,
+    quantities_of,
+    timed,
+    unit_of,
+    words_of,
+)
+from validate.cost.looks import KEY, Look, looks
+from validate.cost.words import power
+from validate.output.figure import GREY, SETTINGS, plain
 
 COLUMNS, WIDE, HIGH = 3, 3.7, 3.6  # of panels; inches of each
-KEY = (
-    "A line is a way, a mark one of its settings. Down is more accurate, left is quicker.\n"
-    "* and filled: one solve serves any instant. Grey lines: 1e-3, 1e-6 and 1e-9. Set-up is apart."
-)
-BELOW = 10.0  # an error of exactly nothing is drawn so far below the least one
 
 
 def headline(table: pd.DataFrame) -> Figure | None:
@@ -39,9 +45,8 @@ def figures(table: pd.DataFrame) -> Iterator[tuple[str, Figure]]:
         yield "headline", first
     for scene, here in timed(table, "accuracy").groupby("scene", sort=False):
         yield f"error-time-{scene}", _errors(here, quantities_of(here))
-    found = timed(table, "growth")
-    for (against, scene), here in found.groupby(["against", "scene"], sort=False):
-        yield f"growth-{against}-{scene}", _growth(growths(here), here, against, scene)
+    for (against, scene), here in timed(table, "growth").groupby(["against", "scene"], sort=False):
+        yield f"growth-{against}-{scene}", _growth(here, f"{scene}: growth in {against}")
 
 
 @mpl.rc_context(SETTINGS)
@@ -51,41 +56,36 @@ def _errors(here: pd.DataFrame, quantities: list[str]) -> Figure:
     page, panels = _page(title, len(quantities))
     for axes, quantity in zip(panels, quantities, strict=False):
         some = here[here.quantity == quantity]
-        least = some.error[some.error > 0.0].min()
-        floor = (1e-16 if math.isnan(least) else least) / BELOW
+        drawn, nothing = heights(some.error)
         for way, look in looks(some.way).items():
             line = some[some.way == way].sort_values("value", ascending=False)
-            heights = line.error.clip(lower=floor)
-            axes.plot(1e6 * line.time, heights, zorder=3, **style(look, bool(line.dense.any())))
+            places = (1e6 * line.time, drawn[line.index])
+            axes.plot(*places, zorder=3, **_style(look, bool(line.dense.any())))
         for accuracy in ACCURACIES:
             axes.axhline(accuracy, color=GREY, linewidth=0.8, zorder=1)
-        nothing = "; exactly 0 at the lower edge" if (some.error == 0.0).any() else ""
         axes.set_title(words_of(quantity) + nothing, loc="left")
         axes.set_xlabel("time of a pose, us")
         axes.set_ylabel(f"largest error, {unit_of(quantity)}")
-    _legend(page, here, KEY)
+    grey = f"Grey: {', '.join(map(power, ACCURACIES))}; the set-up is apart."
+    _legend(page, here, KEY.replace(". ", ".\n") + f" {grey}")
     return page
 
 
 @mpl.rc_context(SETTINGS)
-def _growth(fits: pd.DataFrame, here: pd.DataFrame, against: str, scene: str) -> Figure:
+def _growth(here: pd.DataFrame, title: str) -> Figure:
     """Time and memory of a run, a line for each way, with its exponent."""
-    page, panels = _page(f"{scene}: growth in {against}", 2)
-    for axes, (of, unit, words) in zip(
-        panels, (("time", 1.0, "time of a run, s"), ("memory", 1e-6, "peak of memory, MB")), strict=False
-    ):
-        for one in fits[fits.of == of].itertuples():
-            line = here[(here.way == one.way) & (here.setting == one.setting)]
-            line = line.sort_values("size").drop_duplicates("size", keep="last")
-            run = line.time * line.poses.astype(float) + (0.0 if against == "instants" else line.set_up)
-            values = run if of == "time" else line.peak_bytes.astype(float)
+    page, panels = _page(title, 2)
+    values = grown(here).set_index([*LINE, "of"]).sort_index(kind="stable")
+    labels = {"time": (1.0, "time of a run, s"), "memory": (1e-6, "peak of memory, MB")}
+    for axes, (of, (unit, words)) in zip(panels, labels.items(), strict=False):
+        for one in growths(here).query("of == @of").itertuples():
+            line = values.loc[[(one.against, one.scene, one.way, one.setting, of)]]
             look = looks([one.way])[one.way]
-            axes.plot(line["size"].astype(float), unit * values, **style(look, bool(line.dense.any())))
-            power = "" if pd.isna(one.exponent) else f" {one.exponent:.2f}"
-            end = (float(line["size"].iloc[-1]), unit * float(values.iloc[-1]))
-            axes.annotate(power, end, fontsize=7, color=look.colour)
+            axes.plot(line["size"].astype(float), unit * line.value, **_style(look, bool(line.dense.any())))
+            exponent = "" if pd.isna(one.exponent) else f" {one.exponent:.2f}"
+            axes.annotate(exponent, (one.largest, unit * one.value), fontsize=7, color=look.colour)
         axes.set_title(of, loc="left")
-        axes.set_xlabel(against)
+        axes.set_xlabel(here.against.iloc[0])
         axes.set_ylabel(words)
     _legend(page, here, "Beside a line: the exponent p of value = factor x size^p, of the largest sizes.")
     return page
@@ -110,7 +110,7 @@ def _legend(page: Figure, here: pd.DataFrame, key: str) -> None:
     """The ways below the panels, and how to read them."""
     dense = {way for way, some in here.groupby("way") if some.dense.any()}
     entries = [
-        Line2D([], [], label=f"{way}*" if way in dense else way, **style(look, way in dense))
+        Line2D([], [], label=f"{way}*" if way in dense else way, **_style(look, way in dense))
         for way, look in looks(here.way).items()
     ]
     columns = max(int(page.get_figwidth() / 1.5), 2)
@@ -123,3 +123,16 @@ def _legend(page: Figure, here: pd.DataFrame, key: str) -> None:
         title=key,
         title_fontsize=7.5,
     ).set_alignment("left")
+
+
+def _style(look: Look, dense: bool) -> dict[str, Any]:
+    """As matplotlib's options; markers are filled for a dense way, else hollow."""
+    return {
+        "color": look.colour,
+        "marker": look.marker,
+        "markersize": 5.5,
+        "markerfacecolor": look.colour if dense else "white",
+        "markeredgewidth": 1.1,
+        "linewidth": 1.3,
+        "linestyle": (0, look.dash) if look.dash else "-",
+    }

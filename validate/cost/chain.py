@@ -14,21 +14,19 @@ one intersection of two circles. Every drawn number is an integer: nothing of th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.simulation import scene_mechanism
 from pointcoord.time_functions import Sine
 from validate.extras import MissingPackage
 
 try:
     from mpmath import mp, mpf
 except ModuleNotFoundError as error:
-    raise MissingPackage("validate.cost.growth.chain", error) from None
+    raise MissingPackage("validate.cost.chain", error) from None
 
 Array = NDArray[np.float64]
 
@@ -92,23 +90,14 @@ class FourBarChain:
             "side": "right",
             "points": {name: place.tolist() for name, place in self.points.items()},
         }
-        law = {
-            "amplitude": SWING.amplitude,
-            "angular_frequency": SWING.angular_frequency,
-            "offset": SWING.offset,
-        }
         content = {
             "title": f"chain of {self.rockers} rockers",
             "tolerance": TOLERANCE,
             "mechanism": mechanism,
-            "inputs": {"arm_angle": {"sine": law}},
+            "inputs": {"arm_angle": {"sine": asdict(SWING)}},
             "time": {"start": 0.0, "stop": STOP, "samples": 6},
         }
         return Scene.from_mapping(content, "chain of four-bars")
-
-    def mechanism(self) -> Mechanism:
-        """The chain as point coordinates."""
-        return scene_mechanism(self.scene())
 
     def closed_form(self, instants: Array) -> Array:
         """Tips at instants of shape (N,) in many digits, each rounded once: (N, rockers, 3), mm."""
