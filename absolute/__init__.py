@@ -8,7 +8,6 @@ from absolute.effects.effect import Effect
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
-    BranchError,
     DescriptionError,
     InputError,
     MissingPinocchioError,
@@ -25,7 +24,6 @@ __all__ = [
     "Assembled",
     "AssemblyError",
     "Axis",
-    "BranchError",
     "ClosedDrawing",
     "Corner",
     "DescriptionError",

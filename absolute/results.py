@@ -9,8 +9,8 @@ from absolute.description import Corner
 from absolute.effects.effect import Effect
 from absolute.mapping import ReadOnly
 from absolute.mechanism import Mechanism
+from absolute.newton import Configurations
 from absolute.precision import EPS
-from absolute.refine import Refined
 from absolute.solution import Array, Solution
 from absolute.turning import Turning
 from absolute.vectors import cross
@@ -59,18 +59,23 @@ class Record:
         self._residual = np.zeros(count)
         self.written = 0
 
-    def store(self, refined: Refined, count: int) -> None:
-        """Keep the first `count` of some refined instants, after those kept before."""
-        part = slice(self.written, self.written + count)
-        self._rotation[part] = refined.rotation[:count]
-        self._origin[part] = refined.origin[:count]
-        if self._asked.rates:
+    def store(
+        self,
+        found: Configurations,
+        residual: Array,
+        velocity: Array | None = None,
+        acceleration: Array | None = None,
+    ) -> None:
+        """Keep some instants, after those kept before, with rates of their moving bodies if there are any."""
+        part = slice(self.written, self.written + len(found.q))
+        self._rotation[part], self._origin[part] = found.rotation, found.origin
+        if velocity is not None and acceleration is not None:
             bodies = self._velocity[part, 1:]
-            bodies[...] = refined.velocity[:count].reshape(bodies.shape)
-            self._acceleration[part, 1:] = refined.acceleration[:count].reshape(bodies.shape)
-        self._iterations[part] = refined.corrections[:count]
-        self._residual[part] = refined.residual[:count]
-        self.written += count
+            bodies[...] = velocity.reshape(bodies.shape)
+            self._acceleration[part, 1:] = acceleration.reshape(bodies.shape)
+        self._iterations[part] = found.corrections
+        self._residual[part] = residual
+        self.written += len(found.q)
 
     def solution(self) -> Solution:
         """The instants solved so far in mm, seen from the ground."""
