@@ -42,7 +42,7 @@ SHORTEST_STEP = math.sqrt(EPS)
 # Thousands of the longest steps to one instant would be many turns around. A guard against endless work.
 MOST_STEPS = 2000
 # Instants of one step: enough to share the cost of a call, few enough to stay in fast memory.
-FEW_INSTANTS, MOST_INSTANTS = 8, 64
+FEW_INSTANTS, MOST_INSTANTS = 16, 64
 
 
 class BlockedError(Exception):

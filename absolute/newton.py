@@ -145,7 +145,7 @@ def newton(
 
 def leading(right: NDArray[np.bool_]) -> int:
     """How many there are before the first that is not right."""
-    return int(np.argmin(np.append(right, False)))
+    return len(right) if right.all() else int(right.argmin())
 
 
 def lengths(steps: Array) -> Array:
