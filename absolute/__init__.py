@@ -3,8 +3,7 @@
 from absolute.closing import ClosedDrawing, close_drawing
 from absolute.compiler import compile
 from absolute.description import Axis, Corner, Input, Joint, Model
-from absolute.effects import EFFECTS
-from absolute.effects.effect import Effect
+from absolute.effects import EFFECTS, Effect
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,

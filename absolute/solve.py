@@ -1,6 +1,6 @@
 """Solve a motion: assemble the drawing, follow it through the instants, and take the rates there."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from absolute.input_arrays import chassis_series, input_series
 from absolute.mechanism import Mechanism
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
 from absolute.precision import EPS
-from absolute.results import Asked, Record
+from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
 from absolute.turning import turnings
 
@@ -40,7 +40,7 @@ def solve(
             points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        effects: names of EFFECTS. One that needs derivatives over time brings the rates with it.
+        effects: names of EFFECTS.
     Returns:
         Solution with one row per instant.
     Raises:
@@ -89,45 +89,55 @@ class Assembled:
         effects: Sequence[str] = (),
     ) -> Solution:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
-        model = self.model
+        model, mechanism = self.model, self._mechanism
         asked = effects_of(effects)
         for effect in asked:
             model.corner.ends(effect.role)
-        rates = rates or any(effect.derivative > 0 for effect in asked)
         series = driven_series(model, inputs)
         carried = chassis_series(chassis, len(series))
         turns = turnings(model, inputs, len(series))
-        record = Record(self._mechanism, carried, Asked(rates, conditions, asked), turns)
-        try:
-            self._follow(series, rates, record)
-        except AbsoluteError as error:
-            error.partial = record.solution() if record.written else None
-            raise
-        return record.solution()
+        bodies = len(mechanism.drawing.bodies)
+        rotation, origin, moving, residual = (
+            np.zeros((0, *shape)) for shape in ((bodies, 3, 3), (bodies, 3), (2, bodies, 2, 3), ())
+        )
+        runs = [Instants(rotation, origin, moving, residual, np.zeros(0, dtype=np.int64))]
 
-    def _follow(self, series: Array, rated: bool, record: Record) -> None:
-        """Find the poses for inputs (N, 3, inputs) from the assembled drawing on, and write them down."""
-        mechanism = self._mechanism
+        def solution() -> Solution:
+            instants = Instants(*(np.concatenate(parts) for parts in zip(*runs, strict=True)))
+            count = len(instants.residual)
+            motion = Motion(mechanism, instants, carried[:count], tuple(turn.first(count) for turn in turns))
+            return motion.solution(rates, conditions, asked)
+
         # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
-        with np.errstate(over="ignore", invalid="ignore"):
-            targets = mechanism.targets(*series.swapaxes(0, 1))
-            for found in through(mechanism, self._drawn, series[:, 0]):
-                if not rated:
-                    record.store(found, found.residual)
-                    continue
-                of = slice(record.written, record.written + len(found.q))
-                velocity, acceleration = rates(mechanism, found, *targets[1:, of])
-                residual, held = _of_rates(mechanism, found, velocity)
-                finite = _in_range(mechanism, velocity, acceleration)
-                good = leading(held & finite)
-                part = slice(good)
-                record.store(found.part(part), residual[part], velocity[part], acceleration[part])
-                if good < len(found.q):
-                    bad = record.written
-                    if not held[good]:
-                        at = found.part(slice(good, good + 1))
-                        raise locked(mechanism, bad, at, series[bad, 0].tolist())
-                    raise _overflow(mechanism, bad, series[bad, 1:])
+        try:
+            with np.errstate(over="ignore", invalid="ignore"):
+                for run in self._followed(series, rates):
+                    runs.append(run)
+        except AbsoluteError as error:
+            error.partial = solution() if len(runs) > 1 else None
+            raise
+        return solution()
+
+    def _followed(self, series: Array, rated: bool) -> Iterator[Instants]:
+        """The instants of inputs (N, 3, inputs), one run of them after the other."""
+        mechanism, done = self._mechanism, 0
+        targets = mechanism.targets(*series.swapaxes(0, 1))
+        for found in through(mechanism, self._drawn, series[:, 0]):
+            count = good = len(found.q)
+            moving, residual = np.zeros((count, 2, found.origin.shape[1], 2, 3)), found.residual
+            if rated:
+                both = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
+                moving[:, :, 1:] = both.reshape(moving[:, :, 1:].shape)
+                residual, held = _of_rates(mechanism, found, both[:, 0])
+                good = leading(held & _in_range(mechanism, both))
+            if good:
+                few = found.part(slice(good))
+                yield Instants(few.rotation, few.origin, moving[:good], residual[:good], few.corrections)
+            done += good
+            if good < count:
+                if held[good]:
+                    raise _overflow(mechanism, done, series[done, 1:])
+                raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
 
 
 def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
@@ -157,11 +167,11 @@ def _of_rates(
     return np.maximum(found.residual, missed), rate <= LEFT_OUT * more_than_rounding(found.inverse) * speed
 
 
-def _in_range(mechanism: Mechanism, velocity: Array, acceleration: Array) -> NDArray[np.bool_]:
+def _in_range(mechanism: Mechanism, rates: Array) -> NDArray[np.bool_]:
     """(N,) whether accelerations of all points are finite in mm: o'' + w' x r + w x (w x r), where no r is
     longer than twice the size, so that no component is more than 8 (|a| + |v|^2) for the largest of the
-    numbers of the bodies."""
-    speed, second = (np.abs(rate).max(axis=1) for rate in (velocity, acceleration))
+    numbers (N, 2, rows) of the bodies."""
+    speed, second = np.abs(rates).max(axis=2).T
     return np.asarray(np.isfinite(8.0 * (second + speed * speed) * max(1.0, mechanism.drawing.size)))
 
 
