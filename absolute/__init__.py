@@ -3,12 +3,10 @@
 from absolute.closing import ClosedDrawing, close_drawing
 from absolute.compiler import compile
 from absolute.description import Axis, Corner, Input, Joint, Model
-from absolute.effects import EFFECTS
-from absolute.effects.effect import Effect
+from absolute.effects import EFFECTS, Effect
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
-    BranchError,
     DescriptionError,
     InputError,
     MissingPinocchioError,
@@ -25,7 +23,6 @@ __all__ = [
     "Assembled",
     "AssemblyError",
     "Axis",
-    "BranchError",
     "ClosedDrawing",
     "Corner",
     "DescriptionError",

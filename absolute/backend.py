@@ -1,13 +1,12 @@
-"""Pinocchio and its linear algebra, or one line that says how to get them; all modules get them here."""
+"""Pinocchio, or one line that says how to get it; all modules get it here."""
 
 from absolute.errors import MissingPinocchioError
 
 try:
-    import eigenpy
     import pinocchio as pin
 except ImportError as error:
     raise MissingPinocchioError(
         f"the absolute model needs Pinocchio ({error}): pip install 'pointcoord[validate]'"
     ) from None
 
-__all__ = ["eigenpy", "pin"]
+__all__ = ["pin"]

@@ -31,7 +31,7 @@ def close_drawing(model: Model) -> ClosedDrawing:
     """Solve a model at the inputs of its own drawing, chassis at rest.
 
     Raises:
-        DescriptionError, AssemblyError, BranchError, SingularError: as `solve`.
+        DescriptionError, AssemblyError, SingularError: as `solve`.
     """
     mechanism = Mechanism(model)
     # A drawn rack at its centre is at 0, not at -0.

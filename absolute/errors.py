@@ -87,10 +87,6 @@ class AssemblyError(PoseError):
     """The bodies as drawn cannot be joined by a continuous change of the drawing."""
 
 
-class BranchError(PoseError):
-    """The pose found for an instant is not on the branch of the drawing."""
-
-
 class UnreachableError(PoseError):
     """No continuous motion of the assembled mechanism leads to these inputs."""
 

@@ -1,13 +1,9 @@
-r"""Groups of bodies that their rows fix one after the other, and the inverses of Jacobians by these.
+"""Groups of bodies that their rows fix one after the other.
 
 The bodies of a group have as many rows among themselves, the chassis and the groups before as they have
 freedoms: a driven link alone, then what hangs between such (Assur). In this order of bodies and rows the
-Jacobian J is block triangular, and so is its inverse K,
-
-    K_gg = J_gg^-1,    K_gp = -K_gg J_gp K_pp
-
-with p all groups before g: small inverses and a few products. A block's determinant changes its sign where
-the assemblies of its group meet, and so tells more than that of J, which is the product of all.
+Jacobian is block triangular. A block's determinant changes its sign where the assemblies of its group meet,
+and so tells more than that of the Jacobian, which is the product of all.
 """
 
 from functools import cache
@@ -20,22 +16,17 @@ from absolute.solution import Array
 
 Places = NDArray[np.intp]
 
-# An inverse that is off by some such share of itself serves to solve and to correct.
-SERVES = 1e-4
-
 
 class Groups(NamedTuple):
     """The order in which a Jacobian is block triangular.
 
     Attributes:
         rows, columns: places of the Jacobian's rows and columns in that order.
-        column_place: where each column of the Jacobian is in it.
         ends: after how many each group ends.
     """
 
     rows: Places
     columns: Places
-    column_place: Places
     ends: tuple[int, ...]
 
     @property
@@ -74,7 +65,7 @@ def groups_of(first: Places, second: Places, bodies: int) -> Groups:
     freedoms = 6 * (bodies - 1)
     if len(pairs) != freedoms or not all(matched(row, set()) for row in range(len(pairs))):
         whole = np.arange(freedoms)
-        return Groups(np.arange(len(pairs)), whole, whole, (freedoms,))
+        return Groups(np.arange(len(pairs)), whole, (freedoms,))
     waits = np.eye(bodies, dtype=np.bool_)
     for body, rows in enumerate(own):
         waits[body, [each for row in rows for each in pairs[row]]] = True
@@ -90,9 +81,7 @@ def groups_of(first: Places, second: Places, bodies: int) -> Groups:
         if place == bodies - 1 or group[order[place]] != group[order[place - 1]]
     ]
     columns = np.add.outer(6 * (np.array(order) - 1), np.arange(6)).ravel()
-    return Groups(
-        np.array([row for body in order for row in own[body]]), columns, np.argsort(columns), tuple(ends)
-    )
+    return Groups(np.array([row for body in order for row in own[body]]), columns, tuple(ends))
 
 
 def signs_of(groups: Groups, jacobian: Array) -> Array:
@@ -111,48 +100,3 @@ def _alike(ends: tuple[int, ...]) -> tuple[tuple[Places, Places], ...]:
     sizes = np.array(ends) - starts
     alike = [np.flatnonzero(sizes == size) for size in np.unique(sizes)]
     return tuple((numbers, np.add.outer(starts[numbers], np.arange(sizes[numbers[0]]))) for numbers in alike)
-
-
-def inverses(groups: Groups, jacobian: Array) -> tuple[Array, Array]:
-    """Inverses of Jacobians (N, rows, rows), and signs (N, groups) of the determinants of their blocks.
-
-    The inverses are in the order of the groups; not numbers, with a sign of 0, where one is singular.
-    """
-    count, size = jacobian.shape[:2]
-    # Column by column, as they are made.
-    flat = jacobian.swapaxes(-1, -2).reshape(count, -1)
-    places = groups.columns * size + groups.rows[:, None]
-    inverse = np.zeros((count, size, size))
-    signs = np.empty((count, len(groups.ends)))
-    for number, own in enumerate(groups.blocks):
-        before = slice(own.start)
-        found, signs[:, number] = directly(flat.take(places[own, own], 1))
-        inverse[:, own, own] = found
-        if own.start:
-            coupling = flat.take(places[own, before], 1)
-            inverse[:, own, before] = -found @ (coupling @ inverse[:, before, before])
-    return inverse, signs
-
-
-def directly(block: Array) -> tuple[Array, Array]:
-    """Inverses of N blocks and signs of their determinants by factors of each."""
-    try:
-        inverse = np.linalg.inv(block)
-    except np.linalg.LinAlgError:  # one of them is singular to the last digit
-        if len(block) == 1:
-            return np.full_like(block, np.nan), np.zeros(1)
-        each = [directly(matrix[None]) for matrix in block]
-        return np.concatenate([found for found, _ in each]), np.concatenate([sign for _, sign in each])
-    return np.asarray(inverse), np.asarray(np.linalg.slogdet(block)[0])
-
-
-def magnitude(matrices: Array) -> Array:
-    """(N,) Frobenius norms."""
-    flat = matrices.reshape(len(matrices), -1)
-    return np.asarray(np.sqrt(np.vecdot(flat, flat)))
-
-
-def times(groups: Groups, inverse: Array, right_hand: Array) -> Array:
-    """(N, rows) products of such inverses with right-hand sides in the order of the Jacobian's rows."""
-    product: Array = np.matvec(inverse, right_hand.take(groups.rows, -1))
-    return product.take(groups.column_place, -1)

@@ -2,57 +2,56 @@
 
 import numpy as np
 
-from absolute.backend import eigenpy
-from absolute.continuation import BlockedError, follow
-from absolute.errors import AssemblyError, BranchError, SingularError
+from absolute.errors import AssemblyError, SingularError
+from absolute.follow import BlockedError, follow
 from absolute.limits import limited_by, limits_at
 from absolute.mechanism import Mechanism, too_many_rows
-from absolute.newton import SMALLEST_RCOND, Pose, held_at, inverse, pose_at
+from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at
 from absolute.solution import Array
-from absolute.stack import Placed, RowStack
 
 # Two assemblies are about as far from each other as a mechanism is large. Of 300 struts with every point up
 # to 200 mm off, two closed to another one than their rods are drawn on, and moved by 0.82 and 1.11 of it.
 FURTHEST = 0.8
 
 
-def assemble(mechanism: Mechanism) -> tuple[Pose, int]:
+def assemble(mechanism: Mechanism) -> Configurations:
     """The assembled pose on the branch of the drawing, at the inputs of the drawing.
 
     The rows keep a shrinking share of the violation they have in the drawing: rows(q) =
     (1 - share) rows(drawn) + share * target, without meeting a singular pose.
 
     Returns:
-        The pose and the Newton corrections of the way that led to it.
+        The pose, with the Newton corrections of the way that led to it.
     Raises:
         SingularError: the drawing itself is singular.
         AssemblyError: the drawing stands for two assemblies; closing it locks the mechanism.
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     drawn = _drawn_pose(mechanism)
-    gap = mechanism.stack.gap(drawn.placed, mechanism.targets(mechanism.drawn_inputs.tolist())[0])
+    gap = mechanism.stack.gap(drawn.placed, mechanism.targets(mechanism.drawn_inputs)[0])[0]
 
-    def closing(share: float) -> Array:
-        return np.array([drawn.placed.values + share * gap, gap, np.zeros_like(gap)])
+    def closing(share: Array, rate: Array) -> Array:
+        values, rates = np.broadcast_arrays(drawn.placed.values[0] + share * gap, rate * gap)
+        return np.array([values, rates, np.zeros_like(rates)])
 
     _require_clear(mechanism, drawn, gap)
     try:
-        pose, spent = follow(mechanism, drawn, closing)
+        (pose,) = follow(mechanism, drawn, np.zeros(1), np.ones((1, 1)), closing)
     except BlockedError as blocked:
         raise _locked(mechanism, blocked, gap) from blocked
     _require_near(mechanism, pose)
     _require_redundant(mechanism, pose)
-    return pose, spent
+    return pose
 
 
-def _require_near(mechanism: Mechanism, pose: Pose) -> None:
+def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
     drawing, model = mechanism.drawing, mechanism.model
     furthest, moved = "", 0.0
     for body, index in drawing.bodies.items():
         for point in model.bodies[body]:
             arm = drawing.arm(body, point)
-            there = pose.poses.origin[index] + pose.poses.rotation[index] @ arm
+            there = pose.origin[0, index] + pose.rotation[0, index] @ arm
             distance = float(np.linalg.norm(there - drawing.origins[index] - arm))
             if distance > moved:
                 furthest, moved = point, distance
@@ -68,7 +67,7 @@ def _require_near(mechanism: Mechanism, pose: Pose) -> None:
         )
 
 
-def _require_clear(mechanism: Mechanism, drawn: Pose, gap: Array) -> None:
+def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> None:
     """Refuse a drawing that two readings of the same joints put on different sides of a singular pose.
 
     A determinant's sign tells on which of two assemblies a group of bodies is, and the way to the closed pose
@@ -96,16 +95,16 @@ def _require_clear(mechanism: Mechanism, drawn: Pose, gap: Array) -> None:
         mechanism.named(mechanism.drawn_inputs.tolist()),
         {},
         largest,
-        inverse(drawn.rcond),
+        float(drawn.condition[0]),
         open_joints,
     )
 
 
 def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> AssemblyError:
     size, largest = mechanism.drawing.size, float(np.abs(gap).max())
-    left = largest * (1 - reached.share) * size
+    left = largest * float(1.0 - reached.reached[0]) * size
     owner = mechanism.stack.owners[int(np.abs(gap).argmax())]
-    limits = limits_at(mechanism, mechanism.stack.jacobian(reached.pose.placed))
+    limits = limits_at(mechanism, reached.pose.jacobian[0])
     return AssemblyError(
         f"the drawing cannot be assembled: rows are violated by up to {largest * size:.3g} mm "
         f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
@@ -115,43 +114,32 @@ def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> Assembly
         mechanism.named(mechanism.drawn_inputs.tolist()),
         {},
         left,
-        inverse(reached.pose.rcond),
+        float(reached.pose.condition[0]),
         limits,
     )
 
 
-def branch_error(mechanism: Mechanism, instant: int, inputs: list[float], jacobian: Array) -> BranchError:
-    """The refusal of a pose that is not on the branch of the drawing."""
-    limits = limits_at(mechanism, jacobian)
-    return BranchError(
-        f"instant {instant}: the pose found is not on the branch of the drawing: a determinant or the sense "
-        f"of a joint has changed its sign on the way; {limited_by(limits)}lead up to these inputs by closer "
-        "instants, or stay away from the limit of the motion",
-        instant,
-        mechanism.named(inputs),
-        limits=limits,
-    )
-
-
-def _require_redundant(mechanism: Mechanism, pose: Pose) -> None:
+def _require_redundant(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse rows that are too many and say something else than the others."""
-    left_out, stack = mechanism.redundant, mechanism.stack
+    left_out = mechanism.redundant
     if left_out is None:
         return
-    placed = left_out.place(*pose.poses)
-    joints = np.vstack((stack.jacobian(pose.placed)[: mechanism.joint_rows], left_out.jacobian(placed)))
+    again = left_out.jacobian(left_out.place(pose.rotation, pose.origin))
+    joints = np.vstack((pose.jacobian[0, : mechanism.joint_rows], again[0]))
     strengths = np.linalg.svd(joints, compute_uv=False)
     if strengths[mechanism.joint_rows] > SMALLEST_RCOND * strengths[0]:
-        raise too_many_rows(left_out.owners, stack.count)
-    if not held_at(mechanism, pose):
-        raise locked(mechanism, None, left_out, placed, mechanism.drawn_inputs.tolist())
+        raise too_many_rows(left_out.owners, mechanism.stack.count)
+    if not pose.held.all():
+        raise locked(mechanism, None, pose, mechanism.drawn_inputs.tolist())
 
 
 def locked(
-    mechanism: Mechanism, instant: int | None, left_out: RowStack, placed: Placed, inputs: list[float]
+    mechanism: Mechanism, instant: int | None, pose: Configurations, inputs: list[float]
 ) -> AssemblyError:
     """The refusal of a pose that rows which were left out do not hold."""
-    off = np.abs(left_out.gap(placed, left_out.drawn))
+    left_out = mechanism.redundant
+    assert left_out is not None
+    off = np.abs(left_out.gap(left_out.place(pose.rotation, pose.origin), left_out.drawn))[0]
     names = tuple(dict.fromkeys(left_out.owners[row] for row in np.argsort(-off)))
     where = "the closed drawing" if instant is None else f"instant {instant}"
     return AssemblyError(
@@ -165,16 +153,12 @@ def locked(
     )
 
 
-def _drawn_pose(mechanism: Mechanism) -> Pose:
-    poses = mechanism.poses(mechanism.drawn)
-    placed = mechanism.stack.place(*poses)
-    jacobian = mechanism.stack.jacobian(placed)
-    factors = eigenpy.PartialPivLU(jacobian)
-    drawn = pose_at(mechanism, mechanism.drawn, poses, placed, placed.values, jacobian, factors)
-    if not drawn.rcond >= SMALLEST_RCOND:
-        limits = limits_at(mechanism, jacobian)
+def _drawn_pose(mechanism: Mechanism) -> Configurations:
+    drawn = configurations_at(mechanism, mechanism.drawn[None])
+    if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
+        limits = limits_at(mechanism, drawn.jacobian[0])
         raise SingularError(
-            f"the drawing is singular: condition number about {inverse(drawn.rcond):.3g}, "
+            f"the drawing is singular: condition number about {float(drawn.condition[0]):.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
             "Look for points on one line that should not be (a steering arm on the strut axis, "
             "an arm along its own axis) or an input at its dead point; "
@@ -183,7 +167,7 @@ def _drawn_pose(mechanism: Mechanism) -> Pose:
             mechanism.named(mechanism.drawn_inputs.tolist()),
             {},
             float("nan"),
-            inverse(drawn.rcond),
+            float(drawn.condition[0]),
             limits,
         )
     return drawn

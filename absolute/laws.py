@@ -4,25 +4,33 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
+from absolute.solution import Array
+
 
 class Law(NamedTuple):
     """A function of one input value.
 
     Attributes:
-        expand: value -> (f, df/dvalue, d2f/dvalue2).
+        expand: values -> (f, df/dvalue, d2f/dvalue2).
         invert: coordinate / factor -> value, for the drawing's own input.
     """
 
-    expand: Callable[[float], tuple[float, float, float]]
+    expand: Callable[[Array], tuple[Array, Array, Array]]
     invert: Callable[[float], float]
 
 
-def _cosine(angle: float) -> tuple[float, float, float]:
-    cosine = math.cos(angle)
-    return cosine, -math.sin(angle), -cosine
+def _linear(value: Array) -> tuple[Array, Array, Array]:
+    return value, np.ones_like(value), np.zeros_like(value)
 
 
-_LINEAR = Law(lambda value: (value, 1.0, 0.0), lambda ratio: ratio)
+def _cosine(angle: Array) -> tuple[Array, Array, Array]:
+    cosine = np.cos(angle)
+    return cosine, -np.sin(angle), -cosine
+
+
+_LINEAR = Law(_linear, lambda ratio: ratio)
 
 LAWS = {
     # coordinate = factor * value, value in mm, or in rad for a turn

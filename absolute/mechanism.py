@@ -107,7 +107,7 @@ class Mechanism:
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
         """Configurations (..., 7 * moving bodies) after steps [o', w] per body in world axes (..., rows), of
         bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
-        local = step.reshape(*step.shape[:-1], -1, 2, 3) @ rotation[..., 1:, :, :]
+        local = step.reshape(*step.shape[:-1], rotation.shape[-3] - 1, 2, 3) @ rotation[..., 1:, :, :]
         moved, model = np.empty_like(q), self.pin_model
         each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
         for one, way, there in zip(*each, strict=True):
@@ -121,28 +121,23 @@ class Mechanism:
             named.setdefault(drive.value or name, value)
         return named
 
-    def targets(self, values: Sequence[float], rates: Sequence[float] | None = None) -> Array:
-        """(3, rows): what the rows shall equal, and its first and second rate, for inputs at steady rates."""
-        targets = np.zeros((3, self.stack.count))
-        targets[0] = self.stack.drawn
-        speeds = [0.0] * len(values) if rates is None else rates
-        for row, ((law, factor), value, speed) in enumerate(
-            zip(self._laws, values, speeds, strict=True), self.joint_rows
-        ):
-            f, f1, f2 = law(value)
-            targets[:, row] = factor * f, factor * f1 * speed, factor * f2 * speed * speed
-        return targets
+    def targets(self, values: Array, rates: Array | None = None, seconds: Array | None = None) -> Array:
+        """(3, ..., rows): what the rows shall equal, its first and its second rate, for inputs (..., inputs).
 
-    def target_series(self, series: Array) -> Array:
-        """(3, N, rows): targets and their rates for inputs (N, 3, inputs) over N instants."""
-        targets = np.zeros((3, len(series), self.stack.count))
+        Args:
+            rates, seconds: (..., inputs) first and second derivative of the inputs, zero if None.
+        """
+        nothing = np.zeros_like(values)
+        rates, seconds = nothing if rates is None else rates, nothing if seconds is None else seconds
+        lead = np.broadcast_shapes(values.shape, rates.shape)[:-1]
+        targets = np.zeros((3, *lead, self.stack.count))
         targets[0] = self.stack.drawn
-        for row, ((law, factor), column) in enumerate(
-            zip(self._laws, series.transpose(2, 1, 0), strict=True), self.joint_rows
-        ):
-            _, speed, second = column
-            f, f1, f2 = factor * np.array([law(value) for value in column[0].tolist()]).reshape(-1, 3).T
-            targets[:, :, row] = f, f1 * speed, f2 * speed * speed + f1 * second
+        for number, (law, factor) in enumerate(self._laws):
+            value, rate, second = values[..., number], rates[..., number], seconds[..., number]
+            f, f1, f2 = law(value)
+            row = factor * f, factor * f1 * rate, factor * (f2 * rate * rate + f1 * second)
+            for target, part in zip(targets, row, strict=True):
+                target[..., self.joint_rows + number] = part
         return targets
 
 

@@ -1,165 +1,194 @@
-"""Newton's method on the manifold of body poses, to rounding, and the rates at a pose."""
+"""Newton on the manifold of body poses, to rounding, and the rates there: many configurations at once."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.backend import eigenpy
-from absolute.mechanism import Mechanism, Poses
+from absolute.mechanism import Mechanism
 from absolute.precision import EPS
-from absolute.solution import Array
-from absolute.stack import Placed, RowStack
+from absolute.solution import Array, Counts
+from absolute.stack import Placed
 
 # Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
 # branches that meet there can no longer be told apart, nor half of the digits trusted.
 SMALLEST_RCOND = float(np.sqrt(EPS))
 
-# A factorisation serves further corrections as long as each shrinks at least a hundredfold.
-GOOD_CONTRACTION = 1e-2
-
 # Quadratic convergence from a correction of 0.1 needs about 6 corrections; 25 is a stall.
 MOST_CORRECTIONS = 25
 
 
-class Pose(NamedTuple):
-    """A configuration where the rows meet their target, with the factorised Jacobian there.
+class Configurations(NamedTuple):
+    """N configurations of the bodies, and what their rows are there.
 
     Attributes:
-        q: configuration of Pinocchio.
-        poses, placed: body poses and rows there.
-        factors: LU factors of the Jacobian.
-        rcond: estimate of its reciprocal condition number (1-norm).
-        signs: signs of the determinants of its groups; they change only through a singular pose.
-        residual: largest violation of a row, in units of size.
-        floor: the largest correction that rounding explains.
+        q: (N, configuration of Pinocchio).
+        rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), units of size.
+        placed: rows there.
+        jacobian, inverse: (N, rows, rows); the inverse is not a number where there is none.
+        condition: (N,) condition numbers (1-norm).
+        signs: (N, groups) of the determinants of groups; they change only through a singular pose.
+        residual: (N,) largest violation of a row.
+        closed: (N,) whether the next correction and the rows are as small as rounding explains.
+        held: (N,) whether rows that were left out hold.
+        corrections: (N,) Newton corrections that led there.
     """
 
     q: Array
-    poses: Poses
+    rotation: Array
+    origin: Array
     placed: Placed
-    factors: eigenpy.PartialPivLU
-    rcond: float
+    jacobian: Array
+    inverse: Array
+    condition: Array
     signs: Array
-    residual: float
-    floor: float
+    residual: Array
+    closed: NDArray[np.bool_]
+    held: NDArray[np.bool_]
+    corrections: Counts
+
+    def part(self, of: slice) -> "Configurations":
+        """Some of them."""
+        placed = Placed(*(array[of] for array in self.placed))
+        part = {name: array[of] for name, array in self._asdict().items() if name != "placed"}
+        return Configurations(placed=placed, **part)
 
 
-def rounding_of(rcond: float) -> float:
+def rounding_of(condition: Array) -> Array:
     """The largest correction that rounding explains.
 
     Each row is rounded like a few products of order 1, and the inverse of the Jacobian magnifies
-    that; columns have a norm of order 1, so 1 / rcond bounds the norm of the inverse.
+    that; columns have a norm of order 1, so the condition number bounds the norm of the inverse.
     """
-    return 64 * EPS / rcond if rcond > 0 else math.inf
+    return 64 * EPS * condition
 
 
-def inverse(rcond: float) -> float:
-    """The condition number of a reciprocal one."""
-    return 1.0 / rcond if rcond > 0 else math.inf
-
-
-def pose_at(
-    mechanism: Mechanism,
-    q: Array,
-    poses: Poses,
-    placed: Placed,
-    target: Array,
-    jacobian: Array,
-    factors: eigenpy.PartialPivLU,
-) -> Pose:
-    """The pose at a configuration with its Jacobian and the factors of that."""
-    rcond = factors.rcond()
-    residual = float(np.abs(mechanism.stack.gap(placed, target)).max())
-    signs = mechanism.signs(jacobian)
-    return Pose(q, poses, placed, factors, rcond, signs, residual, rounding_of(rcond))
-
-
-class Corrected(NamedTuple):
-    """Outcome of Newton's method: the pose or None, corrections spent, size of the first."""
-
-    pose: Pose | None
-    corrections: int
-    first: float
-
-
-def correct(mechanism: Mechanism, q: Array, target: Array, rcond: float) -> Corrected:
-    """Solve  rows(q) = target  near q.
-
-    The first Jacobian serves every correction as long as each is a hundredth of the one before;
-    it is renewed otherwise. With contraction c the error left after a correction s is at most
-    s c / (1 - c); before c is known, about s^2 / rcond, with the `rcond` of a pose nearby, as the
-    rows are quadratic with second derivatives of order 1. Newton stops when that is below eps, or
-    when corrections no longer shrink, and then a fresh Jacobian must find the next correction as
-    small as rounding explains and the rows closed to rounding. The correction alone proves nothing
-    near a fold: there it falls as the root of the residual, and just beyond the fold, where there
-    is no pose, it is as small. Anything else is a failure: `pose` is None.
-    """
-    factors = None
-    previous = first = np.inf
-    settled = False
-    for count in range(1, MOST_CORRECTIONS + 1):
-        poses = mechanism.poses(q)
-        placed = mechanism.stack.place(*poses)
-        if factors is None or settled:
-            jacobian = mechanism.stack.jacobian(placed)
-            factors = eigenpy.PartialPivLU(jacobian)
-        step = factors.solve(mechanism.stack.gap(placed, target))
-        size = math.sqrt(step @ step)
-        if not math.isfinite(size):
-            break
-        if settled:
-            pose = pose_at(mechanism, q, poses, placed, target, jacobian, factors)
-            if not size <= pose.floor:
-                return Corrected(None, count - 1, first)
-            if mechanism.stack.closed(placed, target):
-                return Corrected(pose, count - 1, first)
-        contraction = size / previous
-        q = mechanism.moved(q, poses.rotation, step)
-        if settled:
-            continue
-        if count == 1:
-            first = size
-            settled = size * size <= EPS * rcond
-            renew = size > GOOD_CONTRACTION
-        else:
-            settled = contraction > 0.5 or size * contraction < EPS * (1 - contraction)
-            renew = contraction > GOOD_CONTRACTION
-        if renew:
-            factors = None
-        previous = size
-    return Corrected(None, count, first)
-
-
-def accelerations(mechanism: Mechanism, pose: Pose, rate: Array, second: Array) -> tuple[Array, Array]:
-    """Velocities and accelerations [o', w], [o'', w'] of the moving bodies by the factors of a pose.
-
-    J v = rate,  J a = second - drift(v):  one matrix serves both.
-    """
-    velocity = pose.factors.solve(rate)
-    moving = np.zeros((len(pose.poses.origin), 2, 3))
-    moving[1:] = velocity.reshape(-1, 2, 3)
-    drift = mechanism.stack.drift(pose.placed, moving)
-    return velocity, pose.factors.solve(second - drift)
-
-
-def held_at(mechanism: Mechanism, pose: Pose) -> bool:
-    """Whether the rows that were left out hold at a pose."""
+def configurations_at(
+    mechanism: Mechanism, q: Array, target: Array | None = None, corrections: Counts | None = None
+) -> Configurations:
+    """Configurations (N, nq) with their rows, against targets (N, rows), or their own values if None."""
+    stack = mechanism.stack
+    rotation, origin = mechanism.poses(q)
+    placed = stack.place(rotation, origin)
+    jacobian = stack.jacobian(placed)
+    inverse = solved(jacobian, np.broadcast_to(np.eye(stack.count), jacobian.shape))
+    with np.errstate(over="ignore", invalid="ignore"):
+        condition = np.abs(jacobian).sum(axis=1).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1)
+    condition[np.isnan(condition)] = np.inf
+    target = placed.values if target is None else target
+    gap = stack.gap(placed, target)
+    small = lengths(np.matvec(inverse, gap)) <= rounding_of(condition)
+    residual, held = np.abs(gap).max(axis=1), np.ones(len(q), dtype=np.bool_)
     left_out = mechanism.redundant
-    if left_out is None:
-        return True
-    placed = left_out.place(*pose.poses)
-    return bool(held_to(left_out, placed, mechanism.stack.count, inverse(pose.rcond)).all())
+    if left_out is not None:
+        again = left_out.place(rotation, origin)
+        off = np.abs(left_out.gap(again, left_out.drawn))
+        allowed = left_out.rounding(again) * more_than_rounding(inverse)[:, None]
+        held = np.asarray((off <= allowed).all(axis=1))
+        residual = np.maximum(residual, off.max(axis=1))
+    return Configurations(
+        q,
+        rotation,
+        origin,
+        placed,
+        jacobian,
+        inverse,
+        condition,
+        mechanism.signs(jacobian),
+        residual,
+        small & stack.closed(placed, target),
+        held,
+        np.zeros(len(q), dtype=np.int64) if corrections is None else corrections,
+    )
 
 
-def held_to(left_out: RowStack, placed: Placed, unknowns: int, strength: Array | float) -> NDArray[np.bool_]:
-    """(..., rows) whether rows that were left out hold at poses that close to rounding.
+def newton(
+    mechanism: Mechanism, near: Configurations, q: Array, target: Array, largest: Array
+) -> Configurations:
+    """Solve  rows(q) = target  near N configurations, up to the first whose first correction is too large.
+
+    After a correction s about s^2 condition is left, as the rows are quadratic with second derivatives of
+    order 1. Newton stops when that is below eps, or when corrections no longer shrink, and then the next
+    correction must be as small as rounding explains and the rows closed to rounding. The correction alone
+    proves nothing near a fold: there it falls as the root of the residual, and just beyond the fold, where
+    there is no pose, it is as small.
 
     Args:
-        placed: these rows there. strength: (...) norm of the inverse of the Jacobian: the pose is off by so
-            many times the rounding of its rows, and a row changes by no more than a few times that.
+        near: one configuration nearby, for its condition number.
+        q: (N, nq). target: (N, rows). largest: (N,) the largest first correction that is allowed.
     """
-    more = 1.0 + np.sqrt(unknowns) * np.asarray(strength)[..., None]
-    gap = left_out.gap(placed, left_out.drawn)
-    return np.asarray(np.abs(gap) <= left_out.rounding(placed) * more)
+    stack, condition = mechanism.stack, near.condition[0]
+    q, previous = q.copy(), np.full(len(q), np.inf)
+    more, few, corrections = np.arange(len(q)), 0, np.zeros(len(q), dtype=np.int64)
+    for count in range(MOST_CORRECTIONS):
+        rotation, origin = mechanism.poses(q[more])
+        placed = stack.place(rotation, origin)
+        step = solved(stack.jacobian(placed), stack.gap(placed, target[more])[..., None])[..., 0]
+        size = lengths(step)
+        if count == 0:
+            few = leading(size <= largest)
+            more, rotation, step, size = more[:few], rotation[:few], step[:few], size[:few]
+        if not more.size:
+            break
+        q[more] = mechanism.moved(q[more], rotation, step)
+        corrections[more] += 1
+        # What is not a number is not corrected any more.
+        again = (size * size * condition > EPS) & (size <= 0.5 * previous[more])
+        previous[more] = size
+        more = more[again]
+        if not more.size:
+            break
+    if not few:
+        return near.part(slice(0))
+    return configurations_at(mechanism, q[:few], target[:few], corrections[:few])
+
+
+def leading(right: NDArray[np.bool_]) -> int:
+    """How many there are before the first that is not right."""
+    return len(right) if right.all() else int(right.argmin())
+
+
+def lengths(steps: Array) -> Array:
+    """(N,) of N steps."""
+    return np.asarray(np.sqrt(np.vecdot(steps, steps)))
+
+
+def solved(matrices: Array, right_hand: Array) -> Array:
+    """Solutions (N, n, k) of N systems with k right-hand sides each; not numbers where one is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, right_hand))
+    except np.linalg.LinAlgError:  # one of them is singular to the last digit
+        if len(matrices) == 1:
+            return np.full(right_hand.shape, np.nan)
+        each = zip(matrices, right_hand, strict=True)
+        return np.concatenate([solved(matrix[None], side[None]) for matrix, side in each])
+
+
+def rates(mechanism: Mechanism, at: Configurations, first: Array, second: Array) -> tuple[Array, Array]:
+    """Velocities and accelerations (N, rows), [o', w] and [o'', w'] of the moving bodies.
+
+    J v = first,  J a = second - drift(v):  one matrix serves both.
+
+    Args:
+        at: N configurations, or one. first, second: (N, rows) rates of the rows.
+    """
+    velocity = _by_inverse(at, first)
+    moving = np.zeros((len(first), at.origin.shape[1], 2, 3))
+    moving[:, 1:] = velocity.reshape(len(first), -1, 2, 3)
+    return velocity, _by_inverse(at, second - mechanism.stack.drift(at.placed, moving))
+
+
+def _by_inverse(at: Configurations, right_hand: Array) -> Array:
+    """J x = right_hand, corrected once by what is left of it: as good as by factors (Higham, ch. 12)."""
+    found: Array = np.matvec(at.inverse, right_hand)
+    return np.asarray(found + np.matvec(at.inverse, right_hand - np.matvec(at.jacobian, found)))
+
+
+def more_than_rounding(inverse: Array) -> Array:
+    """(N,) how many times its own rounding a row that was left out may be off where the others are closed.
+
+    Such a configuration is off by the norm of the inverse times the rounding of its rows, and a row changes
+    by no more than a few times that.
+    """
+    flat = inverse.reshape(len(inverse), -1)
+    return np.asarray(1.0 + np.sqrt(inverse.shape[-1]) * lengths(flat))

@@ -1,25 +1,25 @@
-"""Solve a motion: assemble the drawing, track it through the instants, refine these to rounding."""
+"""Solve a motion: assemble the drawing, follow it through the instants, and take the rates there."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from absolute.description import Model
 from absolute.effects import effects_of
-from absolute.errors import AbsoluteError, InputError, SingularError
-from absolute.initial_assembly import assemble, branch_error, locked
+from absolute.errors import AbsoluteError, InputError
+from absolute.follow import through
+from absolute.initial_assembly import assemble, locked
 from absolute.input_arrays import chassis_series, input_series
-from absolute.limits import limited_by, limiting_input, limits_at
 from absolute.mechanism import Mechanism
-from absolute.refine import BATCH, Refined, refine
-from absolute.results import Asked, Record
+from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
+from absolute.precision import EPS
+from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
-from absolute.tracking import Found, Tracking
 from absolute.turning import turnings
 
-# Instants that are tracked before they are refined: enough for long runs.
-BLOCK = 256
+# Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `stack`).
+LEFT_OUT = 3 * 4 * EPS
 
 
 def solve(
@@ -40,7 +40,7 @@ def solve(
             points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        effects: names of EFFECTS. One that needs derivatives over time brings the rates with it.
+        effects: names of EFFECTS.
     Returns:
         Solution with one row per instant.
     Raises:
@@ -48,7 +48,6 @@ def solve(
             effects of a linkage that lacks what they are effects of.
         InputError: names, shapes or values of inputs or chassis; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
-        BranchError: a pose is on another branch.
         UnreachableError: the mechanism locks before the inputs of an instant.
         SingularError: the inputs of an instant do not fix the pose.
         Every error raised at an instant carries the motion before it as `partial`.
@@ -90,21 +89,55 @@ class Assembled:
         effects: Sequence[str] = (),
     ) -> Solution:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
-        model = self.model
+        model, mechanism = self.model, self._mechanism
         asked = effects_of(effects)
         for effect in asked:
             model.corner.ends(effect.role)
-        rates = rates or any(effect.derivative > 0 for effect in asked)
         series = driven_series(model, inputs)
         carried = chassis_series(chassis, len(series))
         turns = turnings(model, inputs, len(series))
-        record = Record(self._mechanism, carried, Asked(rates, conditions, asked), turns)
+        bodies = len(mechanism.drawing.bodies)
+        rotation, origin, moving, residual = (
+            np.zeros((0, *shape)) for shape in ((bodies, 3, 3), (bodies, 3), (2, bodies, 2, 3), ())
+        )
+        runs = [Instants(rotation, origin, moving, residual, np.zeros(0, dtype=np.int64))]
+
+        def solution() -> Solution:
+            instants = Instants(*(np.concatenate(parts) for parts in zip(*runs, strict=True)))
+            count = len(instants.residual)
+            motion = Motion(mechanism, instants, carried[:count], tuple(turn.first(count) for turn in turns))
+            return motion.solution(rates, conditions, asked)
+
+        # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
         try:
-            solve_instants(Tracking(self._mechanism, *self._drawn), series, rates, record)
+            with np.errstate(over="ignore", invalid="ignore"):
+                for run in self._followed(series, rates):
+                    runs.append(run)
         except AbsoluteError as error:
-            error.partial = record.solution() if record.written else None
+            error.partial = solution() if len(runs) > 1 else None
             raise
-        return record.solution()
+        return solution()
+
+    def _followed(self, series: Array, rated: bool) -> Iterator[Instants]:
+        """The instants of inputs (N, 3, inputs), one run of them after the other."""
+        mechanism, done = self._mechanism, 0
+        targets = mechanism.targets(*series.swapaxes(0, 1))
+        for found in through(mechanism, self._drawn, series[:, 0]):
+            count = good = len(found.q)
+            moving, residual = np.zeros((count, 2, found.origin.shape[1], 2, 3)), found.residual
+            if rated:
+                both = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
+                moving[:, :, 1:] = both.reshape(moving[:, :, 1:].shape)
+                residual, held = _of_rates(mechanism, found, both[:, 0])
+                good = leading(held & _in_range(mechanism, both))
+            if good:
+                few = found.part(slice(good))
+                yield Instants(few.rotation, few.origin, moving[:good], residual[:good], few.corrections)
+            done += good
+            if good < count:
+                if held[good]:
+                    raise _overflow(mechanism, done, series[done, 1:])
+                raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
 
 
 def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
@@ -119,112 +152,27 @@ def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
     return input_series(model.values, driving)[..., columns]
 
 
-def solve_instants(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
-    """Find the poses for inputs (N, 3, inputs) from the assembled drawing on, and write them down.
-
-    Args:
-        rates: as the record was told.
-    Raises:
-        AbsoluteError: an instant cannot be solved; those before it are in the record.
-    """
-    # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
-    with np.errstate(over="ignore", invalid="ignore"):
-        for start in range(0, len(series), BLOCK):
-            _solve_block(tracking, series[start : start + BLOCK], rates, record)
-
-
-def _solve_block(tracking: Tracking, series: Array, rates: bool, record: Record) -> None:
-    """Track the pose through some instants, then refine all that were reached, even if one was not.
-
-    An instant that ends on another branch is tried once more, from the assembled drawing.
-    """
-    begin, again = record.written, -1
-    mechanism, targets = tracking.mechanism, tracking.mechanism.target_series(series)
-    values = series[:, 0].tolist()
-    while record.written < begin + len(series):
-        failure: AbsoluteError | None = None
-        done = record.written - begin
-        try:
-            found = tracking.advance(values[done:])
-        except AbsoluteError as error:
-            failure, found = error, tracking.found
-        wrong = _store(mechanism, found, targets[:, done:], rates, record)
-        if wrong is None:
-            if failure is not None:
-                raise failure
-            continue
-        refined, place = wrong
-        bad = record.written
-        here = bad - begin
-        if not refined.closed[place]:
-            raise _stalled(mechanism, bad, values[here], refined, place)
-        there = refined.rotation[place], refined.origin[place]
-        if refined.kept[place]:
-            left_out = mechanism.redundant
-            if left_out is not None and not refined.held[place]:
-                raise locked(mechanism, bad, left_out, left_out.place(*there), values[here])
-            raise _overflow(mechanism, bad, series[here, 1:])
-        if again == bad:
-            jacobian = mechanism.stack.jacobian(mechanism.stack.place(*there))
-            raise branch_error(mechanism, bad, values[here], jacobian)
-        again = bad
-        tracking.back_to(bad)
+def _of_rates(
+    mechanism: Mechanism, found: Configurations, velocity: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """(N,) residuals with the rates of rows that were left out at unit speed, and whether these hold."""
+    left_out = mechanism.redundant
+    if left_out is None:
+        return found.residual, np.ones(len(found.q), dtype=np.bool_)
+    # A row that follows from the others has no rate, but for what the pose is off.
+    placed = left_out.place(found.rotation, found.origin)
+    rate = np.abs(np.matvec(left_out.jacobian(placed), velocity)).max(axis=1)
+    speed = lengths(velocity)
+    missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
+    return np.maximum(found.residual, missed), rate <= LEFT_OUT * more_than_rounding(found.inverse) * speed
 
 
-def _store(
-    mechanism: Mechanism, found: Found, targets: Array, rates: bool, record: Record
-) -> tuple[Refined, int] | None:
-    """Refine and write down what was found, up to the first instant that is not right.
-
-    Returns:
-        Where there is such an instant, the part it is in, and its place there.
-    """
-    # Even parts: a small one at the end would cost as many calls as a full one.
-    whole = len(found.q)
-    parts = max(1, round(whole / BATCH))
-    for number in range(parts if whole else 0):
-        part = slice(whole * number // parts, whole * (number + 1) // parts)
-        refined = refine(mechanism, found.part(part), targets[:, part], rates)
-        good = refined.closed & refined.kept & refined.held
-        if rates:
-            good &= _in_range(mechanism, refined)
-        count = len(good) if good.all() else int(np.argmin(good))
-        record.store(refined, count)
-        if count < len(good):
-            return refined, count
-    return None
-
-
-def _in_range(mechanism: Mechanism, refined: Refined) -> NDArray[np.bool_]:
+def _in_range(mechanism: Mechanism, rates: Array) -> NDArray[np.bool_]:
     """(N,) whether accelerations of all points are finite in mm: o'' + w' x r + w x (w x r), where no r is
     longer than twice the size, so that no component is more than 8 (|a| + |v|^2) for the largest of the
-    numbers of the bodies."""
-    speed, second = (np.abs(rate).max(axis=1) for rate in (refined.velocity, refined.acceleration))
+    numbers (N, 2, rows) of the bodies."""
+    speed, second = np.abs(rates).max(axis=2).T
     return np.asarray(np.isfinite(8.0 * (second + speed * speed) * max(1.0, mechanism.drawing.size)))
-
-
-def _stalled(
-    mechanism: Mechanism, instant: int, values: list[float], refined: Refined, place: int
-) -> SingularError:
-    stack, size = mechanism.stack, mechanism.drawing.size
-    residual, step = float(refined.residual[place]), float(refined.step[place])
-    goal, drawn = (
-        mechanism.targets(each)[0, mechanism.joint_rows :]
-        for each in (values, mechanism.drawn_inputs.tolist())
-    )
-    jacobian = stack.jacobian(stack.place(refined.rotation[place], refined.origin[place]))
-    limits = limits_at(mechanism, jacobian)
-    return SingularError(
-        f"instant {instant}: Newton's corrections stall at {step * size:.3g} mm with rows "
-        f"{residual * size:.3g} mm from closed, more than rounding explains: the pose is too close to a "
-        f"singular one, or just beyond it; {limited_by(limits)}stay away from the limit of the motion",
-        instant,
-        mechanism.named(values),
-        {},
-        residual * size,
-        limits=limits,
-        limit=limiting_input(mechanism, jacobian, goal - drawn),
-    )
 
 
 def _overflow(mechanism: Mechanism, instant: int, rates: Array) -> InputError:

@@ -186,7 +186,7 @@ class RowStack:
 
     def kept(self, placed: Placed) -> NDArray[np.bool_]:
         """(...) whether all joints have the sense in which they are drawn."""
-        first, second = np.moveaxis(placed.world.take(self._senses, -2), -3, 0)
+        first, second = _two(placed.world.take(self._senses, -2))
         return np.asarray((np.vecdot(first, second) > 0.0).all(-1))
 
     def read_at_foot(self, placed: Placed, gap: Array) -> Placed:
@@ -237,9 +237,9 @@ class RowStack:
     def drift(self, placed: Placed, rates: Array) -> Array:
         """Second rate of the rows when no body accelerates, at rates [o', w], (..., bodies, 2, 3)."""
         both = rates.take(self._bodies, -3)
-        a1, a2, t1, t2 = np.moveaxis(
-            cross(both[..., 1, :].take([0, 1, 0, 1], -3), placed.parts.take([0, 0, 3, 4], -3)), -3, 0
-        )
+        spin, parts = both[..., 1, :], placed.parts
+        t1, t2 = _two(cross(spin, parts[..., 3:, :, :]))
+        a1, a2 = _two(cross(spin, parts[..., :1, :, :]))
         v = (both[..., 1, :, 0, :] - both[..., 0, :, 0, :]) * self._is_offset + t2 - t1
         drift: Array = np.vecdot(a1, 2.0 * v + t1) - np.vecdot(a2, t2)
         if self.distances.size:
@@ -249,3 +249,8 @@ class RowStack:
                 ..., self.distances
             ]
         return drift
+
+
+def _two(pair: Array) -> tuple[Array, Array]:
+    """The two of an array (..., 2, rows, 3)."""
+    return pair[..., 0, :, :], pair[..., 1, :, :]

@@ -10,5 +10,5 @@ LAST = np.array([2, 0, 1])
 
 def cross(a: Array, b: Array) -> Array:
     """a x b over the last axis."""
-    product: Array = a[..., NEXT] * b[..., LAST] - a[..., LAST] * b[..., NEXT]
+    product: Array = a.take(NEXT, -1) * b.take(LAST, -1) - a.take(LAST, -1) * b.take(NEXT, -1)
     return product

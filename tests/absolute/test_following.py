@@ -8,9 +8,8 @@ from kinds import Kind
 from numpy.typing import NDArray
 
 import absolute
-from absolute.initial_assembly import assemble
-from absolute.mechanism import Mechanism
-from absolute.tracking import Tracking
+import absolute.follow
+from absolute.newton import Configurations, newton
 
 Array = NDArray[np.float64]
 Inputs = dict[str, Array]
@@ -56,44 +55,32 @@ def test_a_pose_is_the_same_whichever_instants_lead_to_it(kind: Kind, model: abs
     assert_same(some, plain, order)
 
 
-def test_of_instants_the_first_of_which_has_no_pose_none_is_found(kind: Kind, model: absolute.Model) -> None:
-    mechanism = Mechanism(model)
-    inputs = swinging(kind, 6, 1.0)
-    beyond = {name: series.copy() for name, series in inputs.items()}
-    beyond["rack"][:, 0] = 100.0 * mechanism.drawing.size
-    near, far = (
-        np.stack([given[name][:, 0] for name in model.inputs], -1).tolist() for given in (inputs, beyond)
-    )
-    tracking = Tracking(mechanism, *assemble(mechanism))
-    tracking.advance(near)
-    assert len(tracking.found.q) == 6
-    with pytest.raises(absolute.AbsoluteError):
-        tracking.advance(far)
-    assert len(tracking.found.q) == 0
-
-
 @pytest.mark.parametrize("often", [1, 2])
-def test_a_pose_that_left_the_branch_is_tried_once_more_from_the_drawing_and_then_refused(
-    kind: Kind, model: absolute.Model, monkeypatch: pytest.MonkeyPatch, often: int
+@pytest.mark.parametrize("check", ["signs", "kept"])
+def test_a_pose_that_left_the_branch_is_led_to_by_nearer_ones_or_refused(
+    kind: Kind, model: absolute.Model, monkeypatch: pytest.MonkeyPatch, often: int, check: str
 ) -> None:
-    """Planted: a determinant has another sign, as beyond a fold."""
+    """Planted: a determinant has another sign, or a joint is turned round, once or always."""
     inputs = swinging(kind, 20, 1.0)
     plain = absolute.solve(model, inputs, conditions=True)
-    solver = absolute.solve.__globals__
-    refine, seen = solver["refine"], {"turned": 0}
+    seen = 0
 
-    def turned(mechanism: Mechanism, found: Any, *arguments: Any) -> Any:
-        if seen["turned"] < often:
-            seen["turned"] += 1
-            found = found._replace(signs=-found.signs)
-        return refine(mechanism, found, *arguments)
+    def turned(*arguments: Any) -> Configurations:
+        nonlocal seen
+        found, seen = newton(*arguments), seen + 1
+        if often == 1 and seen > 2:
+            return found
+        if check == "signs":
+            return found._replace(signs=-found.signs)
+        return found._replace(placed=found.placed._replace(world=np.zeros_like(found.placed.world)))
 
-    monkeypatch.setitem(solver, "refine", turned)
+    assembled = absolute.Assembled(model)
+    monkeypatch.setattr(absolute.follow, "newton", turned)
     if often == 1:
-        assert_same(absolute.solve(model, inputs), plain)
+        assert_same(assembled.solve(inputs), plain)
         return
-    with pytest.raises(absolute.BranchError, match="not on the branch"):
-        absolute.solve(model, inputs)
+    with pytest.raises(absolute.PoseError):
+        assembled.solve(inputs)
 
 
 def test_a_motion_to_its_limit_is_refused_where_it_ends_and_keeps_what_was_solved(

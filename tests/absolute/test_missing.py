@@ -6,11 +6,10 @@ import sys
 import pytest
 
 
-@pytest.mark.parametrize("missing", ["pinocchio", "eigenpy"])
 @pytest.mark.parametrize("wanted", ["absolute", "absolute.errors", "absolute.newton"])
-def test_importing_without_pinocchio_names_the_extra(missing: str, wanted: str) -> None:
+def test_importing_without_pinocchio_names_the_extra(wanted: str) -> None:
     program = (
-        f"import sys; sys.modules[{missing!r}] = None\n"
+        "import sys; sys.modules['pinocchio'] = None\n"
         "try:\n"
         f"    import {wanted}\n"
         "except ImportError as error:\n"
@@ -20,5 +19,5 @@ def test_importing_without_pinocchio_names_the_extra(missing: str, wanted: str) 
     name, message = done.stdout.rstrip("\n").split("|")
     assert name == "MissingPinocchioError"
     assert message.endswith("pip install 'pointcoord[validate]'")
-    assert missing in message
+    assert "pinocchio" in message
     assert "\n" not in message

@@ -84,22 +84,22 @@ def test_rates_of_targets_are_their_derivatives(strut: absolute.Model) -> None:
     start, rate, second = np.random.default_rng(4).normal(size=(3, 2)) * [0.5, 50.0] + [[1.6, 0.0]]
     h = 1e-4
     t = np.array([-h, 0.0, h])[:, None]
-    series = np.stack((start + rate * t + second * t * t / 2.0, rate + second * t, second + 0.0 * t), axis=1)
-    before, here, after = mechanism.target_series(series)[..., mechanism.joint_rows :].swapaxes(0, 1)
+    series = start + rate * t + second * t * t / 2.0, rate + second * t, second + 0.0 * t
+    before, here, after = mechanism.targets(*series)[..., mechanism.joint_rows :].swapaxes(0, 1)
     # Truncation h^2 / 6 times a third derivative below 1000, and rounding of two values over 2 h.
     change = (after - before)[:2] / (2.0 * h)
     assert np.abs(change - here[1:]).max() < 1000.0 * h**2 / 6.0 + 8.0 * EPS / h
     # One instant after the other is the same.
     steady = mechanism.targets(start, rate)
-    together = mechanism.target_series(np.tile(np.stack((start, rate, 0.0 * rate)), (3, 1, 1)))
+    together = mechanism.targets(*(np.tile(part, (3, 1)) for part in (start, rate, 0.0 * rate)))
     assert all(np.array_equal(steady, together[:, k]) for k in range(3))
 
 
 def test_one_number_is_never_spread_over_several_inputs(strut: absolute.Model) -> None:
     mechanism = Mechanism(strut)
     two = mechanism.drawn_inputs.tolist()
-    with pytest.raises(ValueError, match="zip"):
-        mechanism.target_series(np.zeros((1, 3, 1)))
+    with pytest.raises(IndexError):
+        mechanism.targets(np.zeros((1, 1)))
     for values in (two[:1], [*two, 0.0]):
         with pytest.raises(ValueError, match="zip"):
             mechanism.named(values)

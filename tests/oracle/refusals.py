@@ -20,7 +20,6 @@ KINDS = {
         "motion leaves its reach",
         "start out of reach",
         "AssemblyError",
-        "BranchError",
         "PoseError",
         "SingularConfiguration",
         "SingularError",

@@ -18,7 +18,7 @@ import absolute
 import absolute.backend
 import pointcoord
 import validate.reference.route
-from absolute.continuation import follow
+from absolute.follow import follow
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
 from pointcoord.effects.rigid import body_rates
@@ -123,19 +123,6 @@ def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> objec
     return absolute.solve(absolute.compile({**PAPER_CAR, "points": PAPER_CAR["points"] | points}), inputs)
 
 
-def on_another_branch(patch: pytest.MonkeyPatch) -> object:
-    """What is found for an instant is said to be on another branch, however it is led up to."""
-    solver = sys.modules["absolute.solve"]
-    right = solver.refine
-
-    def elsewhere(*arguments: Any) -> Any:
-        found = right(*arguments)
-        return found._replace(kept=np.zeros_like(found.kept))
-
-    patch.setattr(solver, "refine", elsewhere)
-    return solved({})
-
-
 def followed(angle: float) -> object:
     """The paper's car in relative coordinates, its arm at an angle."""
     model = build(PAPER_CAR)
@@ -160,15 +147,12 @@ def without_pinocchio(patch: pytest.MonkeyPatch) -> object:
 
 
 def blocked() -> object:
-    """A path along which the rack goes half a metre."""
+    """A way along which the rack goes half a metre."""
     mechanism = Mechanism(absolute.compile(PAPER_CAR))
-    begin, change = mechanism.drawn_inputs.tolist(), [0.0, 500.0]
-
-    def path(share: float) -> Any:
-        values = [a + share * c for a, c in zip(begin, change, strict=True)]
-        return mechanism.targets(values, change)
-
-    return follow(mechanism, assemble(mechanism)[0], path)
+    begin = mechanism.drawn_inputs
+    return list(
+        follow(mechanism, assemble(mechanism), begin, begin + np.array([[0.0, 500.0]]), mechanism.targets)
+    )
 
 
 def leaving_by_scipy() -> object:
@@ -314,11 +298,11 @@ RECIPES: dict[str, Recipe] = {
             "asked": 1,
         },
     ),
-    "absolute.continuation.BlockedError": Recipe(
+    "absolute.follow.BlockedError": Recipe(
         lambda *_: blocked(),
-        ("blocked at 0.", "of the way"),
+        ("blocked at [",),
         {
-            "share": lambda share: 0.0 < share < 1.0,
+            "reached": lambda inputs: 0.0 < inputs[1] < 500.0,
             "pose": lambda pose: pose is not None,
             "corrections": bool,
         },
@@ -397,11 +381,6 @@ RECIPES: dict[str, Recipe] = {
         lambda _, patch: without_pinocchio(patch),
         ("Pinocchio", "pip install 'pointcoord[validate]'"),
         {},
-    ),
-    "absolute.errors.BranchError": Recipe(
-        lambda _, patch: on_another_branch(patch),
-        ("instant 0", "not on the branch of the drawing", "closer instants"),
-        {"instant": 0, "inputs": lambda inputs: inputs["arm_angle"] == 1.6},
     ),
     "absolute.errors.UnreachableError": Recipe(
         lambda *_: solved({}, {**HELD, "rack": np.array([[500.0, 0.0, 0.0]])}),

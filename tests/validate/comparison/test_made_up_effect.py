@@ -16,9 +16,8 @@ from built_in_cars import STEERED_CARS
 from program import short_scene
 
 import absolute
-from absolute.effects.effect import Effect as AbsoluteEffect
-from absolute.effects.effect import Lines
-from absolute.effects.projected_angle import projected_angle
+from absolute.effects import Effect as AbsoluteEffect
+from absolute.effects import Lines, projected_angle
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import Numbers
@@ -80,7 +79,7 @@ def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
         return scale * outboard(lines, lines.line(lines.corner.ends("wheel_axis")))
 
     words = ("length of the stub axle", "+ outboard")
-    return AbsoluteEffect("stub_axle", "mm", *words, "wheel_axis", 0, value)
+    return AbsoluteEffect("stub_axle", "mm", *words, "wheel_axis", value)
 
 
 FLIP = projected_angle(
@@ -88,8 +87,8 @@ FLIP = projected_angle(
     gives="camber from the other side",
     sign="+ where the wheel leans in at its top",
     role="wheel_axis",
-    rise=lambda corner: corner.up,
-    run=lambda corner: corner.inboard,
+    rise="up",
+    run="inboard",
 )
 
 # In the reference, whose derivatives make bounds of the absolute model's stated accuracy.

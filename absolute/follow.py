@@ -1,0 +1,220 @@
+"""From pose to pose through the instants of a motion, without leaving the branch.
+
+From a known pose many instants are predicted at once, to the second order, and corrected by Newton together;
+the last of those before the first that is too far is the next known pose. Where already the first is too far,
+a part of the way leads nearer to it.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from absolute.errors import AbsoluteError, SingularError, UnreachableError
+from absolute.limits import limited_by, limiting_input, limits_at
+from absolute.mechanism import Mechanism
+from absolute.newton import (
+    SMALLEST_RCOND,
+    Configurations,
+    leading,
+    lengths,
+    newton,
+    rates,
+    rounding_of,
+)
+from absolute.precision import EPS
+from absolute.solution import Array
+from absolute.vectors import cross
+
+# Inputs (..., inputs) and their rates -> (3, ..., rows): targets of the rows, and first and second rates.
+Targets = Callable[[Array, Array], Array]
+
+# All bodies together turn and move by half (2-norm, rad and units of size) in one step at most:
+# over that distance the second-order prediction holds for any linkage that is not near a fold.
+LONGEST_STEP = 0.5
+# The curved part of a step must be small against its straight part, and Newton's first correction against
+# the step. Where x is the distance from a fold, so that the other branch is 2 x away, a step s has a curved
+# part of s / 2 x: it ends within half the way to the fold and a quarter of that to the other branch.
+LARGEST_CURVE = 0.25
+LARGEST_CORRECTION = 0.1
+# A step below sqrt(eps) that still bends this much means a fold within eps of the target.
+SHORTEST_STEP = math.sqrt(EPS)
+# Thousands of the longest steps to one instant would be many turns around. A guard against endless work.
+MOST_STEPS = 2000
+# Instants of one step: enough to share the cost of a call, few enough to stay in fast memory.
+FEW_INSTANTS, MOST_INSTANTS = 16, 64
+
+
+class BlockedError(Exception):
+    """The way cannot be followed to its end; carries the inputs where it ends and the last good pose."""
+
+    def __init__(self, reached: Array, pose: Configurations, corrections: int) -> None:
+        super().__init__(f"blocked at {reached.tolist()}")
+        self.reached = reached
+        self.pose = pose
+        self.corrections = corrections
+
+
+def follow(
+    mechanism: Mechanism, start: Configurations, at: Array, goals: Array, targets: Targets
+) -> Iterator[Configurations]:
+    """The poses at goals, one run of them after the other, each on the straight way from a pose before it.
+
+    A pose is taken that is near, to which the way bends little, that needs a small first correction, closes,
+    keeps rows that were left out and the sense of all joints, and has the signs of the start's determinants:
+    assemblies meet where one is zero.
+
+    Args:
+        start: one pose, at inputs `at`, (inputs,). goals: (N, inputs). targets: of the rows by the inputs.
+    Raises:
+        BlockedError: steps have become too short to go on: the mechanism locks there.
+    """
+    pose, longest, done, ahead, steps, spent = start, LONGEST_STEP, 0, MOST_INSTANTS, 0, 0
+    while done < len(goals):
+        ends = goals[done : done + ahead]
+        ways = ends - at
+        # Of ways of length one, since squares of long ones overflow.
+        whole = np.abs(ways).max(axis=1, initial=0.0)
+        units = ways / np.where(whole > 0.0, whole, 1.0)[:, None]
+        straight, curve, furthest = _predicted(mechanism, pose, targets(at, units), longest)
+        count = leading(whole <= furthest)
+        share = 1.0
+        if not count:
+            share = float(furthest[0] / whole[0])
+            count, ends = 1, (at + share * ways[0])[None]
+        length = share * whole[:count, None]
+        straight, curve = length * straight[:count], length**2 * curve[:count]
+        size, floor = lengths(straight), float(rounding_of(pose.condition[0]))
+        # A way of no length may end where it begins; another one must lead on.
+        short = share < 1.0 and (size[0] <= SHORTEST_STEP or (ends[0] == at).all())
+        there = newton(
+            mechanism,
+            pose,
+            mechanism.moved(np.repeat(pose.q, count, axis=0), pose.rotation, straight + curve),
+            targets(ends[:count], np.zeros_like(ends[:count]))[0],
+            LARGEST_CORRECTION * size + floor,
+        )
+        same = (there.signs == start.signs).all(axis=1) & mechanism.stack.kept(there.placed)
+        count, steps = leading(there.closed & there.held & same), steps + 1
+        spent += int(there.corrections[count:].sum())
+        if short or steps > MOST_STEPS or not (count or size[0] > SHORTEST_STEP):
+            raise BlockedError(at, pose, spent)
+        if not count:
+            longest, ahead = 0.5 * float(size[0]), 1
+            continue
+        there = there.part(slice(count))
+        pose, at, longest = there.part(slice(-1, None)), ends[count - 1], LONGEST_STEP
+        if share < 1.0:
+            spent, ahead = spent + int(there.corrections[0]), 1
+            continue
+        there.corrections[0] += spent
+        done, ahead = done + count, min(max(FEW_INSTANTS, 2 * count), MOST_INSTANTS)
+        steps = spent = 0
+        yield there
+
+
+def _predicted(
+    mechanism: Mechanism, pose: Configurations, targets: Array, longest: float
+) -> tuple[Array, Array, Array]:
+    """Ways of N directions by their targets, (3, N, rows): straight s and curve c, (N, rows), of the step
+    l s + l^2 c along each, and the largest l that is no longer and bends no more than a step may."""
+    straight, second = rates(mechanism, pose, targets[1], targets[2])
+    # A step turns with the body, so its curve is o'' - w x o'.
+    twist, curve = straight.reshape(len(straight), -1, 2, 3), 0.5 * second
+    curve.reshape(twist.shape)[..., 0, :] -= 0.5 * cross(twist[..., 1, :], twist[..., 0, :])
+    size, bent = lengths(straight), lengths(curve)
+    # l^2 bent = LARGEST_CURVE l size + what rounding explains
+    half = 0.5 * LARGEST_CURVE * size
+    with np.errstate(divide="ignore", invalid="ignore"):
+        bending = (half + np.sqrt(half**2 + bent * rounding_of(pose.condition))) / bent
+        furthest = np.fmin(longest / size, bending)
+    return straight, curve, np.where(size + bent > 0.0, furthest, np.inf)
+
+
+def through(mechanism: Mechanism, drawn: Configurations, goals: Array) -> Iterator[Configurations]:
+    """The poses at inputs (N, inputs) over N instants: straight, else one input after the other.
+
+    Args:
+        drawn: the assembled drawing; its corrections are counted to the first instant.
+    Raises:
+        UnreachableError, SingularError: at the first instant without a pose, after those before it.
+    """
+    pose, at, done, spent = drawn, mechanism.drawn_inputs, 0, int(drawn.corrections[0])
+    while done < len(goals):
+        try:
+            for found in follow(mechanism, pose, at, goals[done:], mechanism.targets):
+                found.corrections[0] += spent
+                spent, done = 0, done + len(found.q)
+                pose, at = found.part(slice(-1, None)), goals[done - 1]
+                yield found
+        except BlockedError as blocked:
+            pose = _around(mechanism, pose, at, goals[done], blocked, done)
+            pose.corrections[0] += spent
+            spent, at, done = 0, goals[done], done + 1
+            yield pose
+
+
+def _around(
+    mechanism: Mechanism, pose: Configurations, at: Array, goal: Array, blocked: BlockedError, instant: int
+) -> Configurations:
+    """The pose at a goal to which the straight way is blocked, by one input after the other."""
+    changed, spent = np.flatnonzero(at != goal), blocked.corrections
+    for order in (changed, changed[::-1]) if len(changed) > 1 else ():
+        corners = [at]
+        for index in order:
+            corners.append(np.where(np.arange(len(at)) == index, goal, corners[-1]))
+        try:
+            for found in follow(mechanism, pose, at, np.array(corners[1:]), mechanism.targets):
+                spent += int(found.corrections.sum())
+        except BlockedError as again:
+            spent += again.corrections
+            continue
+        found = found.part(slice(-1, None))
+        found.corrections[0] = spent
+        return found
+    raise _refusal(mechanism, blocked, at, goal, instant)
+
+
+def _refusal(
+    mechanism: Mechanism, blocked: BlockedError, start: Array, goal: Array, instant: int
+) -> AbsoluteError:
+    wanted, reached = (mechanism.named(values.tolist()) for values in (goal, blocked.reached))
+    residual = float(blocked.pose.residual[0]) * mechanism.drawing.size
+    condition = float(blocked.pose.condition[0])
+    asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
+    where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
+    jacobian = blocked.pose.jacobian[0]
+    limits = limits_at(mechanism, jacobian)
+    if not limits and mechanism.redundant is not None:
+        # Far from singular: the way leads on, but only without the rows that were left out.
+        limits = tuple(dict.fromkeys(mechanism.redundant.owners))
+    # What the targets change along the straight way, at its end.
+    change = mechanism.targets(blocked.reached, goal - start)[1]
+    limit = limiting_input(mechanism, jacobian, change[mechanism.joint_rows :])
+    if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
+        return SingularError(
+            f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
+            f"{condition:.3g}, "
+            f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are undetermined there; "
+            "stay away from the limit of the motion",
+            instant,
+            wanted,
+            reached,
+            residual,
+            condition,
+            limits,
+            limit,
+        )
+    return UnreachableError(
+        f"instant {instant}: {asked} cannot be reached; going there the mechanism locks at {where} "
+        f"({limited_by(limits)}condition number about {condition:.3g}, rows still closed to "
+        f"{residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach them by "
+        "another sequence of instants",
+        instant,
+        wanted,
+        reached,
+        residual,
+        condition,
+        limits,
+        limit,
+    )
