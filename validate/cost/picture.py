@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import matplotlib as mpl
 import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from validate.cost.findings import (
     ACCURACIES,
@@ -24,7 +20,16 @@ from validate.cost.findings import (
 )
 from validate.cost.looks import KEY, Look, looks
 from validate.cost.words import power
+from validate.extras import MissingPackage
 from validate.output.figure import GREY, SETTINGS, plain
+
+try:
+    import matplotlib as mpl
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+except ImportError as error:
+    raise MissingPackage("validate.cost.picture", error, "plot") from None
 
 COLUMNS, WIDE, HIGH = 3, 3.7, 3.6  # of panels; inches of each
 
