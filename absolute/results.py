@@ -75,8 +75,8 @@ class Motion:
             iterations=iterations,
             residual=_locked(residual * size),
             condition=_locked(self._condition_numbers()) if conditions else None,
-            # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths up
-            # to the diameter.
+            # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths
+            # up to the diameter.
             accuracy=_locked((residual + EPS) * size),
             **{kind: ReadOnly({n: _locked(a) for n, a in of.items()}) for kind, of in numbers.items()},
         )
