@@ -191,30 +191,19 @@ def _refusal(
     # What the targets change along the straight way, at its end.
     change = mechanism.targets(blocked.reached, goal - start)[1]
     limit = limiting_input(mechanism, jacobian, change[mechanism.joint_rows :])
+    facts = instant, wanted, reached, residual, condition, limits, limit
     if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
         return SingularError(
             f"instant {instant}: {asked} is a singular pose ({limited_by(limits)}condition number about "
             f"{condition:.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved): rates and branch are undetermined there; "
             "stay away from the limit of the motion",
-            instant,
-            wanted,
-            reached,
-            residual,
-            condition,
-            limits,
-            limit,
+            *facts,
         )
     return UnreachableError(
         f"instant {instant}: {asked} cannot be reached; going there the mechanism locks at {where} "
         f"({limited_by(limits)}condition number about {condition:.3g}, rows still closed to "
         f"{residual:.3g} mm). Keep the inputs inside that limit ({limit!r} meets it), or reach them by "
         "another sequence of instants",
-        instant,
-        wanted,
-        reached,
-        residual,
-        condition,
-        limits,
-        limit,
+        *facts,
     )
