@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
@@ -73,7 +73,7 @@ def standing(scene: Scene) -> Standing:
     return Standing(
         inputs=drawn,
         reach={name: _ends(mechanism, closed, name) for name in drawn},
-        angles=_angles(scene, mechanism, closed.y, CarAxes.of(mechanism.drawing, scene.mechanism.outboard)),
+        angles=_angles(scene, mechanism, closed.y),
         closing=closing(mechanism, closed.y),
     )
 
@@ -107,13 +107,13 @@ def _drawn(mechanism: Mechanism, closed: Path) -> dict[str, float]:
     return {name: float(value) + 0.0 for name, value in mechanism.input_values(known).items()}
 
 
-def _angles(scene: Scene, mechanism: Mechanism, y: Array, axes: CarAxes) -> dict[str, float]:
-    """Every number of the whole car that a pose has by itself."""
+def _angles(scene: Scene, mechanism: Mechanism, y: Array) -> dict[str, float]:
+    """Every angle of the car."""
     places = {name: place * mechanism.unit for name, place in mechanism.places(y).items()}
-    poses = Poses(mechanism, axes, states=(places,), added=(None,))
+    poses = Poses(mechanism, scene.mechanism.axes, (places,), places, added=(None,))
     found: dict[str, float] = {}
     for effect in EFFECTS.values():
-        if effect.derivative == 0 and not effect.refusal(mechanism.topology, scene.mechanism.points):
+        if effect.quantities == (WHEEL,) and not scene.mechanism.refusal(effect):
             for numbers in effect.evaluate(poses).values():
                 found |= {name: float(number) for name, number in numbers.items()}
     return found

@@ -20,7 +20,6 @@ from pointcoord.errors import (
     PointcoordError,
     SceneError,
 )
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
@@ -214,7 +213,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
         mechanism=mechanism,
         plan=plan,
         chassis=ChassisMotion.of(mechanism, laws),
-        axes=CarAxes.of(mechanism.drawing, scene.mechanism.outboard),
+        axes=scene.mechanism.axes,
     )
     functions = {name: laws[name] for name in whole.topology.required_inputs}
     check_range(whole, functions, instants)

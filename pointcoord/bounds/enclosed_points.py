@@ -59,7 +59,9 @@ class EnclosedPoses:
     unit of its own for each, so that no rate overflows.
 
     Attributes:
-        points: by time derivative, every point in the chassis' frame, (N, 3), in the mechanism's units.
+        points: by time derivative, every point after the turns of the chassis, (N, 3), in the mechanism's
+            units.
+        in_chassis: places before these turns.
         added: by time derivative, what reporting a point adds to it, (N, 3), mm and s.
         powers: of the unit of time, s^d for d = 0, 1, 2, each (N,).
     """
@@ -67,6 +69,7 @@ class EnclosedPoses:
     mechanism: Mechanism
     axes: CarAxes
     points: Sequence[Points]
+    in_chassis: Points
     added: Sequence[Enclosed]
     powers: Sequence[Array]
 

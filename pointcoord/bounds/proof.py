@@ -246,13 +246,14 @@ def _enclosed(
     }
     added = chassis.enclosed(laws, mechanism.origin)
     points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
+    in_chassis = points[0]
     if chassis.turns:
         scaled = {
             name: [part.scaled(power) for part, power in zip(parts, powers, strict=False)]
             for name, parts in laws.items()
         }
         points = chassis.turned_exactly(scaled, points, float(mechanism.unit))
-    return EnclosedPoses(mechanism, reported.axes, points, added, powers)
+    return EnclosedPoses(mechanism, reported.axes, points, in_chassis, added, powers)
 
 
 def _of_poses(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from pointcoord.effects.angle import Angle, WheelAngles
+from pointcoord.effects.angle import Angle
+from pointcoord.effects.car_number import CarNumbers
 
-CASTER = WheelAngles.of(
+CASTER = CarNumbers.of(
     "caster",
     "caster angle, rad",
     Angle(

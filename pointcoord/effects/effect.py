@@ -59,7 +59,8 @@ class Poses:
     Attributes:
         axes: the car's directions.
         states: by time derivative, the states of the points that were asked for, (..., N, 3), mm per s^d, in
-            the chassis' frame and from the mechanism's origin.
+            the chassis' frame and from the mechanism's origin; after the turns of the chassis.
+        in_chassis: the positions before these turns; the same where nothing turns.
         added: by time derivative, what reporting adds to every point: the user's origin and what the chassis
             does, (..., N, 3), mm per s^d; None where that is zero.
     """
@@ -67,6 +68,7 @@ class Poses:
     mechanism: Mechanism
     axes: CarAxes
     states: Sequence[Mapping[str, Array]]
+    in_chassis: Mapping[str, Array]
     added: Sequence[Array | None]
 
 
@@ -135,7 +137,7 @@ class Effect(ABC):
             numbers: everything that was reported, its own among it.
         """
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
         """Why a drawing does not have it and what to do, in words; empty if it does."""
         return ""
 

@@ -102,7 +102,7 @@ class BodyRates(Effect):
         """The points of the bodies."""
         return {point for points in topology.bodies.values() for point in points}
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
         """There is a body whose rates they are."""
         return "" if topology.bodies else no_role(self.name, "knuckle", topology)
 

@@ -5,13 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
+from pointcoord.effects.angle import Angle
+from pointcoord.effects.car_number import CarNumber, CarNumbers
 from pointcoord.effects.caster import CASTER
+from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
+from pointcoord.effects.steering_axis import STEERING_AXIS
 from pointcoord.effects.toe import TOE
 from pointcoord.effects.velocity import VELOCITY
 from pointcoord.effects.wheel_angles import WHEEL_ANGLES
+from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 
 ALWAYS: tuple[Effect, ...] = (POSITION,)
 """What every motion reports."""
@@ -25,9 +30,25 @@ EFFECTS: Mapping[str, Effect] = {
         WHEEL_ANGLES,
         TOE,
         CASTER,
+        WHEEL_TRAVEL,
+        STEERING_AXIS,
+        DAMPER,
     )
 }
 """What a scene may list, by name."""
+
+NUMBERS_OF_THE_CAR: Mapping[str, CarNumber] = {
+    number.name: number
+    for effect in EFFECTS.values()
+    if isinstance(effect, CarNumbers)
+    for number in effect.numbers
+}
+"""Numbers of a car, by their names."""
+
+ANGLES: Mapping[str, Angle] = {
+    name: number for name, number in NUMBERS_OF_THE_CAR.items() if isinstance(number, Angle)
+}
+"""Those that are angles of a line."""
 
 QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity for effect in (*ALWAYS, *EFFECTS.values()) for quantity in effect.quantities

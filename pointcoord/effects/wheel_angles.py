@@ -6,7 +6,8 @@ mirror image.
 
 from __future__ import annotations
 
-from pointcoord.effects.angle import Angle, WheelAngles
+from pointcoord.effects.angle import Angle
+from pointcoord.effects.car_number import CarNumbers
 
 CAMBER = Angle(
     name="camber",
@@ -28,4 +29,4 @@ KINGPIN = Angle(
     steepest=45.0,
     steepest_by_default=45.0,
 )
-WHEEL_ANGLES = WheelAngles.of("wheel_angles", "camber and kingpin angle, rad", CAMBER, KINGPIN)
+WHEEL_ANGLES = CarNumbers.of("wheel_angles", "camber and kingpin angle, rad", CAMBER, KINGPIN)

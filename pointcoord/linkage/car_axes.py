@@ -10,7 +10,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.enclosure import Enclosed, cross, dot
 from pointcoord.numerics.vectors import cross as vector_product
 
@@ -22,21 +21,18 @@ OPPOSITE: Mapping[Direction, Direction] = {"down": "up", "inboard": "outboard", 
 
 @dataclass(frozen=True)
 class CarAxes:
-    """Unit vectors of one wheel's car, each of shape (..., 3).
+    """Unit vectors of one wheel's car, each of shape (..., 3), and what else its scene says of the wheel.
 
     Attributes:
         up, right: as the car's axes are given; rearward is right x up.
         outboard: away from the car's middle, on the side of the wheel.
+        wheel_radius: mm; None where the scene has none.
     """
 
     up: Array
     right: Array
     outboard: Array
-
-    @classmethod
-    def of(cls, drawing: Drawing, outboard: Array) -> CarAxes:
-        """Those of a drawing whose wheel lies on the side to which `outboard` points."""
-        return cls(drawing.vectors["up"], drawing.vectors["right"], outboard)
+    wheel_radius: float | None = None
 
     def component(self, vector: Array, direction: Direction) -> Array:
         """Component of vectors (..., 3) along a direction, shape (...,)."""

@@ -66,6 +66,12 @@ class Mechanism:
         return moving_part(self.map, frozenset(self.layout.scalar(drive.coordinate) for drive in driven))
 
     @cached_property
+    def drawn_places(self) -> Mapping[str, Array]:
+        """Where every point is drawn, each of shape (..., 3), mm from the origin."""
+        unit = self.unit[..., None]
+        return {name: self.drawing.vectors[name] * unit for name in self.topology.points}
+
+    @cached_property
     def drawn_factors(self) -> Factors:
         """Factorisation of C_u at the drawing."""
         return factorise(self.map.jacobian(self.drawn))

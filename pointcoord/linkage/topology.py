@@ -38,6 +38,7 @@ class Topology:
         steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
         wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
         front_and_rear: two points of the chassis, of which the first lies ahead of the second.
+        damper: its two ends.
         inboard: a point of the chassis that lies nearer the car's middle than the wheel centre.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
@@ -58,6 +59,7 @@ class Topology:
     knuckle: str = ""
     steering_axis: tuple[str, ...] = ()
     wheel_axis: tuple[str, ...] = ()
+    damper: tuple[str, ...] = ()
     inboard: str = ""
     front_and_rear: tuple[str, ...] = ()
     stand_ins: Mapping[str, str] = field(default_factory=dict)
@@ -84,6 +86,11 @@ class Topology:
             if name in self.chassis and other in points
         }
         return taken | dict(points)
+
+    def role(self, name: str) -> tuple[str, ...]:
+        """The points of wheel_axis, steering_axis or damper; empty where the mechanism has no such role."""
+        roles = {"wheel_axis": self.wheel_axis, "steering_axis": self.steering_axis, "damper": self.damper}
+        return roles[name]
 
     @property
     def wheel_centre(self) -> str:

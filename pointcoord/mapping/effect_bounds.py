@@ -92,7 +92,7 @@ class Evaluated:
         laws = {name: [Enclosed.of(rate[here]) for rate in law] for name, law in self.laws.items()}
         turned = self.chassis.turned_exactly(laws, found, unit)
         added = self.chassis.enclosed(laws, mechanism.origin)
-        return EnclosedPoses(mechanism, self.axes, turned, added, [np.ones(count)] * len(found))
+        return EnclosedPoses(mechanism, self.axes, turned, found[0], added, [np.ones(count)] * len(found))
 
     def _radii(self, here: slice) -> list[Array]:
         """How far the sums are off, by derivative, each (N, 3 points)."""

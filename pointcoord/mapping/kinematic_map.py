@@ -272,7 +272,7 @@ class KinematicMap:
         require_finite_rates(self.domain, states)
         patch = self._patches_of(states[0])
         moving = self._sums(states, patch)
-        axes = CarAxes.of(self.mechanism.drawing, self.scene.mechanism.outboard)
+        axes = self.scene.mechanism.axes
         numbers = self._read(moving, laws, axes)
         found = {name: channel.with_arrays(_shaped(channel, shape)) for name, channel in numbers.items()}
         if not bounds:
@@ -453,11 +453,11 @@ class KinematicMap:
             | {name: state[3 * i : 3 * i + 3].T for i, name in enumerate(self.points)}
             for d, state in enumerate(moving)
         ]
-        places = self._motion.turned_by(laws, places)
+        in_chassis, places = places[0], self._motion.turned_by(laws, places)
         added: list[Array | None] = [*self._motion.shifts(laws)] or [None] * len(places)
         if mechanism.origin.any():
             added[0] = mechanism.origin if added[0] is None else mechanism.origin + added[0]
-        poses = Poses(mechanism, axes, states=places, added=added)
+        poses = Poses(mechanism, axes, places, in_chassis, added)
         found: dict[str, dict[str, Array]] = {quantity: {} for quantity in QUANTITIES}
         computed = self._effects[len(places) - 1]
         for effect in computed:

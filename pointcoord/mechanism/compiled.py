@@ -279,6 +279,7 @@ class _Compiler:
             drives=tuple(drives),
             knuckle=str(knuckle),
             steering_axis=self._pair("steering_axis"),
+            damper=self._pair("damper"),
             wheel_axis=self._pair("wheel_axis"),
             inboard=str(roles.get("inboard", "")),
             front_and_rear=self._pair("front_and_rear"),

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.numerics.double_double import largest, quick_two_sum, two_product, two_sum
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import LAST, NEXT, components_first, components_last
 
 Array = NDArray[np.float64]
@@ -281,17 +281,57 @@ def _inverse(number: int) -> Enclosed:
 
 
 def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
-    """Of a small numerator and a positive divisor, in plain doubles; an infinite radius where that may be 0.
+    """Of two numbers, in plain doubles; an infinite radius where the divisor may be 0.
 
     With n, r the numerator and its radius and d, s the divisor's, the exact quotient differs from n/d by at
-    most (r + |n/d| s) / (d - s); the two middles and the division are rounded by 4 u of it together.
+    most (r + |n/d| s) / (|d| - s); the two middles and the division are rounded by 4 u of it together.
     """
     n, d = numerator.middle, divisor.middle
-    shape = np.broadcast_shapes(numerator.radius.shape, divisor.radius.shape)[1:]
+    r, s = aligned(numerator.radius, divisor.radius)
+    shape = np.broadcast_shapes(r.shape, s.shape)[1:]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         value = n / d
-        least, size = -largest(-d, shape), largest(np.abs(value), shape)
-        left = least - divisor.radius
-        radius = np.where(left > 0.0, (numerator.radius + size * divisor.radius) / left, np.inf)
-    value = np.where(d > 0.0, value, 0.0)
+        least, size = -largest(-np.abs(d), shape), largest(np.abs(value), shape)
+        left = least - s
+        radius = np.where(left > 0.0, (r + size * s) / left, np.inf)
+    value = np.where(d != 0.0, value, 0.0)
     return Enclosed.sharing(value, np.zeros_like(value), radius + 4.0 * UNIT_ROUNDOFF * size)
+
+
+def root(square: Enclosed) -> Enclosed:
+    """Square root of what is not negative, in plain doubles.
+
+    |sqrt x - sqrt m| = |x - m| / (sqrt x + sqrt m) <= r / sqrt m, and where m < r it is at most sqrt(m + r);
+    the middle and the root are rounded by 2 u of it together.
+    """
+    value, shape = np.sqrt(np.maximum(square.middle, 0.0)), square.radius.shape[1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        least = -largest(-value, shape)
+        radius = np.fmin(square.radius / least, np.sqrt(square.size + square.radius))
+    return Enclosed.sharing(value, np.zeros_like(value), radius + 2.0 * UNIT_ROUNDOFF * largest(value, shape))
+
+
+def angle(sine: Enclosed, cosine: Enclosed) -> Enclosed:
+    """atan2(sine, cosine), rad, in plain doubles; each has radii of its own, of at most pi."""
+    found = np.arctan2(sine.middle, cosine.middle)
+    return Enclosed.sharing(found, np.zeros_like(found), angle_error(sine, cosine, found))
+
+
+def angle_error(sine: Enclosed, cosine: Enclosed, found: Array) -> Array:
+    """Proven and expected error of an angle atan2(sine, cosine) that was found, (2, N), rad; at most pi.
+
+    It is off by d with sin d = (sine cos f - cosine sin f) / |(sine, cosine)| where it was found as f.
+    """
+    c, s = (
+        sine.like(part, 2.0 * UNIT_ROUNDOFF, 2.0 * UNIT_ROUNDOFF) for part in (np.cos(found), np.sin(found))
+    )
+    off = sine * c - cosine * s
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+        long = np.hypot(sine.middle, cosine.middle)
+        reach = long - 2.0 * np.maximum(sine.radius[0], cosine.radius[0])
+        proven = (np.abs(off.middle) + off.radius[0]) / np.where(reach > 0.0, reach, 0.0)
+        expected = off.radius[1] / long + 4.0 * EPS
+        # The arc of a sine below 1/2 is at most 1 + x^2 times as long as the sine.
+        turn = np.stack([proven, expected])
+        ahead = sine.middle * np.sin(found) + cosine.middle * np.cos(found) > 0.0
+        return np.where((turn < 0.5) & np.stack([ahead, ahead | True]), turn * (1.0 + turn**2), np.pi)

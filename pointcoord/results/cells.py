@@ -392,7 +392,8 @@ class CloseInstants:
         values = np.empty((readout.table.height, len(points)))
         for low in range(0, len(points), BLOCK):
             here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
-            readout.compute(self.states.states(here, block), readout.added(here), block)
+            states = self.states.states(here, block)
+            readout.compute(states, states[0], readout.added(here), block)
         return values[: readout.table.first_still]
 
     @cached_property

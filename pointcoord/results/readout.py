@@ -84,12 +84,13 @@ class Readout:
         Args:
             rows: a table or some columns of one, shape (..., height, N), with the states in their places.
         """
+        in_chassis = states[0]
         if self.chassis.turns:
             states = self.chassis.turned(times, states)
             for first, (derivative, point) in self.table.states:
                 vectors(rows, first)[...] = states[derivative][point]
         added = self.added(times)
-        self.compute(states, added, rows)
+        self.compute(states, in_chassis, added, rows)
         for derivative in self.table.reported:
             more = added[derivative]
             if more is not None:
@@ -104,15 +105,18 @@ class Readout:
         )
         return self.plan.unreported if computed else ()
 
-    def compute(self, states: States, added: Sequence[Array | None], rows: Array) -> None:
+    def compute(
+        self, states: States, in_chassis: Mapping[str, Array], added: Sequence[Array | None], rows: Array
+    ) -> None:
         """Compute the numbers that are made of states.
 
         Args:
+            in_chassis: positions before the turns of the chassis.
             added: what reporting adds to these.
             rows: as of `complete`.
         """
         if self.table.computed:
-            poses = Poses(self.mechanism, self.axes, states, added)
+            poses = Poses(self.mechanism, self.axes, states, in_chassis, added)
             for effect in self.table.computed:
                 for quantity, arrays in effect.evaluate(poses).items():
                     for name, array in arrays.items():

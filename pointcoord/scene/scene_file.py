@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
+from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
@@ -338,8 +339,21 @@ class MechanismPart(Part):
     def doubts(self) -> tuple[str, ...]:
         """What looks wrong with the drawing although it can be solved, in words."""
         points = {name: np.array(place) for name, place in self.points.items()}
-        axes = CarAxes(np.array(self.up), np.array(self.right), self.outboard)
-        return drawing_doubts(self.topology, points, axes)
+        return drawing_doubts(self.topology, points, self.axes)
+
+    @property
+    def axes(self) -> CarAxes:
+        """The car's directions, and its wheel."""
+        return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The names of the effects that this car has."""
+        return tuple(name for name, effect in EFFECTS.items() if not self.refusal(effect))
+
+    def refusal(self, effect: Effect) -> str:
+        """Why this car does not have an effect and what to do, in words; empty if it does."""
+        return effect.refusal(self.topology, self.points, self.wheel_radius)
 
     @property
     def outboard(self) -> NDArray[np.float64]:
@@ -484,9 +498,8 @@ class Scene(Part):
         self._effects_have_a_meaning()
 
     def _effects_have_a_meaning(self) -> None:
-        topology, points = self.mechanism.topology, self.mechanism.points
         for name in self.effects:
-            problem = EFFECTS[name].refusal(topology, points)
+            problem = self.mechanism.refusal(EFFECTS[name])
             if problem:
                 raise ValueError(problem)
 

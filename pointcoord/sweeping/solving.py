@@ -15,6 +15,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.effect import Doubt, Poses
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (
@@ -114,7 +115,7 @@ class Course:
         else:
             laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
         part = laws[0].mechanism
-        axes = CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+        axes = part.axes
         return cls(designs, plan_effects(laws[0].effects, None, laws[0].unreported_points), axes, laws, which)
 
     @property
@@ -361,10 +362,10 @@ class _Block:
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
         unit = mechanism.unit[..., None]
         states = {name: place * unit for name, place in mechanism.places(closed).items()}
-        poses = Poses(mechanism, self.course.axes, (states,), (None,))
+        poses = Poses(mechanism, self.course.axes, (states,), states, (None,))
         found: dict[str, Array] = {}
         for effect in self.course.plan.computed:
-            if effect.derivative == 0 and not effect.reports_states:
+            if effect.quantities == (WHEEL,):
                 for numbers in effect.evaluate(poses).values():
                     found |= numbers
         return found

@@ -8,12 +8,9 @@ import pytest
 from sample_cars import PAPER_STRUT, SampleCar
 
 from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from validate.cars.car import Points
 from validate.cars.paper_car import PAPER
-
-EVERYTHING = tuple(EFFECTS)
 
 
 @pytest.fixture(scope="session")
@@ -43,7 +40,7 @@ def make_scene() -> Callable[..., Scene]:
         start: float = 0.0,
         stop: float = 2.0,
         samples: int = 9,
-        effects: tuple[str, ...] = EVERYTHING,
+        effects: tuple[str, ...] | None = None,
         tolerance: float = 1e-9,
         car: SampleCar = PAPER_STRUT,
         points: Mapping[str, Any] | None = None,
@@ -56,15 +53,16 @@ def make_scene() -> Callable[..., Scene]:
         if heave is not None:
             inputs["heave"] = as_input(heave)
         located = {name: tuple(np.asarray(p, float).tolist()) for name, p in (points or car.points).items()}
-        return Scene.from_mapping(
+        scene = Scene.from_mapping(
             {
-                "effects": effects,
+                "effects": effects or (),
                 "tolerance": tolerance,
                 "mechanism": {
                     "type": car.type,
                     "closure": closure or car.closure,
                     "side": side or car.side,
                     "points": located,
+                    "wheel_radius": 300.0,
                     "up": tuple(np.asarray(up, float).tolist()),
                     "right": tuple(np.asarray(right, float).tolist()),
                 },
@@ -72,5 +70,6 @@ def make_scene() -> Callable[..., Scene]:
                 "time": {"start": float(start), "stop": float(stop), "samples": samples},
             }
         )
+        return scene if effects is not None else scene.model_copy(update={"effects": scene.mechanism.effects})
 
     return make

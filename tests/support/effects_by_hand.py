@@ -24,6 +24,9 @@ class Car:
         turn: angular velocity and acceleration of every body.
         bodies: their names.
         wheel_axis: from the inner point to the outer one. steering_axis: from the lower to the upper one.
+        damper: its two ends, if there is one.
+        in_chassis: the positions before the turns of the chassis.
+        drawn: as drawn.
         up, right, outboard: of the car.
     """
 
@@ -33,9 +36,26 @@ class Car:
     bodies: tuple[str, ...]
     wheel_axis: tuple[str, str]
     steering_axis: tuple[str, str]
+    damper: tuple[str, ...]
+    wheel_radius: mpf
+    in_chassis: Mapping[str, Vector]
+    drawn: Mapping[str, Vector]
     up: Vector
     right: Vector
     outboard: Vector
+
+    @property
+    def places(self) -> dict[str, Vector]:
+        """The positions."""
+        return {name: states[0] for name, states in self.points.items()}
+
+    def contact(self, places: Mapping[str, Vector]) -> Vector:
+        """The point of a thin disc about the spin axis that lies farthest down."""
+        inner, centre = (places[name] for name in self.wheel_axis)
+        spin = plus(centre, inner, -1)
+        # What is left of up beside the spin axis lies in the disc.
+        in_disc = plus(self.up, spin, -dot(self.up, spin) / dot(spin, spin))
+        return plus(centre, in_disc, -self.wheel_radius / mp.sqrt(dot(in_disc, in_disc)))
 
     def line(self, ends: tuple[str, str]) -> Vector:
         """From the first of two points to the second."""
@@ -43,7 +63,7 @@ class Car:
         return plus(end, start, -1)
 
 
-def plus(a: Vector, b: Vector, factor: int = 1) -> Vector:
+def plus(a: Vector, b: Vector, factor: int | mpf = 1) -> Vector:
     """a + factor b."""
     x, y, z = (p + factor * q for p, q in zip(a, b, strict=True))
     return x, y, z
@@ -93,6 +113,50 @@ def _caster(car: Car) -> Numbers:
     return {"wheel": {"caster": [mp.arg(mpc(dot(kingpin, car.up), dot(kingpin, rearward)))]}}
 
 
+def _wheel_travel(car: Car) -> Numbers:
+    rearward, centre = cross(car.right, car.up), car.wheel_axis[1]
+    in_chassis = plus(car.contact(car.in_chassis), car.contact(car.drawn), -1)
+    moved = plus(car.contact(car.places), car.contact(car.drawn), -1)
+    numbers = {
+        "travel": dot(plus(car.in_chassis[centre], car.drawn[centre], -1), car.up),
+        "contact_travel": dot(in_chassis, car.up),
+        "half_track_change": dot(moved, car.outboard),
+        "recession": dot(moved, rearward),
+    }
+    return {"dimension": {name: [number] for name, number in numbers.items()}}
+
+
+def _steering_axis(car: Car) -> Numbers:
+    """By where the axis' line passes the heights of the contact point and of the wheel centre."""
+    lower, upper = (car.places[name] for name in car.steering_axis)
+    kingpin, contact, centre = plus(upper, lower, -1), car.contact(car.places), car.places[car.wheel_axis[1]]
+    rearward = cross(car.right, car.up)
+
+    def beside(place: Vector) -> Vector:
+        share = dot(plus(place, lower, -1), car.up) / dot(kingpin, car.up)
+        return plus(place, plus(lower, kingpin, share), -1)
+
+    ground, hub = beside(contact), beside(centre)
+    # Level, at right angles to the spin axis, and forward where that points outboard.
+    ahead = cross(car.line(car.wheel_axis), car.up)
+    if dot(cross(car.outboard, car.up), rearward) > 0:
+        ahead = plus((mpf(0),) * 3, ahead, -1)
+    numbers = {
+        "kingpin_offset": dot(ground, car.outboard),
+        "scrub_radius": mp.sqrt(dot(ground, ground)),
+        "mechanical_trail": -dot(ground, ahead) / mp.sqrt(dot(ahead, ahead)),
+        "castor_offset": dot(ground, rearward),
+        "kingpin_offset_at_wheel": dot(hub, car.outboard),
+        "hub_trail": -dot(hub, rearward),
+    }
+    return {"dimension": {name: [number] for name, number in numbers.items()}}
+
+
+def _damper(car: Car) -> Numbers:
+    line = car.line(car.damper)
+    return {"dimension": {"damper_length": [mp.sqrt(dot(line, line))]}}
+
+
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
     "velocity": _of_points("velocity", 1),
@@ -101,6 +165,9 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "wheel_angles": _wheel_angles,
     "toe": _toe,
     "caster": _caster,
+    "wheel_travel": _wheel_travel,
+    "steering_axis": _steering_axis,
+    "damper": _damper,
 }
 
 

@@ -4,18 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion
-from pointcoord.effects.angle import WheelAngles
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import ANGLES
 
 Array = NDArray[np.float64]
 
-LENGTHWISE = {
-    angle.name
-    for effect in EFFECTS.values()
-    if isinstance(effect, WheelAngles)
-    for angle in effect.angles
-    if {angle.sine, angle.cosine} & {"forward", "rearward"}
-}
+LENGTHWISE = {name for name, angle in ANGLES.items() if {angle.sine, angle.cosine} & {"forward", "rearward"}}
 
 
 def forward(motion: Motion) -> Array:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import Car
 
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
@@ -44,13 +43,9 @@ def content_of(
         "inputs": {name: _input(law) for name, law in laws.items()},
         "time": {"start": start, "stop": stop, "samples": samples or (1 if stop == start else 3)},
     }
-    return content if effects is not None else content | {"effects": _every_effect(content)}
-
-
-def _every_effect(content: dict[str, Any]) -> list[str]:
-    """The effects that a car has: some ask for a role that a mechanism may not have."""
-    part = Scene.from_mapping(content).mechanism
-    return [name for name, effect in EFFECTS.items() if not effect.refusal(part.topology, part.points)]
+    if effects is not None:
+        return content
+    return content | {"effects": list(Scene.from_mapping(content).mechanism.effects)}
 
 
 def _input(law: Law) -> dict[str, Any]:

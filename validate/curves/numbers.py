@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, NotComputed, Samples, Scene
-from pointcoord.effects.angle import WheelAngles
 from pointcoord.effects.effect import Effect, Quantity
-from pointcoord.effects.registry import ALWAYS, EFFECTS
+from pointcoord.effects.registry import ALWAYS, EFFECTS, NUMBERS_OF_THE_CAR
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.plain_text import shown
@@ -136,8 +135,8 @@ def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | No
 
 
 def _of_car(effect: Effect, quantity: Quantity, name: str, missing: NotComputed | None) -> Number:
-    angles = effect.angles if isinstance(effect, WheelAngles) else ()
-    words, sign = next(((a.words, a.sign) for a in angles if a.name == name), (name, ""))
+    known = NUMBERS_OF_THE_CAR.get(name)
+    words, sign = (known.words, known.sign) if known else (name, "")
 
     def read(_: Motion, samples: Samples) -> Array:
         return samples.numbers[quantity.name][name]

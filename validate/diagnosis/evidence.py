@@ -60,8 +60,7 @@ def together(rows: Iterable[Row]) -> list[tuple[Row, ...]]:
 
 def axes_of(scene: Scene) -> CarAxes:
     """The directions of a scene's car."""
-    part = scene.mechanism
-    return CarAxes(np.array(part.up), np.array(part.right), part.outboard)
+    return scene.mechanism.axes
 
 
 def _in_digits(amount: Array | float) -> str:

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS
 from validate.adjudication.reference_solution import reference_instant
 from validate.cars.car import Car, any_rotation, moved, other_side, turned
 from validate.cars.paper_car import PAPER
@@ -19,6 +18,7 @@ from validate.cars.scene_content import Law, content_of
 
 Array = NDArray[np.float64]
 FAR = np.array([3e6, -2e6, 2e6])  # mm
+ASKED = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster")
 SQUARE = 1.5707963267948966  # rad: the arm angle at which rise and angle are most nearly proportional
 
 # The paper's car with the axis of its strut 37 mm inboard of the ball joint, in whole millimetres and exactly
@@ -91,7 +91,7 @@ def scene_content(
     """
     laws = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
     # Whatever is wrong with the car: that is for those who read the scene.
-    return content_of(car, laws, **{"effects": tuple(EFFECTS), **settings})
+    return content_of(car, laws, **{"effects": ASKED, **settings})
 
 
 def drawn_angle(car: Car) -> float:

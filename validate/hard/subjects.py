@@ -9,10 +9,9 @@ from typing import Any, Literal
 
 from pointcoord import Scene, built_in_scenes
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import Car
 from validate.cars.scene_content import Law, content_of
-from validate.hard.cars import CARS, SQUARE, as_given, drawn_angle
+from validate.hard.cars import ASKED, CARS, SQUARE, as_given, drawn_angle
 
 Content = dict[str, Any]
 
@@ -41,7 +40,7 @@ class Subject:
     kinds: Mapping[str, Kind]
     level: Mapping[str, float] = field(default_factory=dict)
     heaves: bool = True
-    effects: tuple[str, ...] = tuple(EFFECTS)
+    effects: tuple[str, ...] = ASKED
     of_parts: bool = False
 
     @property

@@ -10,7 +10,6 @@ from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
@@ -76,9 +75,7 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
     topology = mechanism_file(kind).topology()
     content["inputs"] = {name: {"constant": 1.0} for name in topology.required_inputs}
     scene = Scene.from_mapping(content, source)
-    part = scene.mechanism
-    effects = [name for name, effect in EFFECTS.items() if not effect.refusal(part.topology, part.points)]
-    return scene.model_copy(update={"effects": effects})
+    return scene.model_copy(update={"effects": scene.mechanism.effects})
 
 
 def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:

@@ -12,8 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from pointcoord.effects.angle import Angle, WheelAngles
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.effects.angle import Angle
+from pointcoord.effects.registry import ALWAYS, ANGLES, EFFECTS, QUANTITIES
 from pointcoord.linkage.topology import Topology
 
 AXES = "xyz"
@@ -99,9 +99,5 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
 
 def angle_of(meaning: Meaning) -> Angle | None:
     """The angle that a number is; None if it is none of a line."""
-    for effect in EFFECTS.values():
-        if isinstance(effect, WheelAngles) and meaning.quantity in {q.name for q in effect.quantities}:
-            for angle in effect.angles:
-                if angle.name == meaning.name:
-                    return angle
-    return None
+    angle = ANGLES.get(meaning.name)
+    return angle if angle and meaning.quantity == angle.quantity.name else None

@@ -13,14 +13,14 @@ from typing import Any, cast
 import mpmath
 import numpy as np
 import pytest
+from every_effect import every_effect
 from numpy.typing import NDArray
 
-from pointcoord import Scene, simulate
+from pointcoord import simulate
 from pointcoord.bounds import certified_poses, enclosed_points
 from pointcoord.bounds.certified_poses import CertifiedPoses, Known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
 from pointcoord.effects import angle, knuckle_rates
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import double_double, kantorovich
 from pointcoord.numerics.enclosure import Enclosed
@@ -124,7 +124,7 @@ def scene_holds(name: str) -> bool:
     for k, (_, exact) in enumerate(references):
         angles = {key: [value] for key, value in exact.effects.items()}
         for quantity, channel in samples.numbers.items():
-            own = angles if quantity == "wheel" else getattr(exact, quantity)
+            own = angles if QUANTITIES[quantity].of == "car" else getattr(exact, quantity)
             for part, values in channel.items():
                 kept = values, proof.proven[quantity][part], proof.expected[quantity][part]
                 reported, bounds, expected = (np.atleast_1d(array[k]).tolist() for array in kept)
@@ -142,7 +142,7 @@ SOLVED: dict[str, Any] = {}
 def solved(name: str) -> Any:
     """A motion with all effects, and the reference at a few of its instants."""
     if name not in SOLVED:
-        scene = Scene.load(name).model_copy(update={"effects": tuple(EFFECTS)})
+        scene = every_effect(name)
         motion = simulate(scene)
         instants = motion.times[[3, 40, -9]].tolist()
         SOLVED[name] = motion, [(t, reference_instant(scene, inputs_at(scene, t))) for t in instants]

@@ -19,7 +19,7 @@ def topology(stand_ins: dict[str, str]) -> SimpleNamespace:
     """A linkage whose wheel turns about inner - centre, steered about low - high."""
     own = {"inner", "centre", "low", "high"}
     lines = {"wheel_axis": ("inner", "centre"), "steering_axis": ("low", "high")}
-    return SimpleNamespace(**lines, stand_ins=stand_ins, points=own)
+    return SimpleNamespace(**lines, role=lambda name: lines.get(name, ()), stand_ins=stand_ins, points=own)
 
 
 def drawn(camber: float, kingpin: float) -> dict[str, np.ndarray]:
@@ -62,15 +62,18 @@ def test_lines_look_misdrawn_beyond_their_limits_only(
 
 def test_angles_are_of_positions_and_their_errors_of_the_places_that_are_enclosed() -> None:
     points, moving = drawn(3.0, 8.0), {name: np.full(3, 7.0) for name in drawn(0.0, 0.0)}
-    mechanism = SimpleNamespace(topology=topology({}))
-    poses = SimpleNamespace(states=[points, moving, moving], mechanism=mechanism, axes=AXES)
+    mechanism = SimpleNamespace(
+        topology=topology({}), unit=1.0, drawn_places=points, drawing=SimpleNamespace(vectors=points)
+    )
+    states = [points, moving, moving]
+    poses = SimpleNamespace(states=states, in_chassis=points, mechanism=mechanism, axes=AXES)
     (found,) = WHEEL_ANGLES.evaluate(poses).values()
     assert {name: float(np.degrees(value)) for name, value in found.items()} == pytest.approx(
         {CAMBER.name: 3.0, KINGPIN.name: 8.0}
     )
     enclosed = [{name: Enclosed.of(place) for name, place in state.items()} for state in (points, moving)]
     numbers = {"wheel": {name: value + 1e-3 for name, value in found.items()}}
-    known = SimpleNamespace(points=enclosed, mechanism=mechanism, axes=AXES)
+    known = SimpleNamespace(points=enclosed, in_chassis=enclosed[0], mechanism=mechanism, axes=AXES)
     (errors,) = WHEEL_ANGLES.errors(known, numbers).values()
     for name in found:
         assert errors[name][0] == pytest.approx(1e-3, rel=1e-5)
@@ -91,10 +94,10 @@ def test_a_line_without_a_length_is_refused_where_a_point_of_its_own_is_missing(
     apart = {name: tuple(place.tolist()) for name, place in drawn(3.0, 8.0).items()}
     together = apart | {"centre": apart["inner"]}
     missing = topology({"axis": "inner"})
-    assert WHEEL_ANGLES.refusal(missing, apart) == ""
-    assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together)
-    assert WHEEL_ANGLES.refusal(topology({}), together) == ""
-    assert WHEEL_ANGLES.refusal(topology({"axis": "elsewhere"}), together) == ""
+    assert WHEEL_ANGLES.refusal(missing, apart, None) == ""
+    assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together, None)
+    assert WHEEL_ANGLES.refusal(topology({}), together, None) == ""
+    assert WHEEL_ANGLES.refusal(topology({"axis": "elsewhere"}), together, None) == ""
 
 
 def test_an_angle_without_a_limit_may_be_half_a_turn() -> None:

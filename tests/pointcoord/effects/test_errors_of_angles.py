@@ -5,8 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from pointcoord.effects.angle import angle_error
-from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.enclosure import Enclosed, angle_error
 
 EPS = 2.0**-52
 UNIT = EPS / 2.0

@@ -16,11 +16,12 @@ from scipy.spatial.transform import Rotation
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import ROUNDINGS
-from pointcoord.effects.angle import WHEEL, WheelAngles
+from pointcoord.effects.angle import WHEEL
+from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
 from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.effects.registry import ALWAYS, ANGLES, EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
@@ -29,17 +30,21 @@ from pointcoord.simulation import scene_mechanism
 Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]
 U = 2.0**-53
+RADIUS = 300.0  # mm, of the wheel
 TIME = 2.0**-3  # s, a unit of time other than a second
 EVERY = {effect.name: effect for effect in (*ALWAYS, *EFFECTS.values())}
 each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
-cars = st.sampled_from(["off-axis-strut", "double-wishbone"])
+cars = st.sampled_from(["off-axis-strut", "pushrod"])
 some = settings(deadline=None, max_examples=40)
 
 
 @cache
 def mechanism_of(scene: str) -> Mechanism:
-    return scene_mechanism(Scene.load(scene))
+    """Of a car without a damper its wheel's axis stands for one."""
+    mechanism = scene_mechanism(Scene.load(scene))
+    topology = mechanism.topology
+    return replace(mechanism, topology=replace(topology, damper=topology.damper or topology.wheel_axis))
 
 
 def exactly(values: Array) -> Vector:
@@ -51,6 +56,7 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
     """A car of a drawing's shape, turned anyhow against axes of its own, in a rigid motion at an instant."""
     topology, unit = mechanism.topology, float(mechanism.unit)
     axes = Rotation.random(random_state=rng).as_matrix()  # columns: rearward, right, up
+    roll = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
     tilt = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
     with workdps(DIGITS):
         omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
@@ -67,6 +73,12 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             added=[exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))],
             turn=(omega, alpha),
             bodies=tuple(topology.bodies),
+            damper=topology.damper,
+            wheel_radius=mpf(RADIUS),
+            in_chassis={
+                name: exactly(unit * (axes @ roll @ mechanism.drawing.vectors[name])) for name in points
+            },
+            drawn={name: exactly(unit * mechanism.drawing.vectors[name]) for name in points},
             wheel_axis=topology.wheel_axis,
             steering_axis=topology.steering_axis,
             up=exactly(axes[:, 2]),
@@ -80,13 +92,14 @@ def rounded(vector: Vector) -> Array:
 
 
 def axes_of(car: Car) -> CarAxes:
-    return CarAxes(rounded(car.up), rounded(car.right), rounded(car.outboard))
+    return CarAxes(rounded(car.up), rounded(car.right), rounded(car.outboard), float(car.wheel_radius))
 
 
 def poses_of(car: Car, mechanism: Mechanism) -> Poses:
     """The car as a solver would report it, at one instant."""
     states = [{name: rounded(p[d])[None] for name, p in car.points.items()} for d in range(3)]
-    return Poses(mechanism, axes_of(car), states, [rounded(v)[None] for v in car.added])
+    in_chassis = {name: rounded(p)[None] for name, p in car.in_chassis.items()}
+    return Poses(mechanism, axes_of(car), states, in_chassis, [rounded(v)[None] for v in car.added])
 
 
 def enclosed(vector: Vector, factor: float) -> Enclosed:
@@ -102,7 +115,10 @@ def exact_poses_of(car: Car, mechanism: Mechanism) -> EnclosedPoses:
     unit = float(mechanism.unit)
     points = [{n: enclosed(p[d], TIME**d / unit) for n, p in car.points.items()} for d in range(3)]
     added = [enclosed(v, 1.0) for v in car.added]
-    return EnclosedPoses(mechanism, axes_of(car), points, added, [np.array([TIME**d]) for d in range(3)])
+    in_chassis = {n: enclosed(p, 1.0 / unit) for n, p in car.in_chassis.items()}
+    return EnclosedPoses(
+        mechanism, axes_of(car), points, in_chassis, added, [np.array([TIME**d]) for d in range(3)]
+    )
 
 
 def parts(numbers: Numbers) -> Iterator[tuple[str, str, Array]]:
@@ -187,11 +203,18 @@ def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
     turn = Rotation.random(random_state=rng).as_matrix() @ np.diag([1.0, -1.0 if mirrored else 1.0, 1.0])
     sense = np.sign(np.linalg.det(turn))
     poses = poses_of(plain, mechanism)
-    axes = CarAxes(turn @ poses.axes.up, sense * (turn @ poses.axes.right), turn @ poses.axes.outboard)
+    axes = replace(
+        poses.axes,
+        up=turn @ poses.axes.up,
+        right=sense * (turn @ poses.axes.right),
+        outboard=turn @ poses.axes.outboard,
+    )
+    drawn = {n: place @ turn.T for n, place in mechanism.drawing.vectors.items()}
     other = Poses(
-        mechanism,
+        replace(mechanism, drawing=replace(mechanism.drawing, vectors=drawn)),
         axes,
         [{n: state @ turn.T for n, state in states.items()} for states in poses.states],
+        {n: place @ turn.T for n, place in poses.in_chassis.items()},
         [None if added is None else added @ turn.T for added in poses.added],
     )
     found = effect.evaluate(poses)
@@ -213,8 +236,16 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     scale = 2.0**power
     states = [{n: state * scale for n, state in states.items()} for states in poses.states]
     added = [None if a is None else a * scale for a in poses.added]
+    larger = replace(
+        poses,
+        mechanism=replace(mechanism, unit=mechanism.unit * scale),
+        axes=replace(poses.axes, wheel_radius=RADIUS * scale),
+        states=states,
+        in_chassis={n: place * scale for n, place in poses.in_chassis.items()},
+        added=added,
+    )
     found = EVERY[name].evaluate(poses)
-    for quantity, part, array in parts(EVERY[name].evaluate(replace(poses, states=states, added=added))):
+    for quantity, part, array in parts(EVERY[name].evaluate(larger)):
         factor = scale if QUANTITIES[quantity].unit.startswith("mm") else 1.0
         assert np.array_equal(array, factor * found[quantity][part])
 
@@ -227,7 +258,8 @@ def test_an_effect_needs_the_points_that_it_names_and_no_others(name: str, seed:
     poses = poses_of(moving_car(np.random.default_rng(seed), mechanism), mechanism)
     needed = effect.needs(mechanism.topology)
     states = [{n: s for n, s in states.items() if n in needed} for states in poses.states]
-    alone = effect.evaluate(replace(poses, states=states[: effect.derivative + 1]))
+    in_chassis = {n: place for n, place in poses.in_chassis.items() if n in needed}
+    alone = effect.evaluate(replace(poses, states=states[: effect.derivative + 1], in_chassis=in_chassis))
     found = effect.evaluate(poses)
     for quantity, part, array in parts(alone):
         assert np.array_equal(array, found[quantity][part])
@@ -263,25 +295,17 @@ def test_a_fault_in_an_effect_is_found(name: str, fault: str, monkeypatch: pytes
                 check(effect, car, mechanism)
 
 
-ANGLES = {
-    name: (effect, place)
-    for effect in EFFECTS.values()
-    if isinstance(effect, WheelAngles)
-    for place, name in enumerate(effect.names)
-}
-
-
 @pytest.mark.parametrize("name", ANGLES)
 @pytest.mark.parametrize("direction", ["up", "down", "inboard", "outboard", "forward", "rearward"])
 @pytest.mark.parametrize("part", ["sine", "cosine"])
 def test_an_angle_along_any_other_direction_is_found(name: str, direction: str, part: str) -> None:
     """A wrong sign or a swapped axis in the data of an angle, which its own bound goes along with."""
-    mechanism, (effect, place) = mechanism_of("double-wishbone"), ANGLES[name]
+    mechanism, angle = mechanism_of("double-wishbone"), ANGLES[name]
     car = moving_car(np.random.default_rng(2), mechanism)
-    angles = list(effect.angles)
-    same = getattr(angles[place], part) == direction
-    angles[place] = replace(angles[place], **{part: direction})
-    changed = replace(effect, angles=tuple(angles))
+    (effect,) = (e for e in EFFECTS.values() if isinstance(e, CarNumbers) and angle in e.numbers)
+    same = getattr(angle, part) == direction
+    other = replace(angle, **{part: direction})
+    changed = replace(effect, numbers=tuple(other if n is angle else n for n in effect.numbers))
     if same:
         check(changed, car, mechanism)
         return

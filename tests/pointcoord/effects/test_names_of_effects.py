@@ -8,7 +8,8 @@ import pytest
 
 import pointcoord
 from pointcoord.effects import registry
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
+from pointcoord.mechanism.structure import PAIR_ROLES
 
 PACKAGE = Path(pointcoord.__file__).parent
 REGISTRY = Path(registry.__file__)
@@ -30,15 +31,15 @@ OWN = own_files()
 # A kind of effects, in a file of its own, may name the quantity that all of its kind give.
 KINDS = {
     PACKAGE.parent / Path(*kind.__module__.split(".")).with_suffix(".py")
-    for effect in EFFECTS.values()
-    for kind in type(effect).__mro__
+    for one in (*EFFECTS.values(), *NUMBERS_OF_THE_CAR.values())
+    for kind in type(one).__mro__
     if kind.__module__.startswith("pointcoord.")
 }
 NAMES = {
     *EFFECTS,
     *(quantity.name for effect in EFFECTS.values() for quantity in effect.quantities),
     *(name for effect in EFFECTS.values() for name in effect.names or ()),
-}
+} - {*PAIR_ROLES, "travel"}  # what a mechanism calls its parts, effects of them may be called too
 MODULES = [path for path in sorted(PACKAGE.rglob("*.py")) if path not in {*OWN, *KINDS, REGISTRY}]
 
 

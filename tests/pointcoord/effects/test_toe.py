@@ -10,7 +10,7 @@ from pointcoord.linkage.car_axes import CarAxes
 
 EPS = np.finfo(float).eps
 UP, RIGHTWARD = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])  # x rearward
-(ANGLE,) = TOE.angles
+(ANGLE,) = TOE.numbers
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0], ids=["left wheel", "right wheel"])

@@ -15,9 +15,9 @@ from pointcoord.simulation import scene_mechanism
 
 Array = NDArray[np.float64]
 U = 2.0**-53
-MECHANISM = scene_mechanism(Scene.load("double-wishbone"))
+MECHANISM = scene_mechanism(Scene.load("pushrod"))
 UP, RIGHT = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
-AXES = CarAxes(UP, RIGHT, RIGHT)
+AXES = CarAxes(UP, RIGHT, RIGHT, wheel_radius=300.0)
 OMEGA, ALPHA = np.array([0.3, -1.1, 0.7]), np.array([2.0, 0.4, -0.9])
 
 
@@ -40,7 +40,7 @@ def test_an_effect_is_made_of_its_derivative_and_of_none_above_it(effect) -> Non
     for order in (1, 2):
         states = turning()
         states[order] = {name: np.full_like(vector, np.nan) for name, vector in states[order].items()}
-        found = effect.evaluate(Poses(MECHANISM, AXES, states, [None, None, None]))
+        found = effect.evaluate(Poses(MECHANISM, AXES, states, states[0], [None, None, None]))
         changed.append(any(np.isnan(a).any() for of in found.values() for a in of.values()))
     assert effect.derivative == max(
         (order for order, seen in zip((1, 2), changed, strict=True) if seen), default=0
@@ -50,7 +50,7 @@ def test_an_effect_is_made_of_its_derivative_and_of_none_above_it(effect) -> Non
 @pytest.mark.parametrize("order", range(3))
 def test_what_is_proven_of_a_turn_covers_how_far_its_points_may_be_off(order: int) -> None:
     states = turning()
-    numbers = KNUCKLE_RATES.evaluate(Poses(MECHANISM, AXES, states, [None, None, None]))
+    numbers = KNUCKLE_RATES.evaluate(Poses(MECHANISM, AXES, states, states[0], [None, None, None]))
     body = MECHANISM.topology.knuckle
     first = MECHANISM.topology.bodies[body][0]
 
@@ -63,7 +63,7 @@ def test_what_is_proven_of_a_turn_covers_how_far_its_points_may_be_off(order: in
             for d, state in enumerate(states)
         ]
         still = [Enclosed.of(np.zeros((1, 3)))] * 3
-        poses = EnclosedPoses(MECHANISM, AXES, points, still, [np.ones(1)] * 3)
+        poses = EnclosedPoses(MECHANISM, AXES, points, points[0], still, [np.ones(1)] * 3)
         return {quantity: of[body] for quantity, of in KNUCKLE_RATES.errors(poses, numbers).items()}
 
     exact, unsure = errors(0.0), errors(1e-6)

@@ -9,7 +9,6 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import KinematicMap, Scene, kinematic_map
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.mapping.kinematic_map import MappedPoses
 from pointcoord.patches.jet import Jet
 from validate.adjudication.reference_solution import as_solution, reference_instant
@@ -35,7 +34,7 @@ def with_all_effects(name: str) -> Scene:
     content["inputs"].setdefault("heave", {"constant": 0.0})
     scene = Scene.from_mapping(content)
     time = scene.time.model_copy(update={"samples": POSES})
-    return scene.model_copy(update={"effects": tuple(EFFECTS), "time": time})
+    return scene.model_copy(update={"effects": scene.mechanism.effects, "time": time})
 
 
 def states_of(scene: Scene, name: str, seed: int) -> States:

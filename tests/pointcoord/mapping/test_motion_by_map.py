@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from every_effect import every_effect
 from numpy.typing import NDArray
 
 from pointcoord import (
@@ -20,7 +21,6 @@ from pointcoord import (
     simulation,
     standing,
 )
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import MAP
 from pointcoord.patches import way_map
 from pointcoord.simulation import prepare_task
@@ -53,7 +53,7 @@ def largest_share(one: Motion, other: Motion) -> float:
 
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_every_number_is_that_of_the_series_within_what_both_prove(name: str) -> None:
-    scene = Scene.load(name).model_copy(update={"effects": tuple(EFFECTS)})
+    scene = every_effect(name)
     mapped, series = simulate(scene, "map"), simulate(scene, "series")
     assert (mapped.method, mapped.status.complete) == ("map", True)
     # Not unless it is asked for, or series do not do.

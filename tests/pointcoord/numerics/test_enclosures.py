@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.numerics.enclosure import Enclosed, cross, dot, quotient
+from pointcoord.numerics.enclosure import Enclosed, angle, cross, dot, quotient, root
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 U = 2.0**-53
@@ -70,6 +70,35 @@ def test_a_quotient_by_what_may_be_zero_is_not_bounded() -> None:
     assert np.isfinite(found.radius[0]).tolist() == [True, False]
     assert found.high[0] + found.radius[0, 0] >= 1.01 / 1.9
     assert found.high[0] - found.radius[0, 0] <= 0.99 / 2.1
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_quotients_roots_and_angles_of_groups_lie_within_their_radii(seed: int) -> None:
+    """Of numbers that share radii by fives, of either sign, and of one number that has its own for all."""
+    rng = np.random.default_rng(seed)
+    r = 10.0 ** rng.uniform(-12.0, -2.0, (2, 3, 1))
+    middles, off = rng.choice([-1.0, 1.0], (2, 3, 5)) * rng.uniform(0.1, 3.0, (2, 3, 5)), np.empty((2, 3, 5))
+    off[:] = r * rng.choice([-1.0, 1.0], (2, 3, 5))
+    x, y = (
+        Enclosed.sharing(m, np.zeros_like(m), np.stack([part, part]))
+        for m, part in zip(middles, r, strict=True)
+    )
+    (a, b), one = middles + off, Enclosed.of(0.3)
+    for found, true in (
+        (quotient(x, y), a / b),
+        (quotient(one, y), 0.3 / b),
+        (root(x * x), np.abs(a)),
+        (angle(x, y), np.arctan2(a, b)),
+    ):
+        distance = np.abs(found.middle - true)
+        assert (distance <= found.radius[0] + 8.0 * U * np.abs(true)).all()
+        assert (found.radius[0].max(axis=-1) <= 40.0 * distance.max(axis=-1) + 1e-14).all()
+
+
+def test_a_root_of_what_may_be_zero_is_at_most_the_root_of_what_it_may_be() -> None:
+    found = root(Enclosed.of(np.array([0.0, -1e-9, 1e-12]), 0.0, np.array([4.0, 2e-9, 0.0])))
+    assert found.radius[0] == pytest.approx([2.0, np.sqrt(3e-9), 0.0], abs=1e-12)
+    assert found.high == pytest.approx([0.0, 0.0, 1e-6])
 
 
 def test_cosine_and_sine_are_right_to_twice_the_working_precision() -> None:

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from every_effect import every_effect
 
 from pointcoord import Motion, OutsideMotion, Samples, Scene, simulate
 from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.effects.toe import TOE
 from pointcoord.results.cells import ENOUGH, CloseInstants
 from pointcoord.results.states import StatesOfChain
@@ -18,8 +18,7 @@ AT_REST = {"constant": 1.5}
 
 
 def solved(name: str, **changes: object) -> Motion:
-    scene = Scene.load(name)
-    return simulate(scene.model_copy(update={"effects": tuple(EFFECTS), **changes}))
+    return simulate(every_effect(name).model_copy(update=changes))
 
 
 def cells_of(motion: Motion) -> CloseInstants:
@@ -88,7 +87,6 @@ def test_numbers_in_cells_are_those_of_the_plain_formulas(name: str) -> None:
     assert share_in_cells(motion, instants) > 0.3
     quick, slow = motion.at(instants), plain(motion, instants)
     for quantity, channel in slow.numbers.items():
-        assert channel.computed
         # Two ways of a dozen roundings each, and a polynomial through points passes theirs on 2.3 times.
         # Terms of an acceleration are up to 50 times their sum; angles of 0.1 rad are seen on lines of 90 mm
         # between points at 600.
@@ -178,7 +176,7 @@ def test_what_the_chassis_does_is_added_in_cells_as_exactly_as_anywhere(
 
 
 def test_an_angle_that_jumps_is_read_on_its_own_side() -> None:
-    toe = replace(TOE, angles=(replace(TOE.angles[0], cosine="inboard"),))
+    toe = replace(TOE, numbers=(replace(TOE.numbers[0], cosine="inboard"),))
     motion = solved("steer", inputs={"arm_angle": AT_REST, "rack": {"polynomial": [-40.0, 150.0]}})
     readout = replace(motion.solved.readout, plan=plan_effects(["toe"], {"toe": toe}))
     states = motion.solved.states

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from every_effect import every_effect
 
 from pointcoord import MissingLibrary, Scene, UnknownName, simulate
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.results.named_columns import LIBRARIES
 from validate.output.motion_tables import write_csv
 
@@ -44,7 +44,7 @@ def as_csv(scene: Scene) -> dict[str, list[float]]:
 
 
 # All effects, on a chassis that heaves.
-SCENE = Scene.load("bounce-on-a-heaving-chassis").model_copy(update={"effects": tuple(EFFECTS)})
+SCENE = every_effect("bounce-on-a-heaving-chassis")
 
 
 def test_a_frame_has_the_columns_of_the_csv_with_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:

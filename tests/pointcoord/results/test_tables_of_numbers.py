@@ -5,18 +5,19 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from every_effect import every_effect
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
 from pointcoord.effects.angle import WheelAngles
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.effects.rigid import body_rates, stack_points
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.results.readout import BLOCK
 from pointcoord.results.states import StatesOfChain
 
 EPS = float(np.finfo(float).eps)
+EVERY = every_effect("bounce").effects
 SCENES = ("bounce", "bounce-on-a-heaving-chassis", "double-wishbone", "off-axis-strut")
-SUBSETS = ((), ("knuckle_rates",), ("acceleration", "toe"), tuple(EFFECTS))
+SUBSETS = ((), ("knuckle_rates",), ("acceleration", "toe"), EVERY)
 Numbers = Mapping[str, Mapping[str, np.ndarray]]
 
 
@@ -111,7 +112,7 @@ def test_numbers_in_blocks_are_those_of_the_plain_formulas(name: str, effects: t
 
 @pytest.mark.parametrize("name", SCENES)
 def test_numbers_at_the_scenes_instants_do_not_depend_on_how_many_are_asked_for_at_once(name: str) -> None:
-    motion = solved(name, tuple(EFFECTS))
+    motion = solved(name, every_effect(name).effects)
     one_by_one = [motion.at([instant]) for instant in motion.times]
     for quantity, channel in motion.numbers.items():
         for part, array in channel.items():
@@ -133,7 +134,7 @@ def test_rates_of_bodies_are_those_of_the_plain_formulas() -> None:
 
 
 def test_results_are_written_where_they_are_wanted() -> None:
-    motion = solved("bounce", tuple(EFFECTS))
+    motion = solved("bounce", EVERY)
     instants = np.linspace(0.0, 2.6, 1000)
     out = np.full((motion.height, 1000), np.nan)
     samples = motion.at(instants, out=out)
@@ -222,7 +223,7 @@ def peak(work: object) -> int:
 
 
 def test_blocks_take_as_much_memory_for_many_instants_as_for_few() -> None:
-    motion = solved("bounce", tuple(EFFECTS))
+    motion = solved("bounce", EVERY)
 
     def read(count: int) -> None:
         for _ in motion.blocks(count):
@@ -235,7 +236,7 @@ def test_blocks_take_as_much_memory_for_many_instants_as_for_few() -> None:
 
 @pytest.mark.parametrize("order", [1, -1], ids=["in order", "in reverse"])
 def test_many_instants_take_no_more_memory_than_their_results_and_some_blocks(order: int) -> None:
-    motion = solved("bounce-on-a-heaving-chassis", tuple(EFFECTS))
+    motion = solved("bounce-on-a-heaving-chassis", every_effect("bounce-on-a-heaving-chassis").effects)
     instants = np.linspace(0.0, 2.6, 200_000)[::order]
     results = 8 * len(instants) * (motion.height + 1)
     assert peak(lambda: motion.at(instants)) - results < 50e6 * len(instants) / 1e6 + 8e6

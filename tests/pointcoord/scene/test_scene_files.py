@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from pointcoord import MechanismError, PointcoordError, Scene, SceneError, built_in_scenes, simulate
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import NEWTON, SERIES
 from validate.paper.printed import PRINTED
 
@@ -292,7 +291,7 @@ def test_numbers_too_large_for_the_arithmetic_end_in_an_error_of_this_package(
 
 
 def test_effects_of_a_scene_file_are_those_that_exist(make_scene: Callable[..., Scene]) -> None:
-    assert simulate(make_scene(effects=tuple(EFFECTS), samples=2)).velocity.computed
+    assert simulate(make_scene(samples=2)).velocity.computed
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from program import PAST_ITS_END, short_scene
 
 from pointcoord import NotComputed, Scene, simulate
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.commands import plot
 from validate.curves import picture
@@ -93,7 +93,7 @@ def test_angles_are_in_degrees_and_each_axis_says_its_sign() -> None:
     (line, *_) = axes.lines
     assert np.array_equal(line.get_xdata(), MOTION.position["wheel_centre"][:, 2])
     assert np.array_equal(line.get_ydata(), np.degrees(MOTION.wheel["camber"]))
-    (angle,) = (a for a in EFFECTS["wheel_angles"].angles if a.name == "camber")
+    angle = NUMBERS_OF_THE_CAR["camber"]
     said = " ".join(axes.get_ylabel().split())
     assert said == f"camber [deg] + {angle.sign}"
     assert axes.get_xlabel().splitlines() == ["position of wheel centre, z [mm]", "+ up"]

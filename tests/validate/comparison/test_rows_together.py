@@ -5,10 +5,10 @@ from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
+from every_effect import every_effect
 from numpy.typing import NDArray
 
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from pointcoord.scene.scene_file import Scene
+from pointcoord.effects.registry import QUANTITIES
 from validate.comparison import compare
 from validate.comparison.compare import Comparison, Verdict, compare_solutions
 from validate.comparison.tolerance import LOOSEST
@@ -18,7 +18,7 @@ from validate.formulations.registry import formulation
 Array = NDArray[np.float64]
 
 EPS, TINY = 2.0**-52, 2.0**-1022
-SCENE = Scene.load("bounce").model_copy(update={"effects": tuple(EFFECTS)})
+SCENE = every_effect("bounce")
 
 
 @pytest.fixture(scope="module")

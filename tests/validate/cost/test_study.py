@@ -14,7 +14,7 @@ import pytest
 from pointcoord import Scene, solve_poses
 from validate.cost import study as studying
 from validate.cost.parts import accuracy, effects, growth, loading, unrelated
-from validate.cost.parts.effects import CHOICES, NO_EFFECT
+from validate.cost.parts.effects import NO_EFFECT
 from validate.cost.parts.unrelated import NEAR, OTHERS, as_scene, drawn
 from validate.cost.race import Effort, Runner, race
 from validate.cost.scenes import STUDY_SCENES, own_scene, study_instants, study_scene
@@ -183,7 +183,7 @@ def test_reading_each_effect_stands_beside_a_copy_of_the_same_bytes(monkeypatch:
     monkeypatch.setattr(effects, "INSTANTS_QUICK", 500)
     rows = race(effects.runners_of(STEER, quick=True), FEW)
     assert {(row.setting, row.quantity) for row in rows} == {
-        (c, q) for c in CHOICES for q in ("read", "copy")
+        (c, q) for c in effects.choices(STEER.scene) for q in ("read", "copy")
     }
     numbers = {row.setting: row.numbers for row in rows}
     assert numbers[NO_EFFECT] == 3 * len(STEER.scene.mechanism.topology.points)

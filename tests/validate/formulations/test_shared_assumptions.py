@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.effects.registry import QUANTITIES
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
@@ -47,7 +47,7 @@ def solved(name: str, car: str, points: Points | None = None, side: str = "", **
     """A car's motion by a model, with other points, on the other side, or driven otherwise."""
     drawn = SCENES[car].mechanism
     content = {
-        "effects": list(EFFECTS),
+        "effects": list(drawn.effects),
         "mechanism": {
             "type": drawn.type,
             "side": side or drawn.side,

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pointcoord import Motion, simulate
+from pointcoord import Motion, Scene, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.results.even_instants import even_instants
 from validate.cost.race import Found, Runner
@@ -23,24 +23,28 @@ from validate.cost.table import Row
 
 INSTANTS, INSTANTS_QUICK = 100_000, 10_000
 NO_EFFECT = "no effect"
-CHOICES: dict[str, tuple[str, ...]] = {
-    NO_EFFECT: (),
-    **{name: (name,) for name in EFFECTS},
-    "both rates of points": tuple(name for name, effect in EFFECTS.items() if effect.reports_states),
-    "all effects": tuple(EFFECTS),
-}
-"""Which effects are asked for, by what a row says of it."""
+
+
+def choices(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """Which effects are asked for, by what a row says of it."""
+    had = scene.mechanism.effects
+    return {
+        NO_EFFECT: (),
+        **{name: (name,) for name in had},
+        "both rates of points": tuple(name for name in had if EFFECTS[name].reports_states),
+        "all effects": had,
+    }
 
 
 def runners_of(study: StudyScene, quick: bool = False) -> list[Runner]:
     """Reading and copying, for each choice of effects."""
     count = INSTANTS_QUICK if quick else INSTANTS
-    scene = study.scene
+    scene, asked = study.scene, choices(study.scene)
     instants = even_instants(scene.time.start, scene.time.stop, count)
 
     @cache
     def motion(choice: str) -> Motion:
-        return simulate(scene.model_copy(update={"effects": CHOICES[choice]}))
+        return simulate(scene.model_copy(update={"effects": asked[choice]}))
 
     @cache
     def arrays(height: int) -> Any:
@@ -59,6 +63,6 @@ def runners_of(study: StudyScene, quick: bool = False) -> list[Runner]:
         Runner(
             replace(row, setting=choice), partial(ready, choice, quantity), partial(found, choice, quantity)
         )
-        for choice in CHOICES
+        for choice in asked
         for quantity in ("read", "copy")
     ]

@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.angle import WheelAngles
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import ANGLES
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, kind_of
 from validate.diagnosis.hypothesis import Hypothesis
@@ -34,10 +33,8 @@ DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
 def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each definition, of each angle that disagrees."""
     topology = evidence.scene.mechanism.topology
-    effects = (effect for effect in EFFECTS.values() if isinstance(effect, WheelAngles))
-    angles = {angle.name: angle for effect in effects for angle in effect.angles}
     for row in evidence.wrong:
-        angle = angles.get(row[1])
+        angle = ANGLES.get(row[1])
         if kind_of(row) != "car" or angle is None:
             continue
         start, end = (evidence.places(point) for point in angle.ends(topology))

@@ -23,9 +23,8 @@ from functools import cache, partial
 import numpy as np
 
 from validate.cars.car import Car, any_rotation, rotation, turned
-from validate.cars.paper_car import EFFECTS
 from validate.cars.scene_content import content_of
-from validate.hard.cars import PAPER_CAR, SQUARE, UPRIGHT_CAR, Array, drawn_angle, drawn_at
+from validate.hard.cars import ASKED, PAPER_CAR, SQUARE, UPRIGHT_CAR, Array, drawn_angle, drawn_at
 from validate.hard.case import FAILS, REFUSED, RIGHT, SOLVERS, Expected, case, decades, family
 from validate.hard.subjects import OF_PARTS, SUBJECTS, Content, Subject
 from validate.hard.trial import Trial
@@ -175,7 +174,7 @@ CASES = (
     ),
     # The motion turns the strut by some hundredths of a radian, so it passes the horizontal on its way.
     _level(
-        partial(moving, flat_turn, tuple(EFFECTS)),
+        partial(moving, flat_turn, ASKED),
         values=(*decades(-12, -2)[::5], 0.0),
         expected=RIGHTS | {"printed": FAILS},
         name="strut-passes-flat",

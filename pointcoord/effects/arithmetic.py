@@ -1,0 +1,101 @@
+"""Numbers that a formula of an effect is written in once: floats, enclosures, and either with a slope.
+
+Of floats a formula gives its value, of enclosures where the value exactly is, and of duals besides how it
+changes along one direction of motion: (a + a' d)(b + b' d) = a b + (a b' + a' b) d.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.numerics import enclosure, vectors
+from pointcoord.numerics.enclosure import Enclosed
+
+Array = NDArray[np.float64]
+P = TypeVar("P", Array, Enclosed)
+
+
+@dataclass(frozen=True)
+class Dual(Generic[P]):
+    """A number or a vector, and its derivative along a direction."""
+
+    value: P
+    slope: P
+
+    def __add__(self, other: Dual[P]) -> Dual[P]:
+        return Dual(self.value + other.value, self.slope + other.slope)
+
+    def __sub__(self, other: Dual[P]) -> Dual[P]:
+        return Dual(self.value - other.value, self.slope - other.slope)
+
+    def __neg__(self) -> Dual[P]:
+        return Dual(-self.value, -self.slope)
+
+    def __mul__(self, other: Dual[P]) -> Dual[P]:
+        return Dual(self.value * other.value, self.value * other.slope + self.slope * other.value)
+
+
+S = TypeVar("S", Array, Enclosed, Dual[Array], Dual[Enclosed])
+
+
+def dot(a: S, b: S) -> S:
+    """Scalar product of vectors."""
+    if isinstance(a, Dual):
+        return Dual(dot(a.value, b.value), dot(a.value, b.slope) + dot(a.slope, b.value))
+    if isinstance(a, Enclosed):
+        return enclosure.dot(a, b)
+    return np.asarray(np.vecdot(a, b))
+
+
+def cross(a: S, b: S) -> S:
+    """Vector product."""
+    if isinstance(a, Dual):
+        return Dual(cross(a.value, b.value), cross(a.value, b.slope) + cross(a.slope, b.value))
+    if isinstance(a, Enclosed):
+        return enclosure.cross(a, b)
+    return vectors.cross(a, b)
+
+
+def times(factor: S, vector: S) -> S:
+    """A number times a vector."""
+    if isinstance(factor, Dual):
+        slope = times(factor.value, vector.slope) + times(factor.slope, vector.value)
+        return Dual(times(factor.value, vector.value), slope)
+    if isinstance(factor, Enclosed):
+        return factor.spread_out * vector
+    return np.asarray(factor[..., None] * vector)
+
+
+def root(x: S) -> S:
+    """Square root of what is not negative; (sqrt x)' = x' / (2 sqrt x)."""
+    if isinstance(x, Dual):
+        half = root(x.value)
+        return Dual(half, ratio(x.slope, half + half))
+    if isinstance(x, Enclosed):
+        return enclosure.root(x)
+    return np.asarray(np.sqrt(x))
+
+
+def ratio(x: S, y: S) -> S:
+    """x / y; (x / y)' = (x' - (x / y) y') / y. No number where y is 0."""
+    if isinstance(x, Dual):
+        value = ratio(x.value, y.value)
+        return Dual(value, ratio(x.slope - value * y.slope, y.value))
+    if isinstance(x, Enclosed):
+        return enclosure.quotient(x, y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(x / y)
+
+
+def angle(sine: S, cosine: S) -> S:
+    """atan2(sine, cosine), rad; its derivative (c s' - s c') / (s^2 + c^2)."""
+    if isinstance(sine, Dual):
+        s, c = sine.value, cosine.value
+        return Dual(angle(s, c), ratio(c * sine.slope - s * cosine.slope, s * s + c * c))
+    if isinstance(sine, Enclosed):
+        return enclosure.angle(sine, cosine)
+    return np.asarray(np.arctan2(sine, cosine))

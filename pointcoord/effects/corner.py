@@ -1,0 +1,82 @@
+"""One wheel of a car as effects see it: its lines, and its contact point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Generic
+
+from pointcoord.effects.arithmetic import S, dot, ratio, root, times
+from pointcoord.linkage.car_axes import Direction
+from pointcoord.linkage.topology import Topology
+
+
+@dataclass(frozen=True)
+class View(Generic[S]):
+    """The points of a wheel, seen along the car's directions.
+
+    Attributes:
+        topology: whose roles name the points.
+        points: places, as vectors.
+        along: the component of a vector along a direction.
+        up, outboard: these directions, as vectors.
+        radius: of the wheel.
+    """
+
+    topology: Topology
+    points: Mapping[str, S]
+    along: Callable[[S, Direction], S]
+    up: S
+    outboard: S
+    radius: S
+
+    def line(self, start: str, end: str) -> S:
+        """The vector from one point to another."""
+        return self.points[end] - self.points[start]
+
+    @property
+    def spin(self) -> S:
+        """The wheel's spin axis a, from its inner point to the wheel centre."""
+        inner, centre = self.topology.wheel_axis
+        return self.line(inner, centre)
+
+    def contact(self) -> S:
+        """From the wheel centre to the lowest point of a thin disc about the spin axis.
+
+        -r d / |d| with d = up - (up . a) a / (a . a), what of up lies in the disc.
+        """
+        a = self.spin
+        in_disc = self.up - times(ratio(dot(self.up, a), dot(a, a)), a)
+        return times(-ratio(self.radius, root(dot(in_disc, in_disc))), in_disc)
+
+
+@dataclass(frozen=True)
+class Corner(Generic[S]):
+    """One wheel of a pose.
+
+    Attributes:
+        seen: its points after the turns of the chassis, from anywhere.
+        chassis: the same in the chassis' frame.
+        drawn: the same as drawn.
+    """
+
+    seen: View[S]
+    chassis: View[S]
+    drawn: View[S]
+
+    def moved(self) -> S:
+        """How far the contact point has gone from its drawn place."""
+        return _moved(self.seen, self.drawn) + (self.seen.contact() - self.drawn.contact())
+
+    def moved_in_chassis(self) -> S:
+        """The same in the chassis' frame, of a disc that hangs along the chassis' up."""
+        return _moved(self.chassis, self.drawn) + (self.chassis.contact() - self.drawn.contact())
+
+    def risen(self) -> S:
+        """How far the wheel centre has gone up in the chassis' frame."""
+        return self.chassis.along(_moved(self.chassis, self.drawn), "up")
+
+
+def _moved(view: View[S], drawn: View[S]) -> S:
+    centre = view.topology.wheel_centre
+    return view.points[centre] - drawn.points[centre]

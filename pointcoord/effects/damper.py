@@ -1,0 +1,20 @@
+"""The damper: how long it is."""
+
+from __future__ import annotations
+
+from pointcoord.effects.arithmetic import S, dot, root
+from pointcoord.effects.car_number import CarNumbers, Length
+from pointcoord.effects.corner import Corner
+
+
+def damper_length(corner: Corner[S]) -> S:
+    """The distance of the damper's two ends."""
+    line = corner.seen.line(*corner.seen.topology.damper)
+    return root(dot(line, line))
+
+
+DAMPER = CarNumbers.of(
+    "damper",
+    "length of the damper, mm",
+    Length("damper_length", "length of the damper", "always", damper_length, ("damper",), with_contact=False),
+)
