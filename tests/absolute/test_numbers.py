@@ -11,6 +11,7 @@ from one_arm import DRAWN, RADIUS, ROLES, Written, plain, solved
 from reach_of_accuracy import off
 
 import absolute
+from absolute.dual import arctan2, constant
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
@@ -302,6 +303,24 @@ def test_gradients_are_central_differences_of_the_numbers(kind: str, bounce: str
             assert abs(found - wanted) <= allowed, name
     # What the rack does is no matter of travel, and a steered wheel turns.
     assert abs(exact["toe_by_rack"]) > 1e-3
+
+
+def test_gradients_of_a_long_motion_are_those_of_its_instants_in_any_order() -> None:
+    # Instants are solved many at a time.
+    model = steered("double_wishbone", ("arm_angle", "rack"), KINDS["double wishbone"].car)
+    inputs = KINDS["double wishbone"].inputs(np.linspace(0.0, 1.5, 200))
+    there = absolute.solve(model, inputs, rates=False, conditions=True, effects=GRADIENTS)
+    turned = {name: law[::-1].copy() for name, law in inputs.items()}
+    back = absolute.solve(model, turned, rates=False, conditions=True, effects=GRADIENTS)
+    # Numbers change by less than a tenth for each mm that points are off, and axes reach three times as far.
+    allowed = (off(there) + off(back)[::-1]).max()
+    assert np.ptp(there.effects["caster_by_travel"]) > 1e3 * allowed
+    for name in GRADIENTS:
+        assert np.abs(there.effects[name] - back.effects[name][::-1]).max() <= allowed, name
+
+
+def test_half_a_turn_is_pi_with_either_zero() -> None:
+    assert arctan2(constant(-0.0), constant(-1.0)).value == np.pi
 
 
 def test_an_input_of_two_slides_moves_both() -> None:
