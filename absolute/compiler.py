@@ -33,8 +33,10 @@ from absolute.solution import Array
 CHASSIS = "chassis"
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
-# Where outboard is, along right.
-SIDES = {"left": -1.0, "right": 1.0}
+# Which of these directions is outboard.
+SIDES = ("left", "right")
+# Pairs of points that effects ask for.
+ROLES = ("wheel_axis", "steering_axis", "damper")
 
 
 def compile(mechanism: Mapping[str, Any]) -> Model:
@@ -46,9 +48,9 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
             slides: name -> points, body, through, along, turns.
             inputs: those that are driven, name -> one of angle, travel, height, contact, distance; or
                 turns, which turn the whole car. What displaces it is no part of the linkage.
-            roles: wheel_axis and steering_axis, two points each, if there are any.
+            roles: wheel_axis, steering_axis and damper, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
-            wheel_radius: of the disc of `contact`.
+            wheel_radius: of the wheel, mm, or None where nothing needs it.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
             too few rows.
@@ -75,16 +77,8 @@ class _Compiler:
         self.inputs: dict[str, Input] = {}
         self.turns: dict[str, Axis] = {}
         self.aids: set[str] = set()
+        self.directions = self._directions()
         self.corner = self._corner()
-        right = self.corner.right
-        self.directions: dict[str, Vector] = {
-            "up": self.corner.up,
-            "right": right,
-            "down": self.corner.down,
-            "left": plain(-np.array(right)),
-            "forward": self.corner.forward,
-            "rearward": self.corner.rearward,
-        }
 
     def model(self) -> Model:
         """All joints, then all inputs."""
@@ -120,7 +114,7 @@ class _Compiler:
             self.turns,
         )
 
-    def _corner(self) -> Corner:
+    def _directions(self) -> dict[str, Vector]:
         up, right = (unit_of(name, vector_of(name, name, self.of[name])) for name in ("up", "right"))
         skew = float(up @ right)
         if abs(skew) > LARGEST_SKEW:
@@ -129,15 +123,28 @@ class _Compiler:
                 "right",
                 skew,
             )
+        directions = {"up": up, "right": right, "forward": np.cross(up, right)}
+        opposite = {"down": -up, "left": -right, "rearward": np.cross(right, up)}
+        return {name: plain(direction) for name, direction in (directions | opposite).items()}
+
+    def _corner(self) -> Corner:
         side = self.of.get("side")
         side = "left" if side is None else side
         _one_of("side", side, SIDES)
-        roles = self.of.get("roles", {})
-        for role in ("wheel_axis", "steering_axis"):
-            for end in roles.get(role, ()):
+        roles = {role: tuple(ends) for role, ends in self.of.get("roles", {}).items() if role in ROLES}
+        for role, ends in roles.items():
+            for end in ends:
                 _one_of(f"an end of the {role}", end, self.points)
-        axes = (tuple(roles[role]) if role in roles else None for role in ("wheel_axis", "steering_axis"))
-        return Corner(plain(up), plain(right), plain(SIDES[side] * right), *axes)
+        outboard, rearward, up = (self.directions[name] for name in (side, "rearward", "up"))
+        return Corner(outboard, rearward, up, roles, self._radius())
+
+    def _radius(self) -> float | None:
+        radius = self.of.get("wheel_radius")
+        if radius is not None and not (isinstance(radius, int | float) and 0.0 < radius < math.inf):
+            raise DescriptionError(
+                f"wheel_radius is {radius!r}; a length above 0 is needed, in mm", "wheel_radius", radius
+            )
+        return radius
 
     def _shared_points(self) -> None:
         """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
@@ -267,7 +274,8 @@ class _Compiler:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second = self._other_than(body, point, f"slide {slide!r}")
             own = name if len(slides) == 1 else f"{name} of {slide}"
-            self.inputs[own] = Input(body, self._line_of(slide)[0], second, point, "linear", 1.0, name)
+            line = self._line_of(slide)[0]
+            self.inputs[own] = Input(body, line, second, point, "linear", 1.0, name, steers=True)
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
         point, along = given["height"], given.get("along", "up")
@@ -285,8 +293,8 @@ class _Compiler:
         for end in (inner, centre):
             _one_of(f"a point of input {name!r}", end, self.points)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
-        radius = self.of.get("wheel_radius")
-        if carrier is None or not isinstance(radius, int | float) or not 0.0 < radius < math.inf:
+        radius = self.corner.wheel_radius
+        if carrier is None or radius is None:
             needed = "two points of one body" if carrier is None else "a wheel_radius above 0"
             found = [inner, centre] if carrier is None else radius
             raise DescriptionError(f"input {name!r} needs {needed}, not {found!r}", name, found)

@@ -74,6 +74,7 @@ class Input:
 
     Attributes:
         value: name of the value where several coordinates take the same; the coordinate's own by default.
+        steers: whether it is the travel of a slide.
     """
 
     first: str
@@ -83,6 +84,7 @@ class Input:
     law: str
     factor: float
     value: str = ""
+    steers: bool = False
 
 
 @dataclass(frozen=True)
@@ -90,52 +92,55 @@ class Corner:
     """What of a linkage is the wheel and the steering axis, and which way the car points.
 
     Attributes:
-        up, right, outboard: directions of the car in the frame of the points, unit vectors; outboard leads
+        outboard, rearward, up: directions of the car in the frame of the points, unit vectors; outboard leads
             from the car's middle to the wheel: right or minus right.
-        wheel_axis: the wheel's spin axis, from its inner point to the wheel centre, if there is one.
-        steering_axis: the axis about which the wheel is steered, from its lower to its upper point, likewise.
+        roles: the two points each of `wheel_axis` (inner point, wheel centre), `steering_axis` (lower, upper)
+            and `damper`, as far as the linkage has them.
+        wheel_radius: of the wheel, mm, if it is given.
     """
 
-    up: Vector
-    right: Vector
     outboard: Vector
-    wheel_axis: tuple[str, str] | None = None
-    steering_axis: tuple[str, str] | None = None
+    rearward: Vector
+    up: Vector
+    roles: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    wheel_radius: float | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "roles", ReadOnly(self.roles))
 
     @property
-    def down(self) -> Vector:
-        """Minus up."""
-        return plain(-np.array(self.up))
-
-    @property
-    def inboard(self) -> Vector:
-        """Minus outboard."""
-        return plain(-np.array(self.outboard))
-
-    @property
-    def forward(self) -> Vector:
-        """up x right: -x where x is rearward, y right and z up."""
-        return plain(np.cross(self.up, self.right))
-
-    @property
-    def rearward(self) -> Vector:
-        """Minus forward."""
-        return plain(np.cross(self.right, self.up))
+    def axes(self) -> Array:
+        """(3, 3) with outboard, rearward and up as rows."""
+        return np.array((self.outboard, self.rearward, self.up))
 
     def ends(self, role: str) -> tuple[str, str]:
-        """The two points of `wheel_axis` or `steering_axis`.
+        """The two points of a role.
 
         Raises:
             DescriptionError: the mechanism has no such role.
         """
-        ends: tuple[str, str] | None = getattr(self, role)
-        if ends is None:
+        if role not in self.roles:
             raise DescriptionError(
-                f"the mechanism has no role {role!r}, so it has no effect that needs it: name the two "
-                f"points of its {role}, or ask for other effects",
+                f"needs the role {role!r}, and the mechanism has none: name the two points of {role} in "
+                "[roles], or ask for other effects",
                 role,
             )
-        return ends
+        return self.roles[role]
+
+    @property
+    def radius(self) -> float:
+        """The wheel's radius, mm.
+
+        Raises:
+            DescriptionError: it is not given.
+        """
+        if self.wheel_radius is None:
+            raise DescriptionError(
+                "needs wheel_radius, and none is given: write it in [mechanism], in mm, or ask for other "
+                "effects",
+                "wheel_radius",
+            )
+        return self.wheel_radius
 
 
 @dataclass(frozen=True)
@@ -184,6 +189,11 @@ class Model:
     def values(self) -> tuple[str, ...]:
         """Names of the values that the inputs take, each once."""
         return tuple(dict.fromkeys(drive.value or name for name, drive in self.inputs.items()))
+
+    @property
+    def steering(self) -> frozenset[str]:
+        """Names of the values that are the travel of a slide."""
+        return frozenset(drive.value or name for name, drive in self.inputs.items() if drive.steers)
 
     @property
     def reported(self) -> tuple[str, ...]:

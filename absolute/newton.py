@@ -172,16 +172,17 @@ def rates(mechanism: Mechanism, at: Configurations, first: Array, second: Array)
     Args:
         at: N configurations, or one. first, second: (N, rows) rates of the rows.
     """
-    velocity = _by_inverse(at, first)
+    velocity = velocities(at, first)
     moving = np.zeros((len(first), at.origin.shape[1], 2, 3))
     moving[:, 1:] = velocity.reshape(len(first), -1, 2, 3)
-    return velocity, _by_inverse(at, second - mechanism.stack.drift(at.placed, moving))
+    return velocity, velocities(at, second - mechanism.stack.drift(at.placed, moving))
 
 
-def _by_inverse(at: Configurations, right_hand: Array) -> Array:
-    """J x = right_hand, corrected once by what is left of it: as good as by factors (Higham, ch. 12)."""
-    found: Array = np.matvec(at.inverse, right_hand)
-    return np.asarray(found + np.matvec(at.inverse, right_hand - np.matvec(at.jacobian, found)))
+def velocities(at: Configurations, rates: Array) -> Array:
+    """v with  J v = rates,  (..., N, rows), corrected once by what is left of it: as good as by factors
+    (Higham, ch. 12)."""
+    found: Array = np.matvec(at.inverse, rates)
+    return np.asarray(found + np.matvec(at.inverse, rates - np.matvec(at.jacobian, found)))
 
 
 def more_than_rounding(inverse: Array) -> Array:

@@ -1,13 +1,13 @@
 """The points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from absolute.description import Corner
-from absolute.effects import Effect
+from absolute.dual import Dual, constant
 from absolute.mapping import ReadOnly
 from absolute.mechanism import Mechanism
 from absolute.precision import EPS
@@ -28,6 +28,7 @@ class Instants(NamedTuple):
         rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), the chassis first.
         rates: (N, 2, bodies, 2, 3) velocities [o', w] and accelerations [o'', w'] of the bodies; the chassis,
             and all where they are not asked for, stay at zero.
+        slopes: (N, K, bodies, 2, 3) velocities of the bodies for a unit rate of one input each.
         residual: (N,) largest violation of a row.
         corrections: (N,) of Newton.
     """
@@ -35,6 +36,7 @@ class Instants(NamedTuple):
     rotation: Array
     origin: Array
     rates: Array
+    slopes: Array
     residual: Array
     corrections: Counts
 
@@ -48,14 +50,16 @@ class Motion:
 
     Attributes:
         chassis: (N, 3, 3) displacement of the chassis and its rates, mm and s, after its turns.
+        by: what effects call the K inputs that they take derivatives by.
     """
 
     mechanism: Mechanism
     instants: Instants
     chassis: Array
     turns: tuple[Turning, ...]
+    by: tuple[str, ...] = ()
 
-    def solution(self, rates: bool, conditions: bool, effects: Sequence[Effect]) -> Solution:
+    def solution(self, rates: bool, conditions: bool, effects: Mapping[str, Array]) -> Solution:
         """The motion in mm, seen from the ground, with what is asked for."""
         size, model = self.mechanism.drawing.size, self.mechanism.model
         # Of body rates, angular velocity is the first.
@@ -68,7 +72,7 @@ class Motion:
             if body not in model.aids:
                 for kind, state in zip(OF_BODIES[: orders - 1], self._body(body), strict=False):
                     numbers[kind][body] = state
-        numbers["effects"] = {effect.name: effect.value(self) for effect in effects}
+        numbers["effects"] = dict(effects)
         iterations, residual = self.instants.corrections, self.instants.residual
         iterations.setflags(write=False)
         return Solution(
@@ -86,36 +90,77 @@ class Motion:
         """What of the linkage is the wheel, and which way the car points."""
         return self.mechanism.model.corner
 
-    def line(self, ends: tuple[str, str]) -> Array:
-        """(N, 3) from one point to another, mm, in the axes of the frame of the points.
+    def components(self, vector: Dual) -> Dual:
+        """A vector (3, N) along outboard, rearward and up, which do not turn."""
+        return vector.along(self.corner.axes)
+
+    def line(self, start: str, end: str) -> Dual:
+        """(3, N) from one point to another, mm.
 
         A line between two points of one body turns with it and is nothing but turned.
         """
         drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
-        body = next((body for body, points in bodies.items() if set(ends) <= set(points)), None)
+        body = next((body for body, points in bodies.items() if {start, end} <= set(points)), None)
         if body is None:
-            line = self._place(ends[1]) - self._place(ends[0])
-        else:
-            line = self.instants.rotation[:, drawing.bodies[body]] @ drawing.line(*ends)
-        for turn in self.turns:
-            line = turn.seen(line[None])[0]
-        return np.asarray(line * drawing.size)
+            return self._seen(self._place(end) - self._place(start))
+        return self._seen(self._turned(drawing.bodies[body], drawing.line(start, end)))
 
-    def _holder(self, point: str) -> tuple[int, Array]:
-        """The body of a point, and the (N, 3) arm to the point from its origin, in units of size."""
-        drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
-        body, index = next(of for of in drawing.bodies.items() if point in bodies[of[0]])
-        return index, np.asarray(self.instants.rotation[:, index] @ drawing.arm(body, point))
+    def moved(self, point: str) -> Dual:
+        """(3, N) from the place where a point is drawn to where it is, mm, without the displacement of the
+        chassis, which is the same for all points."""
+        body, arm = self._holder(point)
+        moved = self._place(point)
+        moved[0] -= self.mechanism.drawing.origins[body] + arm
+        # A turn takes the difference of two places as a vector, and moves the drawn one as well.
+        turned = np.zeros((1, *moved.shape[1:]))
+        for turn in self.turns:
+            turned = turn.seen_point(turned, np.array(self.mechanism.model.points[point]))
+        return self._seen(moved) + constant(turned[0].T)
+
+    def drawn(self, point: str) -> Dual:
+        """(3, 1) where a point is drawn, mm."""
+        return constant(np.array(self.mechanism.model.points[point])[:, None])
+
+    def riding(self, on: str, arm: Dual) -> Dual:
+        """An arm (3, N) that from now on turns with the body of a point."""
+        spin = self._slopes(self._holder(on)[0], 1)
+        for turn in self.turns:
+            spin = np.matvec(turn.rotation, spin)
+        return Dual(arm.value, cross(spin, arm.value.T).T)
+
+    def _seen(self, vector: Array) -> Dual:
+        """A vector and its slopes (1 + K, N, 3), in units of size, as the ground sees it, mm."""
+        for turn in self.turns:
+            vector = np.matvec(turn.rotation, vector)
+        seen = (vector * self.mechanism.drawing.size).T
+        return Dual(seen[..., 0], seen[..., 1:])
+
+    def _slopes(self, body: int, kind: int) -> Array:
+        """(K, N, 3) velocity of the origin of a body, or angular velocity (1), for unit rates of inputs."""
+        return self.instants.slopes[:, :, body, kind].swapaxes(0, 1)
+
+    def _turned(self, body: int, line: Array) -> Array:
+        """(1 + K, N, 3) a line of a body, (3,), and its slopes."""
+        turned = self.instants.rotation[:, body] @ line
+        return np.concatenate((turned[None], cross(self._slopes(body, 1), turned)))
 
     def _place(self, point: str) -> Array:
-        """(N, 3) on the chassis, in units of size."""
-        index, arm = self._holder(point)
-        return np.asarray(self.instants.origin[:, index] + arm)
+        """(1 + K, N, 3) a point from the middle, on the chassis, and its slopes, in units of size."""
+        body, arm = self._holder(point)
+        origin = self.instants.origin[:, body]
+        return np.concatenate((origin[None], self._slopes(body, 0))) + self._turned(body, arm)
+
+    def _holder(self, point: str) -> tuple[int, Array]:
+        """The body of a point, and the arm to the point from its origin in the drawing, in units of size."""
+        drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
+        body, index = next(of for of in drawing.bodies.items() if point in bodies[of[0]])
+        return index, drawing.arm(body, point)
 
     def _point(self, name: str) -> Array:
         """(3, N, 3) a point and its rates, mm and s."""
         drawing, given = self.mechanism.drawing, np.array(self.mechanism.model.points[name])
-        index, arm = self._holder(name)
+        index, drawn = self._holder(name)
+        arm = self.instants.rotation[:, index] @ drawn
         state = np.zeros((3, *arm.shape))
         base = drawing.middle if index or self.turns else given
         if index:

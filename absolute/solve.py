@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.description import Model
-from absolute.effects import effects_of
+from absolute.effects import effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
 from absolute.input_arrays import chassis_series, input_series
 from absolute.mechanism import Mechanism
-from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
+from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates, velocities
 from absolute.precision import EPS
 from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
@@ -45,7 +45,7 @@ def solve(
         Solution with one row per instant.
     Raises:
         DescriptionError: an axis of the model has no length or its lines point apart; rows that are too many;
-            effects of a linkage that lacks what they are effects of.
+            effects of a linkage that lacks what they are effects of, or an input to take derivatives by.
         InputError: names, shapes or values of inputs or chassis; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
         UnreachableError: the mechanism locks before the inputs of an instant.
@@ -91,48 +91,64 @@ class Assembled:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects)
-        for effect in asked:
-            model.corner.ends(effect.role)
+        by = inputs_of(asked, model)
         series = driven_series(model, inputs)
         carried = chassis_series(chassis, len(series))
         turns = turnings(model, inputs, len(series))
         bodies = len(mechanism.drawing.bodies)
-        rotation, origin, moving, residual = (
-            np.zeros((0, *shape)) for shape in ((bodies, 3, 3), (bodies, 3), (2, bodies, 2, 3), ())
+        rotation, origin, moving, slopes, residual = (
+            np.zeros((0, *shape))
+            for shape in ((bodies, 3, 3), (bodies, 3), (2, bodies, 2, 3), (len(by), bodies, 2, 3), ())
         )
-        runs = [Instants(rotation, origin, moving, residual, np.zeros(0, dtype=np.int64))]
+        runs = [Instants(rotation, origin, moving, slopes, residual, np.zeros(0, dtype=np.int64))]
 
-        def solution() -> Solution:
+        def motion() -> Motion:
             instants = Instants(*(np.concatenate(parts) for parts in zip(*runs, strict=True)))
             count = len(instants.residual)
-            motion = Motion(mechanism, instants, carried[:count], tuple(turn.first(count) for turn in turns))
-            return motion.solution(rates, conditions, asked)
+            turned = tuple(turn.first(count) for turn in turns)
+            return Motion(mechanism, instants, carried[:count], turned, tuple(by))
 
+        def solution() -> Solution:
+            found = motion()
+            return found.solution(rates, conditions, numbers_of(asked, found))
+
+        # What effects lack is missing from no instants as well.
+        numbers_of(asked, motion())
         # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                for run in self._followed(series, rates):
+                for run in self._followed(series, rates, tuple(by.values())):
                     runs.append(run)
         except AbsoluteError as error:
             error.partial = solution() if len(runs) > 1 else None
             raise
         return solution()
 
-    def _followed(self, series: Array, rated: bool) -> Iterator[Instants]:
-        """The instants of inputs (N, 3, inputs), one run of them after the other."""
+    def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
+        """The instants of inputs (N, 3, inputs), one run of them after the other, and the velocities for unit
+        rates of some values."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
+        named = np.array([drive.value or name for name, drive in self.model.inputs.items()])
+        units = np.array([mechanism.targets(series[:, 0], 1.0 * (named == value))[1] for value in by])
         for found in through(mechanism, self._drawn, series[:, 0]):
-            count = good = len(found.q)
-            moving, residual = np.zeros((count, 2, found.origin.shape[1], 2, 3)), found.residual
+            count, bodies = found.origin.shape[:2]
+            moving, residual = np.zeros((count, 2, bodies, 2, 3)), found.residual
+            slopes = np.zeros((count, len(by), bodies, 2, 3))
+            held = fine = np.ones(count, dtype=np.bool_)
+            for number, unit in enumerate(units):
+                velocity = velocities(found, unit[done : done + count])
+                slopes[:, number, 1:] = velocity.reshape(count, -1, 2, 3)
+                held = held & _of_rates(mechanism, found, velocity)[1]
             if rated:
                 both = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
-                moving[:, :, 1:] = both.reshape(moving[:, :, 1:].shape)
-                residual, held = _of_rates(mechanism, found, both[:, 0])
-                good = leading(held & _in_range(mechanism, both))
+                moving[:, :, 1:] = both.reshape(count, 2, -1, 2, 3)
+                residual, followed = _of_rates(mechanism, found, both[:, 0])
+                held, fine = held & followed, _in_range(mechanism, both)
+            good = leading(held & fine)
             if good:
-                few = found.part(slice(good))
-                yield Instants(few.rotation, few.origin, moving[:good], residual[:good], few.corrections)
+                few, fewer = found.part(slice(good)), (moving[:good], slopes[:good], residual[:good])
+                yield Instants(few.rotation, few.origin, *fewer, few.corrections)
             done += good
             if good < count:
                 if held[good]:

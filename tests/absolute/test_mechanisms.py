@@ -1,5 +1,6 @@
 """Mechanisms from plain data alone: other people's tables, closed forms, and what is refused."""
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -213,6 +214,16 @@ def test_a_four_bar_of_hinges_follows_its_circles() -> None:
 def test_a_four_bar_whose_hinges_are_not_quite_parallel_is_locked(tilt: float) -> None:
     with pytest.raises(absolute.PoseError, match="hinge of"):
         absolute.solve(four_bar(tilt), {"turn": at([0.0, 0.5])})
+
+
+def test_a_gradient_by_an_input_that_cannot_move_is_refused_as_its_rates_are() -> None:
+    bars = four_bar(1e-10)
+    roles = dataclasses.replace(bars.corner, roles={"wheel_axis": ("q1", "q2")})
+    model = dataclasses.replace(bars, corner=roles)
+    assert absolute.solve(model, {"turn": at([0.0])}, effects=["toe"]).effects
+    for rate, effects in ((1.0, ["toe"]), (0.0, ["toe_by_travel"])):
+        with pytest.raises(absolute.AssemblyError, match=r"hinge of.*locked"):
+            absolute.solve(model, {"turn": at([0.0], rate)}, effects=effects)
 
 
 def test_a_four_bar_whose_hinges_are_not_parallel_is_held_more_than_once() -> None:

@@ -1,0 +1,72 @@
+"""Numbers with their derivatives: a formula of them is differentiated exactly as it is evaluated."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from absolute.solution import Array
+
+
+@dataclass(frozen=True)
+class Dual:
+    """A number, or a vector by its components, at N instants, and its derivatives by K inputs.
+
+    Attributes:
+        value: (..., N). slopes: (..., N, K); N or K may be 1 of what is the same for all.
+    """
+
+    value: Array
+    slopes: Array
+
+    def __getitem__(self, component: int) -> "Dual":
+        return Dual(self.value[component], self.slopes[component])
+
+    def __iter__(self) -> Iterator["Dual"]:
+        return map(Dual, self.value, self.slopes)
+
+    def __neg__(self) -> "Dual":
+        return _chain(-self.value, (-1.0, self))
+
+    def __add__(self, other: "Dual") -> "Dual":
+        return _chain(self.value + other.value, (1.0, self), (1.0, other))
+
+    def __sub__(self, other: "Dual") -> "Dual":
+        return _chain(self.value - other.value, (1.0, self), (-1.0, other))
+
+    def __mul__(self, other: "Dual") -> "Dual":
+        return _chain(self.value * other.value, (other.value, self), (self.value, other))
+
+    def __truediv__(self, other: "Dual") -> "Dual":
+        ratio = self.value / other.value
+        return _chain(ratio, (1.0 / other.value, self), (-ratio / other.value, other))
+
+    def along(self, directions: Array) -> "Dual":
+        """Components of a vector (3, N) along directions (3, 3), one in each row."""
+        return Dual(directions @ self.value, np.tensordot(directions, self.slopes, 1))
+
+
+def constant(value: Array | float) -> Dual:
+    """What no input changes, (...) or (..., N)."""
+    value = np.asarray(value, dtype=float)
+    return Dual(value, np.zeros((*value.shape, 1)))
+
+
+def hypot(*parts: Dual) -> Dual:
+    """The square root of the sum of squares, which has no derivative where it is zero."""
+    length = np.sqrt(np.sum([part.value * part.value for part in parts], axis=0))
+    return _chain(length, *((part.value / length, part) for part in parts))
+
+
+def arctan2(rise: Dual, run: Dual) -> Dual:
+    """The angle whose tangent is rise / run, between -pi and pi."""
+    square = rise.value * rise.value + run.value * run.value
+    # A rise of zero may be -0, which would turn pi into -pi.
+    angle = np.arctan2(rise.value + 0.0, run.value)
+    return _chain(angle, (run.value / square, rise), (-rise.value / square, run))
+
+
+def _chain(value: Array, *parts: tuple[Array | float, Dual]) -> Dual:
+    """A function of numbers by its value and its derivative by each of them."""
+    first, *others = (np.asarray(partial)[..., None] * of.slopes for partial, of in parts)
+    return Dual(value, np.asarray(sum(others, first)))
