@@ -101,7 +101,12 @@ class Angle(CarNumber):
     def doubt(
         self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: NDArray[np.bool_]
     ) -> Doubt:
-        """It is steeper in drawings than in any car."""
+        """That it is steeper in drawings than in any car.
+
+        Args:
+            drawn: the points, each (..., 3), mm.
+            told: the drawings in which its line was already found to be misdrawn.
+        """
         start, end = self.ends(topology)
         limit = self.steepest_by_default if _missing(topology, start) else self.steepest
         degrees = np.degrees(self.value(drawn[start], drawn[end], axes))

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import S
 from pointcoord.effects.corner import Corner, View
-from pointcoord.effects.effect import Doubt, Effect, Point, Poses, Quantity, no_role
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -67,11 +66,6 @@ class CarNumber(ABC):
         """Whether it is made of the wheel's radius."""
         return False
 
-    @property
-    def lengthwise(self) -> bool:
-        """Whether a drawing that is turned round is noticed by its sign."""
-        return False
-
     @abstractmethod
     def of(self, corner: Corner[S]) -> S:
         """The number; lengths in the unit of the points."""
@@ -88,12 +82,6 @@ class CarNumber(ABC):
     def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
         """Why a drawing that has its roles does not have it, in words; empty if it does."""
         return ""
-
-    def doubt(
-        self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: NDArray[np.bool_]
-    ) -> Doubt | None:
-        """What it shows that looks wrong in drawings (see `Effect.doubts`)."""
-        return None
 
 
 @dataclass(frozen=True)
@@ -156,11 +144,6 @@ class CarNumbers(Effect):
         """The axes that they are seen on."""
         return tuple(dict.fromkeys(role for number in self.numbers for role in number.roles))
 
-    @property
-    def lengthwise(self) -> tuple[str, ...]:
-        """Those whose sign tells the front from the rear."""
-        return tuple(number.words for number in self.numbers if number.lengthwise)
-
     def needs(self, topology: Topology) -> Collection[str]:
         """The points of their roles."""
         return {point for role in self.lines for point in topology.role(role)}
@@ -190,18 +173,6 @@ class CarNumbers(Effect):
             )
         problems = (number.refusal(topology, drawn) for number in self.numbers)
         return next((f"{problem}, or leave {self.name!r} out" for problem in problems if problem), "")
-
-    def doubts(
-        self,
-        topology: Topology,
-        drawn: Mapping[str, Array],
-        axes: CarAxes,
-        told: Mapping[str, NDArray[np.bool_]],
-    ) -> tuple[Doubt, ...]:
-        """Numbers of drawings that no car has."""
-        known = (number for number in self.numbers if all(topology.role(role) for role in number.roles))
-        found = (n.doubt(topology, drawn, axes, told.get(n.roles[0], np.array(False))) for n in known)
-        return tuple(doubt for doubt in found if doubt is not None)
 
 
 def corner_of(poses: Poses) -> Corner[Array]:

@@ -106,11 +106,6 @@ class Effect(ABC):
         return ()
 
     @property
-    def lengthwise(self) -> tuple[str, ...]:
-        """Those of its numbers, in words, whose sign depends on where the car's front is."""
-        return ()
-
-    @property
     def reports_states(self) -> bool:
         """Whether its numbers are the states of every point of its derivative, with what reporting adds."""
         return False
@@ -140,21 +135,6 @@ class Effect(ABC):
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
         """Why a drawing does not have it and what to do, in words; empty if it does."""
         return ""
-
-    def doubts(
-        self,
-        topology: Topology,
-        drawn: Mapping[str, Array],
-        axes: CarAxes,
-        told: Mapping[str, NDArray[np.bool_]],
-    ) -> tuple[Doubt, ...]:
-        """What it shows that looks wrong in drawings; as many doubts whichever drawings these are.
-
-        Args:
-            drawn: the points, each (..., 3), mm.
-            told: by axis of the topology, the drawings in which it was already found to be misdrawn.
-        """
-        return ()
 
 
 def no_role(effect: str, role: str, topology: Topology) -> str:

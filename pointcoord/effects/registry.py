@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
 from pointcoord.effects.caster import CASTER
 from pointcoord.effects.damper import DAMPER
@@ -28,6 +29,7 @@ EFFECTS: Mapping[str, Effect] = {
         ACCELERATION,
         KNUCKLE_RATES,
         WHEEL_ANGLES,
+        CAMBER,
         TOE,
         CASTER,
         WHEEL_TRAVEL,

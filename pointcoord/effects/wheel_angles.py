@@ -7,18 +7,9 @@ mirror image.
 from __future__ import annotations
 
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.camber import LEAN
 from pointcoord.effects.car_number import CarNumbers
 
-CAMBER = Angle(
-    name="camber",
-    words="camber",
-    sign="where the wheel leans out at the top",
-    line="wheel_axis",
-    sine="down",
-    cosine="outboard",
-    steepest=45.0,
-    steepest_by_default=10.0,
-)
 KINGPIN = Angle(
     name="kingpin",
     words="kingpin angle",
@@ -29,4 +20,4 @@ KINGPIN = Angle(
     steepest=45.0,
     steepest_by_default=45.0,
 )
-WHEEL_ANGLES = CarNumbers.of("wheel_angles", "camber and kingpin angle, rad", CAMBER, KINGPIN)
+WHEEL_ANGLES = CarNumbers.of("wheel_angles", "camber and kingpin angle, rad", LEAN, KINGPIN)

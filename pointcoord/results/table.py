@@ -74,7 +74,9 @@ class Table:
             for quantity in effect.quantities:
                 every = points if quantity.of == "point" else tuple(topology.bodies)
                 rows = 1 if quantity.of == "car" else 3
-                for name in every if effect.names is None else effect.names:
+                those = every if effect.names is None else effect.names
+                # A number that two effects give is there once.
+                for name in (name for name in those if name not in places[quantity.name]):
                     places[quantity.name][name] = slice(height, height + rows)
                     height += rows
         first = {state: 3 * i for i, state in enumerate(moving)}

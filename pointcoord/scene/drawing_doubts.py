@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Doubt
-from pointcoord.effects.registry import EFFECTS
+from pointcoord.effects.registry import ANGLES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 
@@ -58,8 +58,10 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         found["wheel_axis"] = axes.component(points[centre] - points[inner], "outboard") <= 0.0
         words = f"{inner} lies outboard of {centre}, so the spin axis points inboard"
         doubts.append(Doubt(found["wheel_axis"], lambda one: words))
-    for effect in EFFECTS.values():
-        doubts += effect.doubts(topology, points, axes, found)
+    for angle in ANGLES.values():
+        if topology.role(angle.line):
+            told = found.get(angle.line, np.array(False))
+            doubts.append(angle.doubt(topology, points, axes, told))
     return tuple(doubts)
 
 
@@ -72,7 +74,7 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
 
     def words(one: tuple[int, ...]) -> str:
         forward = np.round(np.cross(axes.up, axes.right), 6) + 0.0
-        lengthwise = [words for effect in EFFECTS.values() for words in effect.lengthwise]
+        lengthwise = [angle.words for angle in ANGLES.values() if angle.lengthwise]
         return (
             f"{front} is drawn {-float(ahead[one]):.4g} mm behind {rear}: by up and right the car's front "
             f"lies towards {forward.tolist()}, as in right-handed axes; are these two swapped, is right "

@@ -101,6 +101,10 @@ def _wheel_angles(car: Car) -> Numbers:
     return {"wheel": {"camber": [camber], "kingpin": [lean_in]}}
 
 
+def _camber(car: Car) -> Numbers:
+    return {"wheel": {"camber": _wheel_angles(car)["wheel"]["camber"]}}
+
+
 def _toe(car: Car) -> Numbers:
     """A wheel whose front edge is nearer the middle has a spin axis that goes forward on its way out."""
     spin, forward = car.line(car.wheel_axis), cross(car.up, car.right)
@@ -163,6 +167,7 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "acceleration": _of_points("acceleration", 2),
     "knuckle_rates": _rates,
     "wheel_angles": _wheel_angles,
+    "camber": _camber,
     "toe": _toe,
     "caster": _caster,
     "wheel_travel": _wheel_travel,

@@ -20,9 +20,10 @@ from pointcoord import simulate
 from pointcoord.bounds import certified_poses, enclosed_points
 from pointcoord.bounds.certified_poses import CertifiedPoses, Known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
-from pointcoord.effects import angle, knuckle_rates
+from pointcoord.effects import knuckle_rates
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics import double_double, kantorovich
+from pointcoord.numerics import double_double, enclosure, kantorovich
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from validate.adjudication.reference_solution import inputs_at, reference_instant
@@ -184,7 +185,10 @@ FAULTS: list[tuple[Callable[..., Any], str, str]] = [
     (EnclosedPoses.reported, " + self.added[derivative]", ""),
     (knuckle_rates.body_rate_error, "s - cross(pull, cross(pull, edge))", "s"),
     (knuckle_rates.body_rate_error, "along + across", "along"),
-    (angle.angle_error, "sine * c - cosine * s", "sine * c"),
+    (enclosure.quotient, "size * s", "0.1 * size * s"),
+    (enclosure.quotient, "(r + size", "(0.1 * r + size"),
+    (enclosure.root, "square.radius / least", "0.1 * square.radius / least"),
+    (enclosure.angle_error, "sine * c - cosine * s", "sine * c"),
 ]
 
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from pointcoord.effects.angle import Angle
-from pointcoord.effects.wheel_angles import CAMBER, KINGPIN, WHEEL_ANGLES
+from pointcoord.effects.camber import LEAN as CAMBER
+from pointcoord.effects.effect import Doubt
+from pointcoord.effects.wheel_angles import KINGPIN, WHEEL_ANGLES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -33,6 +35,10 @@ def drawn(camber: float, kingpin: float) -> dict[str, np.ndarray]:
     }
 
 
+def doubts_of(stand_ins: dict[str, str], points: dict[str, np.ndarray]) -> list[Doubt]:
+    return [n.doubt(topology(stand_ins), points, AXES, np.array(False)) for n in (CAMBER, KINGPIN)]
+
+
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
 @pytest.mark.parametrize(
     ("stand_ins", "camber", "kingpin"),
@@ -51,12 +57,11 @@ def test_lines_look_misdrawn_beyond_their_limits_only(
     for steeper in (False, True):
         by = 0.5 if steeper else -0.5
         points = drawn(sign * (camber + by), sign * (kingpin + by))
-        doubts = WHEEL_ANGLES.doubts(topology(stand_ins), points, AXES, {})
+        doubts = doubts_of(stand_ins, points)
         assert [bool(doubt.where) for doubt in doubts] == [steeper, steeper]
-    told = {"wheel_axis": np.array(True)}
-    doubts = WHEEL_ANGLES.doubts(topology(stand_ins), points, AXES, told)
-    assert [bool(doubt.where) for doubt in doubts] == [False, True]
-    wrong = WHEEL_ANGLES.doubts(topology(stand_ins), drawn(89.5, 90.5), AXES, {})
+    doubt = CAMBER.doubt(topology(stand_ins), points, AXES, np.array(True))
+    assert not doubt.where
+    wrong = doubts_of(stand_ins, drawn(89.5, 90.5))
     assert ["swapped" in doubt.words(()) for doubt in wrong] == [False, True]
 
 
@@ -84,8 +89,13 @@ def test_only_what_is_measured_from_the_front_or_the_rear_is_lengthwise() -> Non
         return Angle(sine, f"{sine} {cosine}", "", "wheel_axis", sine, cosine)
 
     some = (("forward", "up"), ("rearward", "up"), ("up", "forward"), ("up", "outboard"), ("down", "inboard"))
-    effect = type(WHEEL_ANGLES).of("some", "", *(lean(*pair) for pair in some))
-    assert effect.lengthwise == ("forward up", "rearward up", "up forward")
+    angles = [lean(*pair) for pair in some]
+    assert [angle.words for angle in angles if angle.lengthwise] == [
+        "forward up",
+        "rearward up",
+        "up forward",
+    ]
+    effect = type(WHEEL_ANGLES).of("some", "", *angles)
     assert effect.derivative == 0
     assert [quantity.name for quantity in effect.quantities] == ["wheel"]
 
@@ -101,7 +111,6 @@ def test_a_line_without_a_length_is_refused_where_a_point_of_its_own_is_missing(
 
 
 def test_an_angle_without_a_limit_may_be_half_a_turn() -> None:
-    effect = type(WHEEL_ANGLES).of("some", "", Angle("some", "some", "", "wheel_axis", "up", "outboard"))
+    angle = Angle("some", "some", "", "wheel_axis", "up", "outboard")
     points = {"inner": LOW, "centre": LOW - 80.0 * RIGHT}
-    (doubt,) = effect.doubts(topology({}), points, AXES, {})
-    assert not doubt.where
+    assert not angle.doubt(topology({}), points, AXES, np.array(False)).where

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pointcoord.effects.angle import Angle
-from pointcoord.effects.wheel_angles import CAMBER, KINGPIN
+from pointcoord.effects.camber import LEAN as CAMBER
+from pointcoord.effects.wheel_angles import KINGPIN
 from pointcoord.linkage.car_axes import CarAxes
 
 EPS = np.finfo(float).eps

@@ -1,7 +1,6 @@
 """Components along a car's directions, of a car that is turned about in space."""
 
 from fractions import Fraction
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +16,7 @@ COMPONENTS |= {"down": -2.0, "forward": -3.0, "inboard": 5.0}
 
 @pytest.mark.parametrize("direction", COMPONENTS)
 def test_components_along_each_direction_of_a_car(direction: Direction) -> None:
-    axes = CarAxes.of(SimpleNamespace(vectors={"up": UP, "right": RIGHT}), -RIGHT)
+    axes = CarAxes(UP, RIGHT, -RIGHT)
     vector = np.array([2.0, 3.0, 5.0])
     assert axes.component(vector, direction) == COMPONENTS[direction]
     enclosed = axes.enclosed(Enclosed.of(vector), direction)

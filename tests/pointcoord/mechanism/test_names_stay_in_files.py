@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import pointcoord
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.structure import KINDS
 
@@ -15,8 +16,8 @@ PACKAGE = Path(pointcoord.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
 POINTS = {point for name in shipped() for point in mechanism_file(name).points}
 INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
-# A file may call an input as the format calls its kind, such as `turn`: that is the format's word.
-EXACT = {*shipped(), *(INPUTS - KINDS.keys())}
+# A file may call an input as the format calls its kind, such as `turn`, or as an effect calls what it drives.
+EXACT = {*shipped(), *(INPUTS - KINDS.keys() - EFFECTS.keys() - NUMBERS_OF_THE_CAR.keys())}
 
 
 def said(module: ast.Module) -> Iterator[tuple[int, str]]:

@@ -16,13 +16,15 @@ from built_in_cars import STEERED_CARS
 from program import short_scene
 
 import absolute
+from absolute.dual import arctan2
 from absolute.effects import Effect as AbsoluteEffect
-from absolute.effects import Lines, projected_angle
+from absolute.results import Motion
 from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import Numbers
 from pointcoord.effects import registry
-from pointcoord.effects.angle import Angle, WheelAngles
+from pointcoord.effects.angle import Angle
+from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
 from validate.cli import main
@@ -61,7 +63,7 @@ class Stub(Effect):
 OURS = (
     Stub("stub_axle", "length of the stub axle, mm", "positive outboard", 0, (STUB,)),
     # A wheel that stands upright leans by half a turn, more or less.
-    WheelAngles.of(
+    CarNumbers.of(
         "flip",
         "camber from the other side, rad",
         Angle("flip", "flipped camber", "where the wheel leans in", "wheel_axis", "up", "inboard"),
@@ -72,24 +74,19 @@ OURS = (
 def stub_axle(scale: float = 1.0) -> AbsoluteEffect:
     """The absolute model's own, right or too long."""
 
-    def outboard(lines: Lines, along: np.ndarray) -> np.ndarray:
-        return along @ np.array(lines.corner.outboard)
+    def value(motion: Motion) -> np.ndarray:
+        return scale * motion.components(motion.line(*motion.corner.ends("wheel_axis")))[0].value
 
-    def value(lines: Lines) -> np.ndarray:
-        return scale * outboard(lines, lines.line(lines.corner.ends("wheel_axis")))
-
-    words = ("length of the stub axle", "+ outboard")
-    return AbsoluteEffect("stub_axle", "mm", *words, "wheel_axis", value)
+    return AbsoluteEffect("mm", value)
 
 
-FLIP = projected_angle(
-    "flip",
-    gives="camber from the other side",
-    sign="+ where the wheel leans in at its top",
-    role="wheel_axis",
-    rise="up",
-    run="inboard",
-)
+def flip(motion: Motion) -> np.ndarray:
+    """Camber from the other side: + where the wheel leans in at its top."""
+    outboard, _, up = motion.components(motion.line(*motion.corner.ends("wheel_axis")))
+    return arctan2(up, -outboard).value
+
+
+FLIP = AbsoluteEffect("rad", flip)
 
 # In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
 REFERENCES = (
@@ -115,12 +112,12 @@ def planted(monkeypatch: pytest.MonkeyPatch) -> Plant:
     for one in REFERENCES:
         monkeypatch.setitem(reference_registry.EFFECTS, one.name, one)
 
-    def in_absolute(*effects: AbsoluteEffect) -> None:
-        known = {**absolute.EFFECTS, **{effect.name: effect for effect in effects}}
+    def in_absolute(stub: AbsoluteEffect) -> None:
+        known = {**absolute.EFFECTS, "stub_axle": stub, "flip": FLIP}
         monkeypatch.setattr(absolute, "EFFECTS", known)
         monkeypatch.setattr("absolute.effects.EFFECTS", known)
 
-    in_absolute(stub_axle(), FLIP)
+    in_absolute(stub_axle())
     return in_absolute
 
 
@@ -151,7 +148,7 @@ def test_an_angle_that_jumps_by_a_whole_turn_jumps_at_other_instants_and_agrees(
 
 
 def test_a_fault_of_it_is_caught(planted: Plant) -> None:
-    planted(stub_axle(1.0 + 1e-11), FLIP)
+    planted(stub_axle(1.0 + 1e-11))
     outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
     assert made_up(outcome) == {("stub", "stub_axle"): "disagrees", ("wheel", "flip"): "agrees"}
 

@@ -20,8 +20,9 @@ import validate.formulations.relative_coordinates
 import validate.relative.model
 import validate.relative.rates
 from pointcoord import Scene
+from pointcoord.effects.camber import LEAN as CAMBER
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from pointcoord.effects.wheel_angles import CAMBER, KINGPIN
+from pointcoord.effects.wheel_angles import KINGPIN
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import NEWTON
 from pointcoord.results.samples import Samples
