@@ -14,9 +14,9 @@ from mpmath import mpf
 from reference_cars import CARS, ReferenceCar
 
 from validate.reference import Instant
-from validate.reference.dual import Dual
-from validate.reference.effects.effect import STEERING, WHEEL, Axes, angle
-from validate.reference.effects.registry import EFFECTS
+from validate.reference.dual import Dual, angle
+from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.vectors import Vector, cross, minus, plus, times
 
 FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
@@ -24,8 +24,8 @@ FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
 
 def same(one: Instant, other: Instant) -> bool:
     bound = one.error_bound["effects"] + other.error_bound["effects"] + mpf("1e-60")
-    assert set(one.effects) == set(other.effects) == set(EFFECTS)
-    return all(abs(one.effects[name] - other.effects[name]) <= bound for name in EFFECTS)
+    assert set(one.effects) == set(other.effects) == set(ANGLES)
+    return all(abs(one.effects[name] - other.effects[name]) <= bound for name in ANGLES)
 
 
 def test_effects_are_those_of_the_mirrored_car_on_the_other_side(car: ReferenceCar) -> None:
@@ -139,12 +139,16 @@ def test_a_level_spin_axis_that_points_forward_by_3_in_4_toes_in_by_its_angle() 
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
 
 
-def axes(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Axes:
+def car_with(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Car:
+    """A car whose axes start at the origin."""
+
     def balls(vector: tuple[float, ...]) -> Vector:
         return arb(vector[0]), arb(vector[1]), arb(vector[2])
 
-    lines = {WHEEL: balls(wheel), STEERING: balls(steering)}
-    return Axes(lines, balls(UP), balls(FORWARD), balls((0, out, 0)))
+    start = balls((0, 0, 0))
+    lines = {n: Line.between(start, balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))}
+    drawn = DrawnCar({}, lines, balls(UP), balls(FORWARD), balls((0, out, 0)), None, start)
+    return Car(drawn, lines, lines)
 
 
 @pytest.mark.parametrize("out", [-1, 1])
@@ -153,9 +157,9 @@ def test_a_wheel_leans_out_at_the_top_and_its_steering_axis_in(lean: float, out:
     sine, cosine = float(np.sin(lean)), float(np.cos(lean))
     # The spin axis of a wheel that leans out points down on its way out; the steering axis leads in on its
     # way up. Neither angle sees what is along the car.
-    turned = axes((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
+    turned = car_with((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
     for name in ("camber", "kingpin"):
-        assert float(EFFECTS[name].value(turned)) == pytest.approx(lean, abs=1e-15)
+        assert float(EFFECTS[name].evaluate(turned)) == pytest.approx(lean, abs=1e-15)
 
 
 @pytest.mark.parametrize(
