@@ -10,6 +10,7 @@ from typing import Any
 
 import pointcoord
 from validate.reference import Design, Instant, closed_drawing, count_assemblies, instants_of
+from validate.reference.effects.registry import ANGLES
 from validate.reference.route import CLEAR
 
 MECHANISMS = Path(pointcoord.__file__).parent / "mechanisms"
@@ -86,10 +87,15 @@ def design_of(points: Points, suspension: str = "macpherson", **settings: Any) -
 
 
 def solve_car(
-    points: Points, inputs: Mapping[str, Any], digits: int = 60, clearness: float = CLEAR, **settings: Any
+    points: Points,
+    inputs: Mapping[str, Any],
+    digits: int = 60,
+    clearness: float = CLEAR,
+    effects: Sequence[str] = ANGLES,
+    **settings: Any,
 ) -> Instant:
     """The reference at one instant of it."""
-    return next(instants_of(design_of(points, **settings), [inputs], digits, clearness))
+    return next(instants_of(design_of(points, **settings), [inputs], digits, clearness, effects))
 
 
 def close_car(points: Points, digits: int = 60, clearness: float = CLEAR, **settings: Any) -> Any:

@@ -50,11 +50,18 @@ class ReferenceCar:
     last_rack: Fraction
     side: str = "left"
     frame: Mapping[str, Vector] = field(default_factory=dict)
+    wheel_radius: Fraction = Fraction(290)
 
     @property
     def kind(self) -> dict[str, Any]:
         """What every function of the reference is told beside points and inputs."""
-        return {"suspension": self.suspension, "closure": self.closure, "side": self.side, **self.frame}
+        return {
+            "suspension": self.suspension,
+            "closure": self.closure,
+            "side": self.side,
+            "wheel_radius": self.wheel_radius,
+            **self.frame,
+        }
 
     @property
     def still(self) -> dict[str, tuple[Any, ...]]:

@@ -14,10 +14,10 @@ from functools import partial
 from flint import arb, arb_mat
 from mpmath import mpf
 
-from validate.reference.design import Design, Driven, Known, ball_vector, balls, values_only
+from validate.reference.design import Design, Driven, Known, balls, values_only
 from validate.reference.dual import Dual, slope_of
-from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import effects_of
+from validate.reference.effects.at_pose import car_at, drawn_car, provided
+from validate.reference.effects.registry import OF_POSITIONS, available
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball, centre_of
 from validate.reference.instant import Triple, prove_pose
@@ -37,7 +37,7 @@ class Sensitivity:
     Attributes:
         position, velocity, acceleration: of every point; mm, mm/s, mm/s^2 per unit of the input.
         angular_velocity, angular_acceleration: of every moving body.
-        effects: by name, see `effects.registry`; one that is undefined (0/0) is left out.
+        effects: those of positions, by name, see `effects.registry`; one that is undefined (0/0) is left out.
         error_bound: proven bound on the error of each quantity above.
     """
 
@@ -79,7 +79,8 @@ def _attempt(
     known = design.known(driven)
     still = values_only(known)
     enclosure = prove_pose(still, here.pose.unknown, here.pose.holds, digits, working).enclosure
-    inverse, jets = inverse_jacobian(enclosure, still), unknown_jets(enclosure, known)
+    inverse = inverse_jacobian(enclosure, still)
+    jets = unknown_jets(enclosure, known, inverse)
     return {
         (name, order): _by(design, _changed(design, driven, name, order), jets, inverse)
         for name in driven
@@ -115,10 +116,12 @@ def _by(design: Design, known: Known, jets: Sequence[Jet], inverse: arb_mat) -> 
         vectors[quantity] = {body: _slope_of(turn[i]) for body, turn in turns.items()}
     if not all(x.is_finite() for named in vectors.values() for vector in named.values() for x in vector):
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
-    places = {name: part_of(p, "value") for name, p in points.items()}
-    axes = Axes.of(places, design, ball_vector)
+    drawn = drawn_car(design, as_ball)
+    places = known.equations.points_of([jet.value for jet in solved], drawn.points)
+    car = car_at(drawn, known.chassis.still(), places)
     slopes_of_effects = {
-        name: arb(slope_of(effect.evaluate(axes))) for name, effect in effects_of(axes).items()
+        name: arb(slope_of(effect.evaluate(car))) * unit**effect.power
+        for name, effect in available(OF_POSITIONS, provided(design)).items()
     }
     effects = {name: slope for name, slope in slopes_of_effects.items() if slope.is_finite()}
     bounds = {

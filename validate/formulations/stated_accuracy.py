@@ -50,7 +50,6 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import combinations
 from math import sqrt
 
@@ -69,10 +68,9 @@ from validate.reference import Design
 from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
-from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import effects_of
+from validate.reference.effects.at_pose import car_at, drawn_car, provided
+from validate.reference.effects.registry import EFFECTS, available
 from validate.reference.in_doubles import (
-    floats_of,
     inverse_of,
     jacobian_of,
     known_in_doubles,
@@ -274,7 +272,7 @@ class _Held:
         moved = {name: _off(order_of(p, 0), count) * growth[0][:, None] for name, p in points.items()}
         missed = {name: off[:, None] + (move if self.solves else 0.0) for name, move in moved.items()}
         far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
-        angles = self._angles(off, points, growth[0])
+        of_car = self._of_car(off, solved, known, growth[0])
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
             d, of = per_second(quantity), QUANTITIES[quantity].of
@@ -302,23 +300,29 @@ class _Held:
                     for n in names
                 }
             else:
-                claims[quantity] = {n: angles[n] for n in names if n in angles}
+                claims[quantity] = {n: of_car[n] for n in names if n in of_car}
         return claims
 
-    def _angles(self, off: Array, points: Mapping[str, Vector], growth: Array) -> dict[str, Array]:
-        """Of every angle: what the pose makes of it, and the ends of its line, which are off themselves."""
-        places = {name: order_of(p, 0) for name, p in points.items()}
-        axes = Axes.of(places, self.design, floats_of)
-        lines = {
-            name: _with_own(line, 2.0 * off, first, growth)
-            for first, (name, line) in enumerate(axes.lines.items())
+    def _of_car(self, off: Array, solved: Sequence[Jet], known: Known, growth: Array) -> dict[str, Array]:
+        """Of every number of the car: what the pose makes of it, and the points that it is made of, which are
+        off themselves.
+        """
+        names = [n for q, names in self.asked.items() if QUANTITIES[q].of == "car" for n in names]
+        wanted = available((n for n in names if n in EFFECTS), provided(self.design))
+        drawn = drawn_car(self.design, float)
+        placed = known.equations.points_of([jet.value for jet in solved], drawn.points)
+        count = 3 * len(placed)
+        places = {
+            name: _with_own(place, off, 3 * first, count, growth)
+            for first, (name, place) in enumerate(placed.items())
         }
+        car = car_at(drawn, known.chassis.still(), places)
         found = {}
-        for name, effect in effects_of(axes).items():
-            angle = effect.evaluate(replace(axes, lines=lines))
-            claim = np.abs(slope_of(angle)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(angle))
-            unit = self.unit if effect.unit == "mm" else 1.0
-            found[name] = unit * np.where(np.isfinite(claim), claim, 0.0)
+        for name, effect in wanted.items():
+            if effect.along is None:
+                number = effect.evaluate(car)
+                claim = np.abs(slope_of(number)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(number))
+                found[name] = self.unit**effect.power * np.where(np.isfinite(claim), claim, 0.0)
         return found
 
 
@@ -334,18 +338,18 @@ def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
     return np.asarray(np.abs(inverse @ slopes).sum(axis=(0, -1)).max(axis=-1))
 
 
-def _with_own(line: Vector, off: Array, first: int, growth: Array) -> Vector:
-    """A line with further slopes: each component of it off by so much, beside those of the other line."""
-    components = []
-    for axis, component in enumerate(line):
-        value = np.broadcast_to(value_of(component), growth.shape)
+def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) -> Vector:
+    """A point with `count` further slopes: each coordinate off by so much, from the number `first` on."""
+    coordinates = []
+    for axis, coordinate in enumerate(place):
+        value = np.broadcast_to(value_of(coordinate), growth.shape)
         slopes = np.broadcast_to(
-            slope_of(component) * growth, (np.shape(slope_of(component))[0], len(growth))
+            slope_of(coordinate) * growth, (np.shape(slope_of(coordinate))[0], len(growth))
         )
-        more = np.zeros((6, len(growth)))
-        more[3 * first + axis] = off
-        components.append(Dual(value, np.concatenate([slopes, more])))
-    x, y, z = components
+        more = np.zeros((count, len(growth)))
+        more[first + axis] = off
+        coordinates.append(Dual(value, np.concatenate([slopes, more])))
+    x, y, z = coordinates
     return x, y, z
 
 

@@ -78,6 +78,10 @@ class ChassisMotion:
         rise = self.rise
         return ChassisMotion(turns, None if rise is None else (rise[0].value, rise[1].value, rise[2].value))
 
+    def without_displacement(self) -> ChassisMotion:
+        """The turns alone."""
+        return replace(self, rise=None)
+
     def taken_back(self, point: Vector) -> Vector:
         """The point of the car that is there when the car is moved."""
         point = point if self.rise is None else minus(point, self.rise)

@@ -36,18 +36,29 @@ class Known:
         equations: in that kind of number.
         numbers: w.
         chassis: how the car as a whole is moved.
+        inputs: what w and the chassis follow, as jets by name, rad and mm.
     """
 
     mechanism: Mechanism
     equations: Equations
     numbers: Sequence[Scalar]
     chassis: ChassisMotion
+    inputs: Mapping[str, Jet]
 
     @property
     def fixed(self) -> frozenset[str]:
         """The points of the chassis."""
         constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.mechanism.places.items())
         return frozenset(name for name, rests in constant if rests)
+
+    def driven_at(self, name: str, rate: arb) -> Known:
+        """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
+        zero = arb(0)
+        numbers: list[Jet] = []
+        for one, drive in self.mechanism.drives.items():
+            going = Jet(self.inputs[one].value, rate if one == name else zero, zero)
+            numbers += drive.numbers(going)
+        return replace(self, numbers=numbers, chassis=self.chassis.still())
 
     def unknown_of(self, points: Mapping[str, Vector]) -> list[arb]:
         """The unknowns of points in balls, relative to the chassis."""
@@ -154,6 +165,21 @@ class Design:
         """What a role names, or None."""
         return self.plain["roles"].get(name)
 
+    @property
+    def wheel_radius(self) -> Fraction | None:
+        """mm; None if it is not given.
+
+        Raises:
+            BadInputError: it is no number above 0.
+        """
+        given = self.plain.get("wheel_radius")
+        if given is None:
+            return None
+        radius = as_fraction(given, "wheel_radius")
+        if not radius > 0:
+            raise BadInputError("wheel_radius", given, "a number of mm above 0")
+        return radius
+
     def equations(self) -> Equations:
         """In balls at the present precision."""
         return _equations(self, ctx.prec)
@@ -185,13 +211,15 @@ class Design:
     def known_for(self, driven: Mapping[str, Jet]) -> Known:
         """The same from jets of balls, or of duals of balls; rad, mm, mm."""
         numbers = [w for name, drive in self.mechanism.drives.items() for w in drive.numbers(driven[name])]
-        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, driven))
+        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, driven), driven)
 
     def known_as_drawn(self) -> Known:
         """The same at rest at the inputs that the car is drawn at, the chassis in its place."""
-        numbers = [Jet(w, arb(0), arb(0)) for drive in self.mechanism.drives.values() for w in drive.drawn()]
-        still = {name: Jet(arb(0), arb(0), arb(0)) for name in self.inputs}
-        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, still))
+        drives = self.mechanism.drives
+        numbers = [Jet(w, arb(0), arb(0)) for drive in drives.values() for w in drive.drawn()]
+        drawn = {name: drive.input_of(drive.drawn()) for name, drive in drives.items()}
+        still = {name: Jet(drawn.get(name, arb(0)), arb(0), arb(0)) for name in self.inputs}
+        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, still), still)
 
     def drawn_unknown(self) -> list[arb]:
         """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""

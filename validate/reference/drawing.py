@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from flint import ctx
 from mpmath import mpf
 
 from validate.reference.design import Design
+from validate.reference.effects.registry import ANGLES
 from validate.reference.exact import as_ball, as_fraction, bits, centre_of
 from validate.reference.instant import Instant, prove_instant
 from validate.reference.route import CLEAR, closed
@@ -36,7 +37,9 @@ class ClosedDrawing:
         return max(self.movement.items(), key=lambda item: item[1])
 
 
-def closed_drawing(design: Design, digits: int = 60, clearness: float = CLEAR) -> ClosedDrawing:
+def closed_drawing(
+    design: Design, digits: int = 60, clearness: float = CLEAR, effects: Sequence[str] = ANGLES
+) -> ClosedDrawing:
     """Solve a drawing at its own inputs; every link as long as drawn.
 
     The inputs are taken from the drawing in the numbers that the equations take (see `drives`), without the
@@ -48,7 +51,7 @@ def closed_drawing(design: Design, digits: int = 60, clearness: float = CLEAR) -
     here = closed(design, clearness)
     instant = with_enough_digits(
         lambda working: prove_instant(
-            design, design.known_as_drawn(), here.pose.unknown, here.pose.holds, digits, working
+            design, design.known_as_drawn(), here.pose.unknown, here.pose.holds, digits, working, effects
         ),
         digits,
     )

@@ -17,10 +17,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import sqrt
 from typing import Any
 
-import numpy as np
 from flint import arb
 
 from validate.reference.compiler import CHASSIS, Compiler, Exact, Reader, Table
@@ -29,7 +27,7 @@ from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial
-from validate.reference.vectors import Scalar, across, cross, dot, minus
+from validate.reference.vectors import Scalar, across, cross, dot, minus, root
 
 
 @dataclass(frozen=True)
@@ -169,7 +167,7 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
         x, y, z = (exact(part) for part in up)
         lean = dot(minus(points[centre], points[inner]), (x, y, z))
-        return [_root(exact(r * r) - lean * lean * exact(share2))]
+        return [root(exact(r * r) - lean * lean * exact(share2))]
 
     (drop,) = compiler.unknowns(1, read, length=True)
     lean = dot(minus(compiler.place(centre), compiler.place(inner)), up)
@@ -200,13 +198,6 @@ def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         return [local * local]
 
     return Drive(True, numbers, lambda: [as_ball(d2)], lambda w: w[0].sqrt() * as_ball(compiler.unit))
-
-
-def _root(number: Scalar) -> Scalar:
-    """The root, of any kind of number that has one."""
-    if isinstance(number, float | Fraction | int):
-        return sqrt(number)
-    return np.sqrt(number) if isinstance(number, np.ndarray) else number.sqrt()
 
 
 KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from flint import arb
 
-from validate.reference.vectors import Scalar
+from validate.reference.vectors import Scalar, root
 
 
 @dataclass(frozen=True)
@@ -50,8 +51,8 @@ class Dual:
 
     def sqrt(self) -> Dual:
         """The root of a positive number."""
-        root = np.sqrt(self.value) if isinstance(self.value, np.ndarray) else self.value.sqrt()
-        return Dual(root, self.slope / (2 * root))
+        value = root(self.value)
+        return Dual(value, self.slope / (2 * value))
 
     __radd__ = __add__
     __rmul__ = __mul__
@@ -65,3 +66,12 @@ def value_of(number: Scalar) -> Scalar:
 def slope_of(number: Scalar) -> Scalar:
     """dx of a dual; any other number does not depend on the parameter."""
     return number.slope if isinstance(number, Dual) else 0
+
+
+def angle(y: Scalar, x: Scalar) -> Scalar:
+    """atan2(y, x), rad, of balls, of arrays or of duals of these."""
+    if not (isinstance(y, Dual) or isinstance(x, Dual)):
+        return arb.atan2(y, x) if isinstance(y, arb) else np.arctan2(y, x)
+    across, along = value_of(y), value_of(x)
+    turning = along * slope_of(y) - across * slope_of(x)
+    return Dual(angle(across, along), turning / (along * along + across * across))

@@ -2,7 +2,7 @@ r"""The equations of a mechanism in one kind of number: their values, their Jaco
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -60,15 +60,20 @@ class Equations:
                 matrix[row, column] = value_of(moved, values)
         return matrix
 
-    def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
-        """Where every point is, relative to the chassis."""
-        return {name: _vector(place, unknown) for name, place in self.places.items()}
+    def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
+        """Where every point is, or some are, relative to the chassis."""
+        return {
+            name: _vector(self.places[name], unknown) for name in (self.places if names is None else names)
+        }
 
     def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
         """Of every moving body two vectors fixed in it and not parallel."""
-        return {
-            name: (_vector(one, unknown), _vector(two, unknown)) for name, (one, two) in self.frames.items()
-        }
+        return {name: self.frame_of(unknown, name) for name in self.frames}
+
+    def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
+        """The same of one body."""
+        one, two = self.frames[body]
+        return _vector(one, unknown), _vector(two, unknown)
 
 
 def equations_in(

@@ -50,7 +50,7 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
         numbers += [Jet(*one) for one in np.array(found).transpose(1, 2, 0)]
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
     chassis = ChassisMotion.of(design, driven, float)
-    return Known(design.mechanism, equations_in_doubles(design), numbers, chassis)
+    return Known(design.mechanism, equations_in_doubles(design), numbers, chassis, driven)
 
 
 def local_places(design: Design, places: Mapping[str, Array], known: Known) -> dict[str, Vector]:
@@ -142,11 +142,6 @@ def order_of(point: Vector, order: int) -> Vector:
 def values_of(vector: Vector, count: int) -> Array:
     """Values of a vector of duals, (N, 3)."""
     return np.stack([np.broadcast_to(value_of(x), count) for x in vector], axis=-1)
-
-
-def floats_of(vector: Vector) -> Vector:
-    """Three fractions as doubles."""
-    return each(float, vector)
 
 
 def floats_of_jet(jet: Jet) -> tuple[float, float, float]:

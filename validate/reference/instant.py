@@ -11,17 +11,21 @@ from mpmath import mpf
 
 from validate.reference.certificate import Certificate, certify
 from validate.reference.design import Design, Known, ball_vector, values_only
-from validate.reference.effects.effect import Axes
-from validate.reference.effects.registry import EFFECTS, effects_of
-from validate.reference.errors import BadInputError, NoReferenceError, NotDecidedError
+from validate.reference.effects.at_pose import effects_at, provided
+from validate.reference.effects.registry import ANGLES, named
+from validate.reference.errors import NoReferenceError, NotDecidedError
 from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
 from validate.reference.jet import part_of
-from validate.reference.kinematics import body_turns, unknown_jets
+from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
 from validate.reference.krawczyk import newton
 from validate.reference.vectors import Vector, each, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
 Expected = Callable[[Sequence[arb]], bool]
+
+UNDEFINED = (
+    "cannot be proven in this pose, where it is 0/0, or jumps by a whole turn, or the wheel does not travel"
+)
 
 
 @dataclass(frozen=True)
@@ -37,8 +41,9 @@ class Instant:
         acceleration: every point, mm/s^2.
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
-        effects: by name, see `effects.registry`; one that is undefined (0/0, or at 180 deg) is left out,
-            and one whose role the mechanism lacks.
+        effects: those that were asked for, by name, see `effects.registry`; rad, mm, and these per mm.
+        left_out: those of them that there are none of, and why: the car lacks what they need, or they are
+            undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
@@ -53,6 +58,7 @@ class Instant:
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
     effects: Mapping[str, mpf]
+    left_out: Mapping[str, str]
     radius: mpf
     error_bound: Mapping[str, mpf]
     condition: float
@@ -64,14 +70,12 @@ class Instant:
 
         Raises:
             BadInputError: there is no such effect.
-            NoReferenceError: it is undefined in this pose.
+            NoReferenceError: it was not asked for, or there is none, see `left_out`.
         """
-        if name not in EFFECTS:
-            raise BadInputError("effect", name, f"one of {', '.join(EFFECTS)}")
+        named([name])
         if name not in self.effects:
             raise NoReferenceError(
-                f"the {name} angle cannot be proven in this pose: both sides are 0, or it is 180 deg, or the "
-                "mechanism does not say the axis that it needs; use the positions instead"
+                f"{name} {self.left_out.get(name, 'was not asked for: name it in `effects`')}"
             )
         return self.effects[name]
 
@@ -88,6 +92,7 @@ def prove_instant(
     expected: Expected,
     digits: int,
     working: int,
+    effects: Sequence[str] = ANGLES,
 ) -> Instant:
     """Refine, prove and differentiate at the present precision.
 
@@ -97,13 +102,16 @@ def prove_instant(
         expected: holds of the enclosure of the assembly that must come out.
         digits: what every returned number must have, relative to the greatest of its kind.
         working: digits of the arithmetic (25 more are carried), at least `digits`.
+        effects: names of those that are wanted.
     Raises:
         NotDecidedError: a proof fails with the present digits.
+        BadInputError: there is no such effect.
     """
     still = values_only(known)
     certificate = prove_pose(still, start, expected, digits, working)
     _require_others(design, certificate, still, digits)
-    solved = unknown_jets(certificate.enclosure, known)
+    inverse = inverse_jacobian(certificate.enclosure, still)
+    solved = unknown_jets(certificate.enclosure, known, inverse)
     points = known.points_of(solved)
 
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
@@ -145,13 +153,18 @@ def prove_instant(
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
-    axes = Axes.of({name: part_of(p, "value") for name, p in points.items()}, design, ball_vector)
-    balls = {name: effect.value(axes) for name, effect in effects_of(axes).items()}
-    effects = {name: ball for name, ball in balls.items() if ball.rad() < as_ball(Fraction(1, 10**digits))}
-    bounds["effects"] = max((ball.rad() for ball in effects.values()), default=arb(0))
+    wanted, has = named(effects), provided(design)
+    told = {
+        name: ball
+        for name, ball in effects_at(design, known, certificate.enclosure, inverse, effects).items()
+        if ball.rad() < unit ** wanted[name].power * as_ball(Fraction(1, 10**digits))
+    }
+    bounds["effects"] = max((ball.rad() for ball in told.values()), default=arb(0))
+    left_out = {name: effect.lacks(has) for name, effect in wanted.items() if name not in told}
     return Instant(
         **{quantity: _centres(balls) for quantity, balls in vectors.items()},
-        effects={name: centre_of(ball) for name, ball in effects.items()},
+        effects={name: centre_of(ball) for name, ball in told.items()},
+        left_out={name: f"needs {lack}" if lack else UNDEFINED for name, lack in left_out.items()},
         radius=mpf_from_fraction(radius, working),
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
         condition=certificate.condition,

@@ -6,40 +6,53 @@ from collections.abc import Callable, Sequence
 
 from flint import arb, arb_mat
 
-from validate.reference.design import Known, values_only
+from validate.reference.design import Known
 from validate.reference.errors import NotDecidedError
 from validate.reference.jet import Jet, part_of
 from validate.reference.krawczyk import column
 from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, times
 
+Solved = Callable[[Sequence[Scalar]], Sequence[Scalar]]
 
-def unknown_jets(enclosure: Sequence[arb], known: Known) -> list[Jet]:
+
+def unknown_jets(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> list[Jet]:
     """The unknowns with rates, as jets of balls, local.
 
     C(y(t), t) = 0 differentiated once and twice gives  C' y' = -C_t  and  C' y'' = -rest, the paper's
     eqs. (19) and (22). The right-hand sides are C evaluated with jets whose unknown part is zero.
 
-    Raises:
-        NotDecidedError: the Jacobian over the enclosure may be singular.
+    Args:
+        inverse: of the Jacobian over the enclosure.
     """
-    inverse = inverse_jacobian(enclosure, values_only(known))
-    return with_rates(enclosure, known, lambda rows: (-(inverse * column(rows))).entries())
+    return with_rates(enclosure, known, _solving(inverse))
 
 
-def with_rates(
-    values: Sequence[Scalar], known: Known, solved: Callable[[Sequence[Scalar]], Sequence[Scalar]]
-) -> list[Jet]:
-    """The same of any kind of number, where `solved` gives -C'^-1 times a column."""
+def unknown_rates(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> Sequence[arb]:
+    """The rates of the unknowns alone."""
+    return _rates(enclosure, known, _solving(inverse))
+
+
+def _solving(inverse: arb_mat) -> Solved:
+    return lambda rows: (-(inverse * column(rows))).entries()
+
+
+def _rates(values: Sequence[Scalar], known: Known, solved: Solved) -> Sequence[Scalar]:
     zero = values[0] * 0
     still = [Jet(value, zero, zero) for value in values]
-    velocity = solved([row.rate for row in known.residual(still)])
+    return solved([row.rate for row in known.residual(still)])
+
+
+def with_rates(values: Sequence[Scalar], known: Known, solved: Solved) -> list[Jet]:
+    """The same of any kind of number, where `solved` gives -C'^-1 times a column."""
+    zero = values[0] * 0
+    velocity = _rates(values, known, solved)
     moving = [Jet(value, rate, zero) for value, rate in zip(values, velocity, strict=True)]
     bend = solved([row.acceleration for row in known.residual(moving)])
     return [Jet(jet.value, jet.rate, second) for jet, second in zip(moving, bend, strict=True)]
 
 
 def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
-    """C'^-1 over the enclosure.
+    """C'^-1 over the enclosure; `known` with the values of the jets.
 
     Raises:
         NotDecidedError: the Jacobian over the enclosure may be singular.

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 from flint import ctx
 
 from validate.reference.design import Design, Driven
+from validate.reference.effects.registry import ANGLES
 from validate.reference.errors import BadInputError, InfeasibleError, NotDecidedError, SingularPoseError
 from validate.reference.exact import bits
 from validate.reference.instant import Instant, prove_instant
@@ -25,6 +26,7 @@ def solve_reference(
     inputs: Mapping[str, Sequence[object]],
     digits: int = 60,
     clearness: float = CLEAR,
+    effects: Sequence[str] = ANGLES,
 ) -> Instant:
     """Solve the car at one instant, with a proof of every digit.
 
@@ -40,6 +42,7 @@ def solve_reference(
         digits: digits of every number, relative to the greatest of its kind; 15 to 200.
         clearness: how far another assembly must be from the drawing, in parts of the mechanism's size; 0
             where the drawing is exact.
+        effects: names of those that are wanted, see `effects.registry`; each costs what it takes.
     Returns:
         The instant, mm, s, rad.
     Raises:
@@ -59,7 +62,7 @@ def solve_reference(
     >>> float(solve_reference(arm, {"travel": (210, 0, 0)}).position["wheel"][1])
     -280.0
     """
-    return next(instants_of(Design.from_plain(plain), (inputs,), digits, clearness))
+    return next(instants_of(Design.from_plain(plain), (inputs,), digits, clearness, effects))
 
 
 def instants_of(
@@ -67,11 +70,12 @@ def instants_of(
     inputs: Iterable[Mapping[str, Sequence[object]]],
     digits: int = 60,
     clearness: float = CLEAR,
+    effects: Sequence[str] = ANGLES,
 ) -> Iterator[Instant]:
     """A motion: the first instant reached from the drawing, each other one straight from the one before.
 
     Args:
-        inputs: of each instant, as for `solve_reference`; also digits, clearness.
+        inputs: of each instant, as for `solve_reference`; also digits, clearness, effects.
     Raises:
         BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
@@ -79,10 +83,12 @@ def instants_of(
     for one in inputs:
         driven = design.driven(one)
         here = reached(design, clearness, driven) if here is None else moved(design, here, driven)
-        yield proven(design, here, driven, digits)
+        yield proven(design, here, driven, digits, effects)
 
 
-def proven(design: Design, here: Assembly, driven: Driven, digits: int) -> Instant:
+def proven(
+    design: Design, here: Assembly, driven: Driven, digits: int, effects: Sequence[str] = ANGLES
+) -> Instant:
     """The instant of an assembly that a route has come to.
 
     Raises:
@@ -90,7 +96,7 @@ def proven(design: Design, here: Assembly, driven: Driven, digits: int) -> Insta
     """
     return with_enough_digits(
         lambda working: prove_instant(
-            design, design.known(driven), here.pose.unknown, here.pose.holds, digits, working
+            design, design.known(driven), here.pose.unknown, here.pose.holds, digits, working, effects
         ),
         digits,
     )

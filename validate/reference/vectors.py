@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from math import frexp
+from math import frexp, sqrt
 from typing import Any
+
+import numpy as np
+from flint import arb
 
 # A scalar is anything with + - *: a ball (arb), a Fraction, a Jet, a float or a numpy array. One text
 # of the equations serves them all.
@@ -41,6 +44,20 @@ def dot(a: Vector, b: Vector) -> Scalar:
 def cross(a: Vector, b: Vector) -> Vector:
     """a x b."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def root(number: Scalar) -> Scalar:
+    """The square root of a number of any kind; of a ball, of the part of it that is not negative."""
+    if isinstance(number, float | Fraction | int):
+        return sqrt(number)
+    if isinstance(number, np.ndarray):
+        return np.sqrt(number)
+    return number.nonnegative_part().sqrt() if isinstance(number, arb) else number.sqrt()
+
+
+def length(a: Vector) -> Scalar:
+    """|a|."""
+    return root(dot(a, a))
 
 
 def squares(*vectors: Vector) -> Scalar:

@@ -31,8 +31,9 @@ from validate.cli import main
 from validate.comparison.compare import Outcome, compare
 from validate.output.document import schema_text
 from validate.output.report import outcome_text
+from validate.reference.dual import angle
 from validate.reference.effects import registry as reference_registry
-from validate.reference.effects.effect import WHEEL, angle
+from validate.reference.effects.car import WHEEL
 from validate.reference.effects.effect import Effect as ReferenceEffect
 from validate.reference.vectors import dot
 
@@ -90,13 +91,13 @@ FLIP = AbsoluteEffect("rad", flip)
 
 # In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
 REFERENCES = (
-    ReferenceEffect("stub_axle", "mm", "outboard", WHEEL, lambda axes: dot(axes.wheel, axes.outboard)),
+    ReferenceEffect("stub_axle", "mm", "outboard", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard)),
     ReferenceEffect(
         "flip",
         "rad",
         "the wheel leans in",
-        WHEEL,
-        lambda axes: angle(dot(axes.wheel, axes.up), -dot(axes.wheel, axes.outboard)),
+        (WHEEL,),
+        lambda car: angle(dot(car.wheel.along, car.up), -dot(car.wheel.along, car.outboard)),
     ),
 )
 

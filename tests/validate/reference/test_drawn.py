@@ -13,7 +13,7 @@ from off_axis_cars import BASE, OffAxisCar, closing
 from plain_mechanisms import close_car, solve_car
 
 from validate.reference import Instant
-from validate.reference.effects.registry import EFFECTS
+from validate.reference.effects.registry import ANGLES
 from validate.reference.vectors import cross, dot, minus, plus, times
 
 UP, RIGHT = (0, 0, 1), (0, 1, 0)
@@ -92,7 +92,7 @@ def test_a_straight_strut_that_closes_is_the_same_under_both_closures() -> None:
             bound = drawn.error_bound[quantity] + collinear.error_bound[quantity]
             assert apart(getattr(drawn, quantity), getattr(collinear, quantity)) <= bound
         bound = drawn.error_bound["effects"] + collinear.error_bound["effects"]
-        assert set(drawn.effects) == set(collinear.effects) == set(EFFECTS)
+        assert set(drawn.effects) == set(collinear.effects) == set(ANGLES)
         assert all(abs(drawn.effects[n] - collinear.effects[n]) <= bound for n in drawn.effects)
 
 

@@ -11,32 +11,45 @@ import pytest
 from closed_forms import rational_turn, turned, unit
 from flint import arb
 from mpmath import mpf
-from reference_cars import CARS, ReferenceCar
+from reference_cars import CARS, Inputs, ReferenceCar
 
 from validate.reference import Instant
-from validate.reference.dual import Dual
-from validate.reference.effects.effect import STEERING, WHEEL, Axes, angle
+from validate.reference.dual import Dual, angle
+from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import Vector, cross, minus, plus, times
 
 FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
 
 
-def same(one: Instant, other: Instant) -> bool:
+NAMES = tuple(name for name in EFFECTS if not name.startswith("damper"))  # these cars have none
+
+
+def solved(car: ReferenceCar, inputs: Inputs) -> Instant:
+    return car.solve(inputs, effects=NAMES)
+
+
+def same(one: Instant, other: Instant, scale: int = 1, mirrored: bool = False) -> bool:
+    """Whether all numbers are the same, of a car that is `scale` times as large.
+
+    Where it is mirrored its slides are not, and go the other way.
+    """
     bound = one.error_bound["effects"] + other.error_bound["effects"] + mpf("1e-60")
-    assert set(one.effects) == set(other.effects) == set(EFFECTS)
-    return all(abs(one.effects[name] - other.effects[name]) <= bound for name in EFFECTS)
+    assert set(one.effects) == set(other.effects) == set(NAMES)
+    factors = {n: mpf(scale) ** -EFFECTS[n].power for n in NAMES}
+    factors |= {n: -factors[n] for n in NAMES if mirrored and n.endswith("_by_rack")}
+    return all(abs(one.effects[n] - other.effects[n] * factors[n]) <= scale * bound for n in NAMES)
 
 
 def test_effects_are_those_of_the_mirrored_car_on_the_other_side(car: ReferenceCar) -> None:
     points = {name: (x, -y, z) for name, (x, y, z) in car.points.items()}
     mirrored = replace(car, points=points, side="left" if car.side == "right" else "right")
     inputs = {**car.inputs, "rack": tuple(-x for x in car.inputs["rack"])}
-    assert same(car.solve(car.inputs), mirrored.solve(inputs))
+    assert same(solved(car, car.inputs), solved(mirrored, inputs), mirrored=True)
 
 
 def test_the_side_of_a_wheel_is_seen_by_effects_only(car: ReferenceCar) -> None:
-    one, other = (replace(car, side=side).solve(car.inputs) for side in ("left", "right"))
+    one, other = (solved(replace(car, side=side), car.inputs) for side in ("left", "right"))
     assert one.position == other.position
     assert not same(one, other)
 
@@ -46,14 +59,26 @@ def test_effects_turn_with_the_car(car: ReferenceCar, quaternion: tuple[int, int
     turn = rational_turn(quaternion)
     points = {name: turned(turn, p) for name, p in car.points.items()}
     there = replace(car, points=points, frame={name: turned(turn, v) for name, v in FRAME.items()})
-    assert same(car.solve(car.inputs), there.solve(car.inputs))
+    assert same(solved(car, car.inputs), solved(there, car.inputs))
 
 
-def test_effects_do_not_see_heave_size_or_motion(car: ReferenceCar) -> None:
-    plain = car.solve(car.inputs)
-    assert same(plain, car.solve({**car.still, "heave": (1000, 0, 0)}))
-    twice = replace(car, points={name: tuple(2 * x for x in p) for name, p in car.points.items()})
-    assert same(plain, twice.solve({**car.still, "rack": (2 * car.inputs["rack"][0], 0, 0)}))
+def test_effects_do_not_see_heave_or_motion_and_lengths_grow_with_the_car(car: ReferenceCar) -> None:
+    plain = solved(car, car.inputs)
+    assert same(plain, solved(car, {**car.still, "heave": (1000, 0, 0)}))
+    points = {name: tuple(3 * x for x in p) for name, p in car.points.items()}
+    thrice = replace(car, points=points, wheel_radius=3 * car.wheel_radius)
+    assert same(plain, solved(thrice, {**car.still, "rack": (3 * car.inputs["rack"][0], 0, 0)}), scale=3)
+
+
+def test_effects_do_not_see_where_the_origin_lies_but_for_the_middle_plane(car: ReferenceCar) -> None:
+    def moved(by: Vector) -> Instant:
+        return solved(replace(car, points={name: plus(p, by) for name, p in car.points.items()}), car.inputs)
+
+    plain, aside = moved((0, 0, 0)), moved((0, 100, 0))
+    assert same(plain, moved((-3000, 0, 70)))
+    assert not same(plain, aside)
+    height = aside.effect("roll_centre_height")
+    assert same(replace(plain, effects={**plain.effects, "roll_centre_height": height}), aside)
 
 
 # The steering axis of each linkage, from below; x rearward, y right, z up.
@@ -139,12 +164,16 @@ def test_a_level_spin_axis_that_points_forward_by_3_in_4_toes_in_by_its_angle() 
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
 
 
-def axes(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Axes:
+def car_with(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Car:
+    """A car whose axes start at the origin."""
+
     def balls(vector: tuple[float, ...]) -> Vector:
         return arb(vector[0]), arb(vector[1]), arb(vector[2])
 
-    lines = {WHEEL: balls(wheel), STEERING: balls(steering)}
-    return Axes(lines, balls(UP), balls(FORWARD), balls((0, out, 0)))
+    start = balls((0, 0, 0))
+    lines = {n: Line.between(start, balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))}
+    drawn = DrawnCar({}, lines, balls(UP), balls(FORWARD), balls((0, out, 0)), None, start)
+    return Car(drawn, lines, lines)
 
 
 @pytest.mark.parametrize("out", [-1, 1])
@@ -153,9 +182,9 @@ def test_a_wheel_leans_out_at_the_top_and_its_steering_axis_in(lean: float, out:
     sine, cosine = float(np.sin(lean)), float(np.cos(lean))
     # The spin axis of a wheel that leans out points down on its way out; the steering axis leads in on its
     # way up. Neither angle sees what is along the car.
-    turned = axes((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
+    turned = car_with((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
     for name in ("camber", "kingpin"):
-        assert float(EFFECTS[name].value(turned)) == pytest.approx(lean, abs=1e-15)
+        assert float(EFFECTS[name].evaluate(turned)) == pytest.approx(lean, abs=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from validate.reference import (
     NoReferenceError,
     instants_of,
 )
-from validate.reference.effects.registry import EFFECTS
+from validate.reference.effects.registry import OF_POSITIONS
 from validate.reference.exact import as_fraction
 from validate.reference.vectors import minus
 
@@ -82,8 +82,10 @@ def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) 
     hub_in_axis = {**table, "wheel_centre": table["strut_lower"]}
     reference = solve_car(hub_in_axis, STILL, closure="collinear")
     assert abs(reference.effects["kingpin"]) < 1
-    with pytest.raises(NoReferenceError, match="camber"):
+    with pytest.raises(NoReferenceError, match="camber cannot be proven in this pose"):
         reference.effect("camber")
+    with pytest.raises(NoReferenceError, match="travel was not asked for"):
+        reference.effect("travel")
 
 
 def test_a_polynomial_of_floats_is_exact() -> None:
@@ -109,8 +111,8 @@ def test_the_sine_has_all_its_digits_even_at_late_times(t: Any, digits: int) -> 
 
 def test_an_effect_that_does_not_exist_is_refused_and_the_message_names_those_that_do(table: Table) -> None:
     instant = solve_car(table, STILL, closure="collinear")
-    with pytest.raises(BadInputError, match="allowed is one of " + ", ".join(EFFECTS)):
-        instant.effect("scrub_radius")
+    with pytest.raises(BadInputError, match="allowed is one of " + ", ".join(OF_POSITIONS)):
+        instant.effect("scrub")
 
 
 def test_an_arm_about_an_upright_axis_cannot_be_driven_by_its_height(table: Table) -> None:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from types import SimpleNamespace
 
 import pytest
 from flint import arb, ctx
 from mpmath import mpf
 from reference_cars import ReferenceCar
 
-from validate.reference import NotDecidedError, instant
+from validate.reference import NotDecidedError
+from validate.reference.effects.effect import Effect
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction, bits
 from validate.reference.instant import prove_instant, prove_pose
 from validate.reference.route import CLEAR, reached
@@ -67,10 +68,9 @@ def test_an_effect_that_has_not_the_digits_asked_for_is_left_out(
     car: ReferenceCar, size: float, given: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ball = arb(2, size * 1e-30)
-    monkeypatch.setattr(
-        instant, "effects_of", lambda axes: {"made_up": SimpleNamespace(value=lambda _: ball)}
-    )
-    found = car.solve(car.still, digits=30)
+    made_up = Effect("made_up", "rad", "always", (), lambda _: ball)
+    monkeypatch.setitem(EFFECTS, made_up.name, made_up)
+    found = car.solve(car.still, digits=30, effects=[made_up.name])
     assert ("made_up" in found.effects) == given
     if given:
         assert found.effects["made_up"] == 2

@@ -1,42 +1,54 @@
-"""The effects that the reference knows: angles of the wheel's spin axis and of the steering axis."""
+"""The effects that the reference knows, by the names of their numbers."""
 
 from __future__ import annotations
 
-from validate.reference.effects.effect import STEERING, WHEEL, Axes, Effect, angle
-from validate.reference.vectors import Scalar, dot
+from collections.abc import Collection, Iterable
 
+from validate.reference.effects import damper, roll_centre, steering_axis, wheel_angles, wheel_travel
+from validate.reference.effects.effect import RACK, TRAVEL, Effect
+from validate.reference.effects.gradients import by_rack, by_travel
+from validate.reference.errors import BadInputError
 
-def _camber(axes: Axes) -> Scalar:
-    """atan2(-w . up, w . outboard), eq. (17) of the paper: the lean of the spin axis w in the front view."""
-    return angle(-dot(axes.wheel, axes.up), dot(axes.wheel, axes.outboard))
-
-
-def _kingpin(axes: Axes) -> Scalar:
-    """atan2(-a . outboard, a . up), eq. (16): the lean of the steering axis a in the front view."""
-    return angle(-dot(axes.steering, axes.outboard), dot(axes.steering, axes.up))
-
-
-def _toe(axes: Axes) -> Scalar:
-    """atan2(w . forward, w . outboard): how far w points forward in the plan view (ISO 8855, 7.1.6)."""
-    return angle(dot(axes.wheel, axes.forward), dot(axes.wheel, axes.outboard))
-
-
-def _caster(axes: Axes) -> Scalar:
-    """atan2(a . rearward, a . up), rearward = -forward: the lean of a in the side view."""
-    return angle(-dot(axes.steering, axes.forward), dot(axes.steering, axes.up))
-
+_OF_POSITIONS = (*wheel_angles.NUMBERS, *wheel_travel.NUMBERS, *steering_axis.NUMBERS, *damper.NUMBERS)
 
 EFFECTS: dict[str, Effect] = {
     effect.name: effect
     for effect in (
-        Effect("camber", "rad", "the wheel leans out at the top", WHEEL, _camber),
-        Effect("kingpin", "rad", "the steering axis leans in at the top", STEERING, _kingpin),
-        Effect("toe", "rad", "the front edge of the wheel is nearer the car's middle", WHEEL, _toe),
-        Effect("caster", "rad", "the steering axis leans rearward at the top", STEERING, _caster),
+        *_OF_POSITIONS,
+        *(gradient(effect) for effect in _OF_POSITIONS for gradient in (by_travel, by_rack)),
+        *roll_centre.NUMBERS,
     )
 }
 
+ANGLES = tuple(effect.name for effect in wheel_angles.NUMBERS)
+"""Those that are computed where nobody says which."""
 
-def effects_of(axes: Axes) -> dict[str, Effect]:
-    """Those whose axis the mechanism says."""
-    return {name: effect for name, effect in EFFECTS.items() if effect.axis in axes.lines}
+OF_POSITIONS = tuple(effect.name for effect in _OF_POSITIONS)
+"""Those that positions tell; the others take a derivative of the pose."""
+
+_OF_MOTION = tuple(effect.name for effect in roll_centre.NUMBERS)
+
+
+def named(names: Iterable[str]) -> dict[str, Effect]:
+    """Effects by name.
+
+    Raises:
+        BadInputError: there is no such effect.
+    """
+    wanted = tuple(names)
+    for name in wanted:
+        if name not in EFFECTS:
+            ways = f"each of these also with _{TRAVEL} or _{RACK}; {', '.join(_OF_MOTION)}"
+            raise BadInputError("effect", name, f"one of {', '.join(OF_POSITIONS)}, {ways}")
+    return {name: EFFECTS[name] for name in wanted}
+
+
+def available(names: Iterable[str], has: Collection[str]) -> dict[str, Effect]:
+    """Those of some effects that a car can have.
+
+    Args:
+        has: what it has, of `effect.NEEDS`.
+    Raises:
+        BadInputError: there is no such effect.
+    """
+    return {name: effect for name, effect in named(names).items() if not effect.lacks(has)}

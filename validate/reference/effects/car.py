@@ -1,0 +1,174 @@
+"""A car as its effects see it: lines through points that roles name, in whatever kind of number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, times
+
+WHEEL, STEERING, DAMPER = LINES = ("wheel_axis", "steering_axis", "damper")
+KNUCKLE, RADIUS = "knuckle", "wheel_radius"
+
+
+@dataclass(frozen=True)
+class Line:
+    """From one point to another.
+
+    Attributes:
+        along: end - start; whoever knows it more exactly than both points says it apart.
+    """
+
+    start: Vector
+    end: Vector
+    along: Vector
+
+    @classmethod
+    def between(cls, start: Vector, end: Vector) -> Line:
+        """Of two points."""
+        return cls(start, end, minus(end, start))
+
+
+Lines = Mapping[str, Line]
+Frame = tuple[Vector, Vector]
+
+
+def ends_of(roles: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
+    """The two points of each of `LINES` that roles name: of the wheel's spin axis its inner point and the
+    wheel centre, of the steering axis its lower and its upper point, of the damper its ends.
+    """
+    return {role: (roles[role][0], roles[role][1]) for role in LINES if role in roles}
+
+
+def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) -> dict[str, Line]:
+    """The lines through these points."""
+    return {role: Line.between(points[start], points[end]) for role, (start, end) in ends.items()}
+
+
+@dataclass(frozen=True)
+class DrawnCar:
+    """What effects know of a car beside its pose; lengths in any unit, the same in all.
+
+    Attributes:
+        ends: of each line the points that its role names.
+        lines: as drawn, neither closed nor turned.
+        up: unit vector.
+        forward: unit vector, up x right.
+        outboard: unit vector, away from the car's middle.
+        wheel_radius: None if it is not given.
+        origin: where the user's coordinates have theirs, a point of the car's middle plane.
+    """
+
+    ends: Mapping[str, tuple[str, str]]
+    lines: Lines
+    up: Vector
+    forward: Vector
+    outboard: Vector
+    wheel_radius: Scalar | None
+    origin: Vector
+
+    @classmethod
+    def of(
+        cls,
+        roles: Mapping[str, Any],
+        points: Mapping[str, Vector],
+        up: Vector,
+        right: Vector,
+        side: int,
+        wheel_radius: Scalar | None,
+        origin: Vector,
+        number: Callable[[Fraction], Scalar],
+    ) -> DrawnCar:
+        """A drawing.
+
+        Args:
+            roles: by name, two points each.
+            points: as drawn.
+            side: 1 where outboard is `right`, -1 where it is the opposite.
+            number: these numbers in the kind that poses have.
+        """
+        ends = ends_of(roles)
+        lines = lines_of(ends, points)
+        return cls(
+            ends=ends,
+            lines={
+                n: Line(each(number, line.start), each(number, line.end), each(number, line.along))
+                for n, line in lines.items()
+            },
+            up=each(number, up),
+            forward=each(number, cross(up, right)),
+            outboard=each(number, times(right, side)),
+            wheel_radius=None if wheel_radius is None else number(wheel_radius),
+            origin=each(number, origin),
+        )
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """The points of its lines."""
+        return tuple(dict.fromkeys(point for ends in self.ends.values() for point in ends))
+
+
+@dataclass(frozen=True)
+class Car:
+    """A pose.
+
+    A displacement of the chassis is in none of its lines.
+
+    Attributes:
+        drawn: the car that it is a pose of.
+        lines: with the chassis turned.
+        on_chassis: before its turns.
+        knuckle: two vectors fixed in the wheel's carrier, with the chassis turned; None where nobody says it.
+    """
+
+    drawn: DrawnCar
+    lines: Lines
+    on_chassis: Lines
+    knuckle: Frame | None = None
+
+    @property
+    def up(self) -> Vector:
+        """Unit vector; as `forward` and `outboard` it does not turn with the chassis."""
+        return self.drawn.up
+
+    @property
+    def forward(self) -> Vector:
+        """Unit vector, up x right."""
+        return self.drawn.forward
+
+    @property
+    def outboard(self) -> Vector:
+        """Unit vector, away from the car's middle."""
+        return self.drawn.outboard
+
+    @property
+    def wheel(self) -> Line:
+        """The wheel's spin axis; its end is the wheel centre."""
+        return self.lines[WHEEL]
+
+    @property
+    def steering(self) -> Line:
+        """The steering axis, from below."""
+        return self.lines[STEERING]
+
+    @property
+    def damper(self) -> Line:
+        """From one end of the damper to the other."""
+        return self.lines[DAMPER]
+
+    @property
+    def contact(self) -> Vector:
+        """The contact point, see `contact_of`."""
+        return contact_of(self.drawn, self.wheel)
+
+
+def contact_of(drawn: DrawnCar, wheel: Line) -> Vector:
+    """The lowest point of a thin disc about a spin axis a: c = W - R m / |m|, m = up (a . a) - a (a . up).
+
+    That is the part of `up` in the disc's plane, times a . a.
+    """
+    a, up = wheel.along, drawn.up
+    across = minus(times(up, dot(a, a)), times(a, dot(a, up)))
+    return minus(wheel.end, times(across, drawn.wheel_radius / length(across)))
