@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
+from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.route import CLEAR
 
 Array = NDArray[np.float64]
@@ -59,7 +61,7 @@ def reference_instant(
     Raises:
         NoReferenceError: there is no pose, or none can be proven.
     """
-    return next(instants_of(design_of(scene), [inputs], digits, _clearness(exact_sides)))
+    return next(instants_of(design_of(scene), [inputs], digits, _clearness(exact_sides), effects_of(scene)))
 
 
 def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = False) -> list[Instant]:
@@ -69,7 +71,20 @@ def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = F
         NoReferenceError: an instant has no pose, or none can be proven.
     """
     inputs = (inputs_at(scene, time) for time in times)
-    return list(instants_of(design_of(scene), inputs, DIGITS, _clearness(exact_sides)))
+    return list(instants_of(design_of(scene), inputs, DIGITS, _clearness(exact_sides), effects_of(scene)))
+
+
+def effects_of(scene: Scene) -> tuple[str, ...]:
+    """The numbers of the car that the reference is asked for: what the scene asks for, and the angles."""
+    asked = [name for names in _numbers_of_the_car(scene).values() for name in names]
+    return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name in EFFECTS)
+
+
+def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """By quantity, in which angles are though nobody asks for them."""
+    asked = {q: names for q, names in asked_numbers(scene).items() if QUANTITIES[q].of == "car"}
+    quantity = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
+    return asked | {quantity: tuple(dict.fromkeys((*ANGLES, *asked.get(quantity, ()))))}
 
 
 def reference_solution(scene: Scene, exact_sides: bool = False) -> Solution:
@@ -92,15 +107,17 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
     its intervals about 0 are some 1e-170. An angle that one of the instants leaves out is left out.
     """
     times, first = scene.instants, instants[0]
-    angles = [name for name in first.effects if all(name in i.effects for i in instants)]
+    told = [name for name in first.effects if all(name in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
         "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
-        "wheel": {n: np.array([float(i.effects[n]) for i in instants]) for n in angles},
     }
+    for quantity, names in _numbers_of_the_car(scene).items():
+        there = [name for name in names if name in told]
+        numbers[quantity] = {n: np.array([float(i.effects[n]) for i in instants]) for n in there}
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
     swept = {
         q: {n: np.where(np.abs(array) > dust[q], array, 0.0) for n, array in arrays.items()}
@@ -119,13 +136,14 @@ def scales(numbers: Numbers) -> dict[str, float]:
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
     push = hardest + fastest * (fastest / size)
+    of_the_car = {"rad": 1.0, "mm": size, "rad/mm": 1.0 / size, "mm/mm": 1.0}
     return {
+        **{q.name: of_the_car[q.unit] for q in QUANTITIES.values() if q.of == "car"},
         "position": float(np.abs(corners).max()),
         "velocity": fastest,
         "acceleration": push,
         "angular_velocity": fastest / size,
         "angular_acceleration": push / size,
-        "wheel": 1.0,
     }
 
 

@@ -21,4 +21,4 @@ def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 def per_second(quantity: str) -> int:
     """How many times a quantity is divided by a time: 1 of a rate, 2 of an acceleration, by its unit."""
-    return {"": 0, "s": 1, "s^2": 2}[QUANTITIES[quantity].unit.partition("/")[2]]
+    return {"s": 1, "s^2": 2}.get(QUANTITIES[quantity].unit.partition("/")[2], 0)

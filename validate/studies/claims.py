@@ -79,7 +79,8 @@ def _held(car: RandomScene, formulation_name: str) -> list[Row]:
 
 
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
-    return [instant.effects[name]] if quantity == "wheel" else list(getattr(instant, quantity)[name])
+    of_the_car = QUANTITIES[quantity].of == "car"
+    return [instant.effects[name]] if of_the_car else list(getattr(instant, quantity)[name])
 
 
 def _distance(found: float, exact: Any) -> float:

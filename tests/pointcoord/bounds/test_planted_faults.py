@@ -185,9 +185,6 @@ FAULTS: list[tuple[Callable[..., Any], str, str]] = [
     (EnclosedPoses.reported, " + self.added[derivative]", ""),
     (knuckle_rates.body_rate_error, "s - cross(pull, cross(pull, edge))", "s"),
     (knuckle_rates.body_rate_error, "along + across", "along"),
-    (enclosure.quotient, "size * s", "0.1 * size * s"),
-    (enclosure.quotient, "(r + size", "(0.1 * r + size"),
-    (enclosure.root, "square.radius / least", "0.1 * square.radius / least"),
     (enclosure.angle_error, "sine * c - cosine * s", "sine * c"),
 ]
 

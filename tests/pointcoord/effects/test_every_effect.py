@@ -302,7 +302,7 @@ def test_an_angle_along_any_other_direction_is_found(name: str, direction: str, 
     """A wrong sign or a swapped axis in the data of an angle, which its own bound goes along with."""
     mechanism, angle = mechanism_of("double-wishbone"), ANGLES[name]
     car = moving_car(np.random.default_rng(2), mechanism)
-    (effect,) = (e for e in EFFECTS.values() if isinstance(e, CarNumbers) and angle in e.numbers)
+    effect = next(e for e in EFFECTS.values() if isinstance(e, CarNumbers) and angle in e.numbers)
     same = getattr(angle, part) == direction
     other = replace(angle, **{part: direction})
     changed = replace(effect, numbers=tuple(other if n is angle else n for n in effect.numbers))

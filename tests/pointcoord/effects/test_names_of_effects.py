@@ -71,6 +71,8 @@ def test_no_other_file_names_an_effect_or_what_it_gives(path: Path) -> None:
 def test_the_file_of_an_effect_names_no_other_effect(path: Path) -> None:
     mine = EFFECTS[OWN[path]]
     own = {mine.name, *(quantity.name for quantity in mine.quantities), *(mine.names or ())}
+    # What another gives alone it may give among others.
+    own |= {f"pointcoord.effects.{other.stem}" for other, name in OWN.items() if name in own}
     assert {name for _, name in named(path)} <= own
 
 

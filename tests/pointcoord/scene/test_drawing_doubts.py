@@ -204,7 +204,7 @@ def test_a_misspelt_point_and_a_short_one_are_told(make_scene: Callable[..., Sce
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"effects": ["camber"]}, "no effect is called 'camber' ('wheel_angles' gives it)"),
+        ({"effects": ["kingpin"]}, "no effect is called 'kingpin' ('wheel_angles' gives it)"),
         ({"effects": ["Toe"]}, "no effect is called 'Toe' (did you mean 'toe'?)"),
         ({"mechanism": {"type": "double wishbone"}}, "(did you mean 'double_wishbone'?)"),
         (
