@@ -31,7 +31,7 @@ precision, and its derivatives follow by Leibniz' rule.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,8 @@ class EnclosedPoses:
         in_chassis: places before these turns.
         added: by time derivative, what reporting a point adds to it, (N, 3), mm and s.
         powers: of the unit of time, s^d for d = 0, 1, 2, each (N,).
+        slopes: by way, the derivatives of places by its input, after the turns of the chassis and before, in
+            units per rad or mm; of the ways that effects take.
     """
 
     mechanism: Mechanism
@@ -72,6 +74,7 @@ class EnclosedPoses:
     in_chassis: Points
     added: Sequence[Enclosed]
     powers: Sequence[Array]
+    slopes: Mapping[str, tuple[Points, Points]] = field(default_factory=dict)
 
     def reported(self, name: str, derivative: int) -> Enclosed:
         """What is reported of a point, or of its time derivative, (N, 3), mm per s^d."""

@@ -7,16 +7,17 @@ error bound needs no derivation of its own.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.arithmetic import S
+from pointcoord.effects.arithmetic import Dual, P, S
 from pointcoord.effects.corner import Corner, View
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -188,6 +189,31 @@ def corner_of(poses: Poses) -> Corner[Array]:
     return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn))
 
 
+def corner_of_slopes(poses: Poses, way: str) -> Corner[Dual[Any]]:
+    """The same with derivatives along a way."""
+    corner, (seen, in_chassis) = corner_of(poses), poses.slopes[way]
+
+    def dual(view: View[Array], slopes: Mapping[str, Array] | None) -> View[Dual[Any]]:
+        points = {
+            name: Dual(place, np.zeros_like(place) if slopes is None else slopes[name])
+            for name, place in view.points.items()
+            if slopes is None or name in slopes
+        }
+        return with_slopes(view, points, np.zeros_like)
+
+    return Corner(dual(corner.seen, seen), dual(corner.chassis, in_chassis), dual(corner.drawn, None))
+
+
+def with_slopes(view: View[P], points: Mapping[str, Dual[P]], zero: Callable[[P], P]) -> View[Dual[Any]]:
+    """A view of points with derivatives; directions and the radius have none."""
+
+    def along(vector: Dual[P], direction: Direction) -> Dual[P]:
+        return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
+
+    up, outboard, radius = (Dual(part, zero(part)) for part in (view.up, view.outboard, view.radius))
+    return View(view.topology, points, along, up, outboard, radius)
+
+
 def _beside(place: Array, dimensions: int) -> Array:
     """Drawn places of a batch, (..., 3), in a shape that broadcasts with those at its instants."""
     more = dimensions - place.ndim if place.ndim > 1 else 0
@@ -206,3 +232,21 @@ def enclosed_corner(poses: EnclosedPoses) -> Corner[Enclosed]:
     vectors = mechanism.drawing.vectors
     drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
     return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn))
+
+
+def enclosed_corner_of_slopes(poses: EnclosedPoses, way: str) -> Corner[Dual[Any]]:
+    """The same with derivatives along a way, units per rad or mm."""
+    corner, (seen, in_chassis) = enclosed_corner(poses), poses.slopes[way]
+
+    def dual(view: View[Enclosed], slopes: Mapping[str, Enclosed] | None) -> View[Dual[Any]]:
+        points = {
+            name: Dual(place, _no_slope(place) if slopes is None else slopes[name])
+            for name, place in view.points.items()
+        }
+        return with_slopes(view, points, _no_slope)
+
+    return Corner(dual(corner.seen, seen), dual(corner.chassis, in_chassis), dual(corner.drawn, None))
+
+
+def _no_slope(part: Enclosed) -> Enclosed:
+    return Enclosed.of(np.zeros_like(part.high))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -63,6 +63,8 @@ class Poses:
         in_chassis: the positions before these turns; the same where nothing turns.
         added: by time derivative, what reporting adds to every point: the user's origin and what the chassis
             does, (..., N, 3), mm per s^d; None where that is zero.
+        slopes: by way, the derivatives of positions by its input, after the turns of the chassis and before,
+            (N, 3), mm per rad or mm; of the ways that effects take.
     """
 
     mechanism: Mechanism
@@ -70,6 +72,7 @@ class Poses:
     states: Sequence[Mapping[str, Array]]
     in_chassis: Mapping[str, Array]
     added: Sequence[Array | None]
+    slopes: Mapping[str, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -104,6 +107,11 @@ class Effect(ABC):
     def lines(self) -> tuple[str, ...]:
         """The axes of the topology that it is seen on: wheel_axis, steering_axis."""
         return ()
+
+    @property
+    def way(self) -> str:
+        """Along which way it takes the derivative of positions by an input; empty if it takes none."""
+        return ""
 
     @property
     def reports_states(self) -> bool:

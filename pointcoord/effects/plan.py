@@ -38,6 +38,11 @@ class Plan:
         """Highest time derivative that is solved for, of any point."""
         return max(effect.derivative for effect in self.computed)
 
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """The ways along which derivatives of positions by an input are solved for."""
+        return tuple(dict.fromkeys(effect.way for effect in self.computed if effect.way))
+
     def reported(self, topology: Topology) -> tuple[str, ...]:
         """The points whose states are reported, in the topology's order."""
         return tuple(name for name in topology.points if name not in self.unreported)

@@ -11,6 +11,7 @@ from pointcoord.effects.car_number import CarNumber, CarNumbers
 from pointcoord.effects.caster import CASTER
 from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
+from pointcoord.effects.gradients import WAYS, Gradient, Gradients
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
 from pointcoord.effects.steering_axis import STEERING_AXIS
@@ -22,27 +23,24 @@ from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 ALWAYS: tuple[Effect, ...] = (POSITION,)
 """What every motion reports."""
 
+_ANGLES_AND_DIMENSIONS = (CAMBER, WHEEL_ANGLES, TOE, CASTER, WHEEL_TRAVEL, STEERING_AXIS, DAMPER)
+
 EFFECTS: Mapping[str, Effect] = {
     effect.name: effect
     for effect in (
         VELOCITY,
         ACCELERATION,
         KNUCKLE_RATES,
-        CAMBER,
-        WHEEL_ANGLES,
-        TOE,
-        CASTER,
-        WHEEL_TRAVEL,
-        STEERING_AXIS,
-        DAMPER,
+        *_ANGLES_AND_DIMENSIONS,
+        *(Gradients.of(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),
     )
 }
 """What a scene may list, by name."""
 
-NUMBERS_OF_THE_CAR: Mapping[str, CarNumber] = {
+NUMBERS_OF_THE_CAR: Mapping[str, CarNumber | Gradient] = {
     number.name: number
     for effect in EFFECTS.values()
-    if isinstance(effect, CarNumbers)
+    if isinstance(effect, CarNumbers | Gradients)
     for number in effect.numbers
 }
 """Numbers of a car, by their names."""

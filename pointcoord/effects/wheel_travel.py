@@ -31,10 +31,11 @@ def recession(corner: Corner[S]) -> S:
     return corner.seen.along(corner.moved(), "rearward")
 
 
+TRAVEL = Length("travel", "travel of the wheel centre", "up", travel, with_contact=False)
 WHEEL_TRAVEL = CarNumbers.of(
     "wheel_travel",
     "travel, half-track change and recession of the wheel, mm",
-    Length("travel", "travel of the wheel centre", "up", travel, with_contact=False),
+    TRAVEL,
     Length("contact_travel", "travel of the contact point", "up", contact_travel),
     Length("half_track_change", "half-track change", "where the contact point goes out", half_track_change),
     Length(

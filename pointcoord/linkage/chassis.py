@@ -74,6 +74,11 @@ class ChassisMotion:
         """Whether one of the inputs turns the car."""
         return not self.functions.keys().isdisjoint(self.centres)
 
+    @property
+    def turning(self) -> list[str]:
+        """The inputs that turn the car, in order."""
+        return [name for name in self.centres if name in self.functions]
+
     def states(self, instants: Array, derivatives: int) -> list[Array]:
         """Displacement and its time derivatives, each (..., N, 3), mm; empty if nothing displaces the car.
 
@@ -122,8 +127,8 @@ class ChassisMotion:
         Raises:
             InputOutOfRange: as `states`.
         """
-        names = [name for name in self.centres if name in self.functions]
-        return self.turned_by({n: list(self.law(n, instants, len(states) - 1)) for n in names}, states)
+        laws = {name: list(self.law(name, instants, len(states) - 1)) for name in self.turning}
+        return self.turned_by(laws, states)
 
     def turned_by(
         self, laws: Mapping[str, Sequence[Array]], states: Sequence[Mapping[str, Array]]

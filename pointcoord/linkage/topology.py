@@ -97,6 +97,11 @@ class Topology:
         """The outer point of the wheel's axis; empty without one."""
         return self.wheel_axis[1] if self.wheel_axis else ""
 
+    def driven_along(self, way: str) -> tuple[str, ...]:
+        """The driven inputs that are the travel of a slide, `by_rack`, or those that are not, `by_travel`."""
+        steering = {drive.input for drive in self.drives if drive.pushes}
+        return tuple(name for name in self.required_inputs if (name in steering) == (way == "by_rack"))
+
     @cached_property
     def required_inputs(self) -> tuple[str, ...]:
         """Inputs that must be given."""

@@ -521,6 +521,9 @@ def kinematic_map(
     if not (number and np.isfinite(tolerance) and tolerance > 0.0):
         raise MapError("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
     domain.known_at(np.stack(domain.ends))
+    for effect in plan_effects(scene.effects).computed:
+        if effect.way:
+            raise MapError("effects", f"has {effect.name!r}", "effects without derivatives by an input")
     closed = close_drawing(mechanism)
     require_the_drawn_car(scene, closing(mechanism, closed.y))
     cover = flood_from_drawing(domain, domain.order_for(tolerance), Limits(tolerance), closed, MOST)

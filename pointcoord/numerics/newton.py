@@ -198,3 +198,13 @@ def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Arra
     constant = 2.0 * omega * q / (room * room)
     rest = 2.0 * q / (room * (1.0 + np.sqrt(1.0 - constant)))
     return np.where((room > 0.0) & (constant < 1.0), rest, np.inf)
+
+
+def implicit_rate(
+    system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float
+) -> Array:
+    """Solve C_u u^(d) = -(C_w w^(d) + quadratic term) for a derivative of poses y, (N, size)."""
+    rate = np.zeros_like(y)
+    rate[:, system.unknowns :] = driven
+    rate[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, rate) + quadratic)
+    return rate

@@ -393,7 +393,8 @@ class CloseInstants:
         for low in range(0, len(points), BLOCK):
             here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
             states = self.states.states(here, block)
-            readout.compute(states, states[0], readout.added(here), block)
+            slopes = readout.slopes(here, lambda here=here: self.states.coordinates(here, 0)[0])
+            readout.compute(states, states[0], readout.added(here), block, slopes)
         return values[: readout.table.first_still]
 
     @cached_property

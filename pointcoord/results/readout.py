@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,10 +15,12 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.slopes import input_slopes, point_slopes
 from pointcoord.results.samples import Channel, Samples
 from pointcoord.results.table import Table, triples, vectors
 
 Array = NDArray[np.float64]
+Slopes = Mapping[str, tuple[Mapping[str, Array], Mapping[str, Array]]]
 States = Sequence[Mapping[str, Array]]
 """For each time derivative, the points' states of shape (..., N, 3), mm, in the chassis' frame, from the
 mechanism's origin."""
@@ -78,19 +80,23 @@ class Readout:
         }
         return Samples(times.copy(), numbers)
 
-    def complete(self, times: Array, states: States, rows: Array) -> None:
+    def complete(
+        self, times: Array, states: States, rows: Array, coordinates: Callable[[], Array] | None = None
+    ) -> None:
         """Compute the numbers that are made of states, and add to those what reporting adds.
 
         Args:
+            coordinates: y, (N, size), for derivatives by an input; asked for where an effect takes one.
             rows: a table or some columns of one, shape (..., height, N), with the states in their places.
         """
         in_chassis = states[0]
+        slopes = {} if coordinates is None else self.slopes(times, coordinates)
         if self.chassis.turns:
             states = self.chassis.turned(times, states)
             for first, (derivative, point) in self.table.states:
                 vectors(rows, first)[...] = states[derivative][point]
         added = self.added(times)
-        self.compute(states, in_chassis, added, rows)
+        self.compute(states, in_chassis, added, rows, slopes)
         for derivative in self.table.reported:
             more = added[derivative]
             if more is not None:
@@ -106,21 +112,41 @@ class Readout:
         return self.plan.unreported if computed else ()
 
     def compute(
-        self, states: States, in_chassis: Mapping[str, Array], added: Sequence[Array | None], rows: Array
+        self,
+        states: States,
+        in_chassis: Mapping[str, Array],
+        added: Sequence[Array | None],
+        rows: Array,
+        slopes: Slopes,
     ) -> None:
         """Compute the numbers that are made of states.
 
         Args:
             in_chassis: positions before the turns of the chassis.
+            slopes: as `slopes` gives them.
             added: what reporting adds to these.
             rows: as of `complete`.
         """
         if self.table.computed:
-            poses = Poses(self.mechanism, self.axes, states, in_chassis, added)
+            poses = Poses(self.mechanism, self.axes, states, in_chassis, added, slopes)
             for effect in self.table.computed:
                 for quantity, arrays in effect.evaluate(poses).items():
                     for name, array in arrays.items():
                         self.table.put(rows, quantity, name, array)
+
+    def slopes(self, times: Array, coordinates: Callable[[], Array]) -> Slopes:
+        """By way, the derivatives of positions by its input, after the turns of the chassis and before."""
+        if not self.plan.ways:
+            return {}
+        y, found = coordinates(), {}
+        laws = {name: self.chassis.law(name, times, 0)[0] for name in self.chassis.turning}
+        held = {name: [law, np.zeros_like(law)] for name, law in laws.items()}
+        places = {name: place * self.mechanism.unit for name, place in self.mechanism.places(y).items()}
+        for way in self.plan.ways:
+            (name, *_) = (*self.mechanism.topology.driven_along(way), "")
+            slopes = point_slopes(self.mechanism, y, input_slopes(self.mechanism, y, name))
+            found[way] = self.chassis.turned_by(held, [places, slopes])[1], slopes
+        return found
 
     def added(self, times: Array) -> tuple[Array | None, ...]:
         """By time derivative, what reporting adds to every point; None where that is zero."""

@@ -94,7 +94,10 @@ class SolvedScene:
         return None
 
     def _fill_block(self, times: Array, rows: Array) -> None:
-        self.readout.complete(times, self.states.states(times, rows), rows)
+        def coordinates() -> Array:
+            return self.states.coordinates(times, 0)[0]
+
+        self.readout.complete(times, self.states.states(times, rows), rows, coordinates)
 
     def doubts(self, times: Array) -> dict[str, Array]:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""

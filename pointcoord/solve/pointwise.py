@@ -37,7 +37,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.newton import implicit_rate, newton_refine
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
@@ -416,21 +416,13 @@ def with_rates(
         some = slice(low, low + BLOCK)
         # Newton's factors are of the place before its last step, which may be farther off than the bound.
         factors = factorise(system.jacobian(y[some]))
-        states[1][some] = _rate(system, factors, y[some], known[some, 1], 0.0)
+        states[1][some] = implicit_rate(system, factors, y[some], known[some, 1], 0.0)
         if derivative >= 2:
             term = square_term(system, states[1][some])
-            states[2][some] = _rate(system, factors, y[some], 2.0 * known[some, 2], term)
+            states[2][some] = implicit_rate(system, factors, y[some], 2.0 * known[some, 2], term)
     if derivative:
         work = work + Work(factorisations=len(times))
     rest = np.zeros(len(times)) if left is None else left
     solves = derivative * len(times)
     work = work + Work(rate_solves=solves, unknowns_solved=solves * system.unknowns)
     return Solved(times, tuple(states), rest, work)
-
-
-def _rate(system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float) -> Array:
-    """Solve C_u u^(d) = -(C_w w^(d) + quadratic term)."""
-    rate = np.zeros_like(y)
-    rate[:, system.unknowns :] = driven
-    rate[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, rate) + quadratic)
-    return rate

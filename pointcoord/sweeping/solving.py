@@ -114,9 +114,12 @@ class Course:
             which = np.array(own) if len(laws) > 1 else None
         else:
             laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
-        part = laws[0].mechanism
-        axes = part.axes
-        return cls(designs, plan_effects(laws[0].effects, None, laws[0].unreported_points), axes, laws, which)
+        plan = plan_effects(laws[0].effects, None, laws[0].unreported_points)
+        for effect in plan.computed:
+            if effect.way:
+                problem = f"has {effect.name!r}, and a sweep takes no derivatives by an input"
+                raise SceneError(laws[0].title or "scene", "effects", problem, "effects without gradients")
+        return cls(designs, plan, laws[0].mechanism.axes, laws, which)
 
     @property
     def scene(self) -> Scene:
