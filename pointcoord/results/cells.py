@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import accumulate, pairwise
 
 import numpy as np
@@ -393,9 +393,12 @@ class CloseInstants:
         for low in range(0, len(points), BLOCK):
             here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
             states = self.states.states(here, block)
-            slopes = readout.slopes(here, lambda here=here: self.states.coordinates(here, 0)[0])
+            slopes = readout.slopes(here, partial(self._coordinates, here))
             readout.compute(states, states[0], readout.added(here), block, slopes)
         return values[: readout.table.first_still]
+
+    def _coordinates(self, instants: Array) -> Array:
+        return self.states.coordinates(instants, 0)[0]
 
     @cached_property
     def _computed(self) -> list[tuple[slice, float]]:

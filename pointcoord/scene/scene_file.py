@@ -9,6 +9,7 @@ import os
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, lru_cache
 from itertools import pairwise
+from math import isfinite
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
 
@@ -43,6 +44,9 @@ from pointcoord.wording import meant, shown
 SCENES = Path(__file__).parents[1] / "scenes"
 
 LAWS = ("constant", "polynomial", "sine", "table")
+SWEEP = "sweep"
+# The instants of a scene that sweeps and says nothing of time; s.
+PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 """The kinds of an input over time."""
 
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
@@ -389,7 +393,10 @@ class TablePart(Part):
 
 
 class InputPart(Part):
-    """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table."""
+    """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table.
+
+    A sweep is written as a polynomial before it is one.
+    """
 
     constant: Number | None = None
     polynomial: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=1)] | None = None
@@ -402,7 +409,7 @@ class InputPart(Part):
         if len(given) != 1:
             raise ValueError(
                 f"{' and '.join(given) or 'nothing'} given; "
-                "allowed: exactly one of constant, polynomial, sine, table"
+                f"allowed: exactly one of {', '.join((*LAWS, SWEEP))}"
             )
 
     @property
@@ -455,9 +462,21 @@ class Scene(Part):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content with inputs by their dotted names, which may be in a table for each part."""
-        if "inputs" in content:
-            content["inputs"] = _by_dotted_name(content["inputs"], _is_no_part)
+        """The content with inputs by their dotted names, which may be in a table for each part, and sweeps as
+        the polynomials that they stand for.
+
+        Raises:
+            TableFault: a sweep is no pair of numbers, or has no time to go through.
+        """
+        if "inputs" not in content:
+            return content
+        inputs = _by_dotted_name(content["inputs"], _is_no_part)
+        if isinstance(inputs, Mapping):
+            swept = [name for name, law in inputs.items() if isinstance(law, Mapping) and SWEEP in law]
+            if swept:
+                content["time"] = content.get("time", PLAIN_TIME)
+                inputs = {**inputs, **{name: _swept(name, inputs[name], content["time"]) for name in swept}}
+        content["inputs"] = inputs
         return content
 
     @field_validator("effects")
@@ -638,9 +657,42 @@ class Scene(Part):
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
 
 
+def _swept(name: str, law: Mapping[str, Any], time: Any) -> dict[str, list[float]]:
+    """From the first number of a sweep at the start to the second at the stop, evenly.
+
+    Raises:
+        TableFault: it is no pair of numbers, or has no time to go through.
+    """
+    place, ends = ("inputs", name, SWEEP), law[SWEEP]
+    if len(law) > 1:
+        others = " and ".join(key for key in law if key != SWEEP)
+        raise TableFault(place, f"stands beside {others}", "one law alone")
+    if not (_numbers(ends) and len(ends) == 2):
+        raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
+    span = [_given_number(time, key) for key in ("start", "stop")]
+    if None in span or span[0] == span[1]:
+        raise TableFault(place, "has no time to go through", "time from a start to a later stop, or no time")
+    (first, last), (start, stop) = (float(end) for end in ends), span
+    slope = (last - first) / (stop - start)
+    return {"polynomial": [first - slope * start, slope]}
+
+
+def _numbers(value: object) -> bool:
+    return isinstance(value, list | tuple) and all(
+        isinstance(each, int | float) and not isinstance(each, bool) and isfinite(each) for each in value
+    )
+
+
+def _given_number(time: Any, key: str) -> Any:
+    value = time.get(key) if isinstance(time, Mapping) else getattr(time, key, None)
+    return value if _numbers([value]) else None
+
+
 def _is_no_part(table: Mapping[str, Any]) -> bool:
     """Whether a table of inputs is no table of a part's: one of its entries is no input."""
-    return not all(isinstance(law, Mapping) and not law.keys().isdisjoint(LAWS) for law in table.values())
+    return not all(
+        isinstance(law, Mapping) and not law.keys().isdisjoint((*LAWS, SWEEP)) for law in table.values()
+    )
 
 
 def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
