@@ -29,6 +29,7 @@ COMMANDS = {
     "new": "new",
     "draw": "draw",
     "plot": "plot",
+    "table": "table",
     "hard": "hard",
     "cost": "cost",
     "import": "hardpoints",

@@ -7,17 +7,16 @@ error bound needs no derivation of its own.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.arithmetic import Dual, P, S
+from pointcoord.effects.arithmetic import S
 from pointcoord.effects.corner import Corner, View
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
-from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -45,7 +44,7 @@ class CarNumber(ABC):
     Attributes:
         name: in results and files.
         words: for people.
-        sign: where it is positive, in words.
+        sign: where it is positive, in words; empty of what is never negative.
     """
 
     name: str
@@ -132,7 +131,7 @@ class CarNumbers(Effect):
     @classmethod
     def of(cls, name: str, gives: str, *numbers: CarNumber) -> CarNumbers:
         """The effect that gives some numbers of one quantity."""
-        sign = "; ".join(f"{number.words}: positive {number.sign}" for number in numbers)
+        sign = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
         return cls(name, gives, sign, derivative=0, quantities=(numbers[0].quantity,), numbers=numbers)
 
     @property
@@ -164,16 +163,25 @@ class CarNumbers(Effect):
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
         """A role or the wheel's radius is missing."""
-        for role in self.lines:
-            if not topology.role(role):
-                return no_role(self.name, role, topology)
-        if wheel_radius is None and any(number.needs_radius for number in self.numbers):
-            return (
-                f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
-                f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
-            )
+        radius = wheel_radius is None and any(number.needs_radius for number in self.numbers)
+        problem = refused(self.name, self.lines, topology, radius)
+        if problem:
+            return problem
         problems = (number.refusal(topology, drawn) for number in self.numbers)
         return next((f"{problem}, or leave {self.name!r} out" for problem in problems if problem), "")
+
+
+def refused(effect: str, roles: Sequence[str], topology: Topology, lacks_radius: bool) -> str:
+    """Why a car does not have an effect and what to do, in words; empty if nothing of these is missing."""
+    for role in roles:
+        if not topology.role(role):
+            return no_role(effect, role, topology)
+    if not lacks_radius:
+        return ""
+    return (
+        f"{effect!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
+        f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {effect!r} out"
+    )
 
 
 def corner_of(poses: Poses) -> Corner[Array]:
@@ -186,32 +194,7 @@ def corner_of(poses: Poses) -> Corner[Array]:
         return View(mechanism.topology, points, axes.component, axes.up, axes.outboard, radius)
 
     drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
-    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn))
-
-
-def corner_of_slopes(poses: Poses, way: str) -> Corner[Dual[Any]]:
-    """The same with derivatives along a way."""
-    corner, (seen, in_chassis) = corner_of(poses), poses.slopes[way]
-
-    def dual(view: View[Array], slopes: Mapping[str, Array] | None) -> View[Dual[Any]]:
-        points = {
-            name: Dual(place, np.zeros_like(place) if slopes is None else slopes[name])
-            for name, place in view.points.items()
-            if slopes is None or name in slopes
-        }
-        return with_slopes(view, points, np.zeros_like)
-
-    return Corner(dual(corner.seen, seen), dual(corner.chassis, in_chassis), dual(corner.drawn, None))
-
-
-def with_slopes(view: View[P], points: Mapping[str, Dual[P]], zero: Callable[[P], P]) -> View[Dual[Any]]:
-    """A view of points with derivatives; directions and the radius have none."""
-
-    def along(vector: Dual[P], direction: Direction) -> Dual[P]:
-        return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
-
-    up, outboard, radius = (Dual(part, zero(part)) for part in (view.up, view.outboard, view.radius))
-    return View(view.topology, points, along, up, outboard, radius)
+    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), mechanism.origin)
 
 
 def _beside(place: Array, dimensions: int) -> Array:
@@ -231,22 +214,5 @@ def enclosed_corner(poses: EnclosedPoses) -> Corner[Enclosed]:
 
     vectors = mechanism.drawing.vectors
     drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
-    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn))
-
-
-def enclosed_corner_of_slopes(poses: EnclosedPoses, way: str) -> Corner[Dual[Any]]:
-    """The same with derivatives along a way, units per rad or mm."""
-    corner, (seen, in_chassis) = enclosed_corner(poses), poses.slopes[way]
-
-    def dual(view: View[Enclosed], slopes: Mapping[str, Enclosed] | None) -> View[Dual[Any]]:
-        points = {
-            name: Dual(place, _no_slope(place) if slopes is None else slopes[name])
-            for name, place in view.points.items()
-        }
-        return with_slopes(view, points, _no_slope)
-
-    return Corner(dual(corner.seen, seen), dual(corner.chassis, in_chassis), dual(corner.drawn, None))
-
-
-def _no_slope(part: Enclosed) -> Enclosed:
-    return Enclosed.of(np.zeros_like(part.high))
+    origin = Enclosed.of(mechanism.origin / float(mechanism.unit))
+    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin)

@@ -58,11 +58,13 @@ class Corner(Generic[S]):
         seen: its points after the turns of the chassis, from anywhere.
         chassis: the same in the chassis' frame.
         drawn: the same as drawn.
+        origin: from the user's origin to that of the points.
     """
 
     seen: View[S]
     chassis: View[S]
     drawn: View[S]
+    origin: S
 
     def moved(self) -> S:
         """How far the contact point has gone from its drawn place."""

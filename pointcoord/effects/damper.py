@@ -16,5 +16,5 @@ def damper_length(corner: Corner[S]) -> S:
 DAMPER = CarNumbers.of(
     "damper",
     "length of the damper, mm",
-    Length("damper_length", "length of the damper", "always", damper_length, ("damper",), with_contact=False),
+    Length("damper_length", "length of the damper", "", damper_length, ("damper",), with_contact=False),
 )

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
+from pointcoord.effects.along import NumberAlong, NumbersAlong
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
 from pointcoord.effects.caster import CASTER
 from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
-from pointcoord.effects.gradients import WAYS, Gradient, Gradients
+from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
+from pointcoord.effects.roll_centre import ROLL_CENTRE
 from pointcoord.effects.steering_axis import STEERING_AXIS
 from pointcoord.effects.toe import TOE
 from pointcoord.effects.velocity import VELOCITY
@@ -32,15 +34,16 @@ EFFECTS: Mapping[str, Effect] = {
         ACCELERATION,
         KNUCKLE_RATES,
         *_ANGLES_AND_DIMENSIONS,
-        *(Gradients.of(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),
+        *(gradients(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),
+        ROLL_CENTRE,
     )
 }
 """What a scene may list, by name."""
 
-NUMBERS_OF_THE_CAR: Mapping[str, CarNumber | Gradient] = {
+NUMBERS_OF_THE_CAR: Mapping[str, CarNumber | NumberAlong] = {
     number.name: number
     for effect in EFFECTS.values()
-    if isinstance(effect, CarNumbers | Gradients)
+    if isinstance(effect, CarNumbers | NumbersAlong)
     for number in effect.numbers
 }
 """Numbers of a car, by their names."""

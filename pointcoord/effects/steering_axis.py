@@ -79,7 +79,7 @@ STEERING_AXIS = CarNumbers.of(
     "steering_axis",
     "scrub radius, kingpin offsets, trails, mm",
     Length("kingpin_offset", "kingpin offset at ground", "where the axis is inboard", kingpin_offset, ROLES),
-    Length("scrub_radius", "scrub radius", "always", scrub_radius, ROLES),
+    Length("scrub_radius", "scrub radius", "", scrub_radius, ROLES),
     Length("mechanical_trail", "mechanical trail", "where the axis is ahead", mechanical_trail, ROLES),
     Length("castor_offset", "castor offset at ground", "where the axis is ahead", castor_offset, ROLES),
     Length(

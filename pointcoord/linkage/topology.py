@@ -88,7 +88,9 @@ class Topology:
         return taken | dict(points)
 
     def role(self, name: str) -> tuple[str, ...]:
-        """The points of wheel_axis, steering_axis or damper; empty where the mechanism has no such role."""
+        """The points of wheel_axis, steering_axis, damper or knuckle; empty without such a role."""
+        if name == "knuckle":
+            return self.bodies.get(self.knuckle, ())
         roles = {"wheel_axis": self.wheel_axis, "steering_axis": self.steering_axis, "damper": self.damper}
         return roles[name]
 
