@@ -6,22 +6,26 @@ others a few per cent of their bounds (see `kantorovich`). A pose without close 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.numerics.enclosure import Enclosed, anchored, both
 from pointcoord.numerics.kantorovich import Certificate, certify, defect_of
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
+from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
+Number = TypeVar("Number", bound=np.generic)
 
-# Poses of a group, and what sharing an inverse may cost their bounds: this part of the error.
-SIZES, SHARED = (256, 64, 16, 4, 1), 0.02
+# Poses of a group at most, and what sharing an inverse may cost their bounds: this part of the error.
+LARGEST, SHARED = 256, 0.02
 # Groups below which a larger size saves no time: what is done for each array takes longer than its numbers.
 FEWEST = 16
 
@@ -33,7 +37,7 @@ class Groups:
     count: int
     size: int
 
-    def together(self, array: Array) -> Array:
+    def together(self, array: NDArray[Number]) -> NDArray[Number]:
         """Numbers of the instants, (N, ...), by group, (G, m, ...)."""
         number = -(-self.count // self.size)
         if number * self.size == self.count:
@@ -51,87 +55,99 @@ class Groups:
 
 
 @dataclass(frozen=True)
-class Known:
-    """What a driven coordinate lacks of what the user's numbers mean, and its doubt.
-
-    Attributes:
-        lacking: (N,).
-        doubt, expected: how uncertain it still is with that added, proven and expected, (N,).
-    """
-
-    lacking: Array
-    doubt: Array
-    expected: Array
-
-
-@dataclass(frozen=True)
 class CertifiedPoses:
     """Poses by group, with their certificate; lengths in the mechanism's units.
 
     Attributes:
-        y: coordinates, (G, m, size).
-        low: what the known ones of these lack, (G, m, size).
-        doubt, expected: how uncertain each coordinate is with that added, proven and expected, (G, size).
-        factors: of the middle pose of each group.
+        pose: coordinates, the known ones where they exactly are, (G, m, size).
+        factors: of the anchor of each group.
     """
 
     groups: Groups
-    y: Array
-    low: Array
-    doubt: Array
-    expected: Array
+    pose: Enclosed
     factors: Factors
     certificate: Certificate
 
     @classmethod
-    def of(cls, mechanism: Mechanism, y: Array, driven: Mapping[int, Known]) -> CertifiedPoses:
+    def of(
+        cls,
+        mechanism: Mechanism,
+        groups: Groups,
+        factors: Factors,
+        y: Array,
+        driven: Mapping[int, Enclosed],
+    ) -> CertifiedPoses:
         """Certify poses.
 
         Args:
-            y: coordinates of consecutive instants, (N, size).
-            driven: what is known of the driven coordinates, by place in y.
+            groups, factors: as `grouped` gives them.
+            y: coordinates, (G, m, size).
+            driven: where the driven coordinates exactly are, by place in y, (G, m).
         """
         system = mechanism.map
-        low = np.empty((system.size, len(y)))
-        low[:] = mechanism.drawn_lacks[:, None]
-        for place, known in driven.items():
-            low[place] = known.lacking
-        doubt = mechanism.drawn_doubt.copy()
-        for place, known in driven.items():
-            doubt[place] = known.doubt.max(initial=0.0)
-        groups, factors = _grouped(system, y, np.abs(low).max(axis=-1, initial=0.0) + doubt)
-        number = len(factors.condition)
-        proven = np.tile(mechanism.drawn_doubt, (number, 1))
-        expected = np.tile(mechanism.drawn_doubt + np.abs(mechanism.drawn_lacks), (number, 1))
-        for place, known in driven.items():
-            proven[:, place], expected[:, place] = groups.most(known.doubt), groups.most(known.expected)
-        together, missing = groups.together(y), groups.together(low.T)
-        certificate = certify(system, together, factors, proven[:, None], missing)
-        return cls(groups, together, missing, proven, expected, factors, certificate)
+        pose = with_known(y, system.unknowns, driven, mechanism.drawn_lacks, mechanism.drawn_doubt)
+        return cls(groups, pose, factors, certify(system, pose, factors))
 
     @property
     def condition(self) -> Array:
-        """Condition number of the Jacobian of each group's middle pose, (G,)."""
+        """Condition number of the Jacobian of each group's anchor, (G,)."""
         return self.factors.condition
 
 
-def _grouped(system: QuadraticMap, y: Array, data: Array) -> tuple[Groups, Factors]:
+def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Groups, Factors]:
     """As few groups as can share an inverse, all of one size, with the factors of their middle poses.
 
     Args:
-        data: how far any coordinate may be off, (size,).
+        y: coordinates of consecutive instants, (N, size).
+        driven: places of those that are known and move.
     """
-    for size in SIZES:
-        if size > 1 and FEWEST * size > len(y):
-            continue
+    size = _power_of_two(min(LARGEST, len(y) / FEWEST))
+    while True:
         groups = Groups(len(y), size)
         together = groups.together(y)
-        factors = factorise(system.jacobian(together[:, size // 2]))
-        with np.errstate(invalid="ignore", over="ignore"):
-            inverse = factors.preconditioner
-            if size == 1 or (defect_of(system, together, inverse, data).sum(axis=-1) <= SHARED).all():
+        moving = {place: anchored(together[..., place], (len(together), 1)) for place in driven}
+        pose = with_known(together, system.unknowns, moving)
+        factors = factorise(system.jacobian(pose.high[:, 0]))
+        with np.errstate(all="ignore"):
+            z = defect_of(system, pose, factors.preconditioner).sum(axis=-1).max(initial=0.0)
+            if size == 1 or z <= SHARED:
                 break
+            size = _power_of_two(size * SHARED / z)  # z falls about as the size does
     return groups, factors
+
+
+def _power_of_two(most: float) -> int:
+    """The largest power of two that is no larger, but at least 1; 1 of what is no number."""
+    return int(2 ** int(np.log2(max(1.0, most))))
+
+
+def with_known(
+    state: Array,
+    unknowns: int,
+    driven: Mapping[int, Enclosed],
+    lacks: ArrayLike = 0.0,
+    doubt: ArrayLike = 0.0,
+) -> Enclosed:
+    """Computed coordinates, or their rates, the unknown ones as they are and the known ones where they are.
+
+    Args:
+        state: (G, m, size).
+        driven: by place, (G, m).
+        lacks, doubt: of the others that are known, which stand still.
+    """
+    middle = state.shape[1] // 2
+    high = state[:, middle : middle + 1].copy(order="K")
+    low, reach = np.zeros_like(high), np.zeros_like(high)
+    low[..., unknowns:] = np.broadcast_to(lacks, high.shape)[..., unknowns:]
+    radius = both(np.broadcast_to(doubt, high.shape), doubt + np.abs(lacks))
+    change = components_last(np.zeros((state.shape[-1], *state.shape[:-1])))
+    result = Enclosed(high, low, radius, change, reach)
+    own = anchored(state[..., :unknowns], (*high.shape[:-1], unknowns))
+    moving: list[tuple[int | slice, Enclosed]] = [(slice(unknowns), own), *driven.items()]
+    for place, number in moving:
+        for whole, part in zip(result.parts, number.parts, strict=True):
+            whole[..., place] = part
+    return result
 
 
 def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:
@@ -139,8 +155,7 @@ def pose_bound(mechanism: Mechanism, y: Array, factors: Factors) -> Array:
 
     The shift to the user's origin rounds each coordinate once more.
     """
-    lacking, uncertainty = mechanism.known_data(y)
-    y, uncertainty, lacking = (part[..., None, :] for part in (y, uncertainty, lacking))
-    certificate = certify(mechanism.map, y, factors, uncertainty, lacking)
+    pose = Enclosed.of(*(part[..., None, :] for part in (y, *mechanism.known_data(y))))
+    certificate = certify(mechanism.map, pose, factors)
     points = certificate.coordinates[..., 0, : 3 * len(mechanism.topology.moving)].max(axis=-1)
     return np.asarray(points * mechanism.unit + EPS * np.abs(mechanism.origin).max(axis=-1))

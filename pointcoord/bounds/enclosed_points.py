@@ -39,12 +39,12 @@ from numpy.typing import NDArray
 from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import runs, two_sum
-from pointcoord.numerics.enclosure import Enclosed, both, cross
+from pointcoord.numerics.double_double import two_sum
+from pointcoord.numerics.enclosed_rows import differences, twice_polar
+from pointcoord.numerics.enclosure import Enclosed, anchored, cross
 from pointcoord.numerics.kantorovich import applied
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
-from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Enclosed]
@@ -85,40 +85,35 @@ class EnclosedPoses:
 def enclosed_coordinates(
     mechanism: Mechanism,
     poses: CertifiedPoses,
-    rates: Sequence[Array],
-    driven: Sequence[Mapping[int, Enclosed]],
+    rates: Sequence[Enclosed],
     unsolved: Array,
     cut: Sequence[Array],
 ) -> list[Enclosed]:
     """The exact coordinates y* and as many of their derivatives as were solved for, each (G, m, size).
 
     Args:
-        rates: computed time derivatives of y, (G, m, size), units per unit of time^d.
-        driven: by derivative and by place in y, where each driven coordinate's exactly is, (G, m).
+        rates: computed time derivatives of y, the known ones where they exactly are, (G, m, size), units per
+            unit of time^d.
         unsolved: how far from its assembly a pose of each group was left on purpose, (G,).
         cut: by derivative, what its series leaves out on purpose, (G, size); empty if there is none.
     """
     system, n = mechanism.map, mechanism.map.unknowns
-    certificate, magnitude = poses.certificate, np.abs(poses.factors.preconditioner)
-    low = poses.low.copy(order="K")
-    low[..., :n] = -certificate.step
+    certificate, magnitude, pose = poses.certificate, np.abs(poses.factors.preconditioner), poses.pose
     largest = np.abs(certificate.step).max(axis=1)
     spread = certificate.spread[:, 0] + 32.0 * UNIT_ROUNDOFF * largest
-    proven = poses.doubt.copy()
-    proven[:, :n] = spread + _tail(system, poses, magnitude, spread + largest)
-    anchor, size = poses.y[:, poses.y.shape[1] // 2], np.abs(poses.y).max(axis=1)
-    looking = UNIT_ROUNDOFF * size + poses.expected
-    looking[:, :n] += _applied(magnitude, system.uncertainty(anchor, poses.expected)) + unsolved[:, None]
-    result = [Enclosed.sharing(*two_sum(poses.y, low), both(proven[:, None], looking[:, None]))]
-    moved = np.abs(low).max(axis=1) + proven
+    proven = spread + _tail(system, poses, magnitude, spread + largest)
+    uncertain = system.uncertainty(pose.high[:, 0], pose.radius[1, :, 0])
+    looking = _applied(magnitude, uncertain) + unsolved[:, None]
+    result = [_moved(pose, -certificate.step, proven, looking)]
+    moved = np.zeros((len(proven), system.size))
+    moved[:, :n] = largest + proven
     spoilt = certificate.defect + magnitude @ system.jacobian_uncertainty(moved)
-    factors = []
-    for derivative, (rate, known) in enumerate(zip(rates, driven, strict=True), 1):
-        factors.append(_factors(system, result[-1]))
-        computed = _with_known(rate, known, n)
-        rest = _twice_polar(system, factors[0], _factors(system, computed))
+    edges = []
+    for derivative, computed in enumerate(rates, 1):
+        edges.append(differences(system, result[-1]))
+        rest = twice_polar(system, edges[0], differences(system, computed))
         if derivative == 2:
-            rest = rest + _twice_polar(system, factors[1], factors[1])
+            rest = rest + twice_polar(system, edges[1], edges[1])
         result.append(_corrected(computed, rest, poses, spoilt))
     for state, left in zip(result, cut, strict=False):
         state.radius[1, :, 0, :n] += left[:, :n]
@@ -153,8 +148,7 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     """
     inverse = poses.factors.preconditioner
     n, magnitude = inverse.shape[-1], np.abs(inverse)
-    gamma = (n + 2) * EPS
-    middle = rest.middle
+    gamma, middle = (n + 3) * EPS, rest.middle
     step = -applied(inverse, middle)
     proven = _applied(magnitude, rest.radius[0, :, 0] + gamma * np.abs(middle).max(axis=1))
     whole = np.abs(step).max(axis=1) + proven
@@ -165,50 +159,21 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
     # after one refinement.
     shared = gamma * poses.condition * rounded.max(axis=-1)
-    low, radius = (part.copy(order="K") for part in (computed.low, computed.radius))
-    low[..., :n] = step
-    radius[0, :, 0, :n] = proven + tail
-    radius[1, :, 0, :n] = rounded + shared[:, None]
-    radius[1] += UNIT_ROUNDOFF * np.abs(computed.high).max(axis=1, keepdims=True)
-    return Enclosed.sharing(*two_sum(computed.high, low), radius)
+    return _moved(computed, step, proven + tail, rounded + shared[:, None])
 
 
-def _with_known(rate: Array, known: Mapping[int, Enclosed], unknowns: int) -> Enclosed:
-    """Computed rates of the unknown coordinates, exact as they are, beside those of the known ones.
-
-    These are zero but where an input drives one.
-    """
-    high, low = (components_last(np.zeros((rate.shape[-1], *rate.shape[:-1]))) for _ in range(2))
-    radius = components_last(np.zeros((rate.shape[-1], 2, len(rate), 1)))
-    high[..., :unknowns] = rate[..., :unknowns]
-    for place, number in known.items():
-        high[..., place], low[..., place] = number.high, number.low
-        radius[..., place] = number.radius.reshape(2, -1, 1)
-    return Enclosed.sharing(high, low, radius)
-
-
-def _factors(system: QuadraticMap, state: Enclosed) -> Edges:
-    """Both differences of every term, (..., terms)."""
-    (first, second), (left, right) = system.differences
-    each = state.take(first) - state.take(second)
-    return each.take(left), each.take(right)
-
-
-def _twice_polar(system: QuadraticMap, a: Edges, b: Edges) -> Enclosed:
-    """2 B(a, b) of two states' differences, (..., rows)."""
-    coefficients, starts = system.terms
-    terms = (a[0] * b[1]).scaled(2.0) if a is b else a[0] * b[1] + b[0] * a[1]
-    return row_sums(terms.scaled(coefficients), starts)
-
-
-def row_sums(terms: Enclosed, starts: NDArray[np.intp]) -> Enclosed:
-    """Sums of runs of terms."""
-    total = terms.take(starts)
-    for rows, places in runs(terms.high.shape[-1], starts):
-        longer = total.take(rows) + terms.take(places)
-        total.high[..., rows], total.low[..., rows] = longer.high, longer.low
-        total.radius[..., rows], total.size[..., rows] = longer.radius, longer.size
-    return total
+def _moved(computed: Enclosed, by: Array, proven: Array, expected: Array) -> Enclosed:
+    """Computed coordinates with the unknown ones moved, (G, m, unknowns), which has radii, (G, unknowns)."""
+    n = by.shape[-1]
+    step = anchored(by, (len(by), 1, n))
+    high, low, radius, change, reach = (part.copy(order="K") for part in computed.parts)
+    high[..., :n], low[..., :n] = two_sum(high[..., :n], step.high)  # an unknown one has no low part
+    change[..., :n] += step.change
+    reach[..., :n] += step.reach
+    radius[0, ..., :n] += step.radius[0] + UNIT_ROUNDOFF * reach[..., :n] + proven[:, None]
+    radius[1, ..., :n] = expected[:, None]
+    radius[1] += UNIT_ROUNDOFF * computed.size
+    return Enclosed(high, low, radius, change, reach)
 
 
 def _applied(matrix: Array, vector: Array) -> Array:

@@ -10,15 +10,15 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.bounds.certified_poses import CertifiedPoses, Groups, Known
+from pointcoord.bounds.certified_poses import CertifiedPoses, Groups, grouped, with_known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates, enclosed_points
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import LAST, NEXT
 from pointcoord.time_functions import TimeFunction
 
@@ -161,17 +161,20 @@ def _positions(
 ) -> tuple[CertifiedPoses, EnclosedPoses]:
     """Poses at some instants that are certified, and where their points exactly are."""
     (y,) = reported.solved.coordinates(times, 0)
-    driven = {}
-    for drive in mechanism.topology.drives:
-        place, law = mechanism.layout.scalar(drive.coordinate), reported.laws[drive.input]
+    drives = _drives(mechanism)
+    groups, factors = grouped(mechanism.map, y, drives)
+    together, driven = groups.together, {}
+    for place, drive in drives.items():
+        law = reported.laws[drive.input]
         doubt = np.zeros_like(times) if certain else law.rounding(times)
         lacking, uncertainty = drive.rounding(y[:, place], mechanism.drawing, doubt)
-        driven[place] = Known(*np.broadcast_arrays(lacking, uncertainty, uncertainty))
-    poses = CertifiedPoses.of(mechanism, y, driven)
-    laws = {name: law.enclosed(times)[:1] for name, law in reported.chassis.functions.items()}
+        driven[place] = Enclosed.of(y[:, place], lacking, uncertainty, uncertainty).together(together)
+    poses = CertifiedPoses.of(mechanism, groups, factors, together(y), driven)
+    functions = reported.chassis.functions
+    laws = {name: [law.enclosed(times)[0].together(together)] for name, law in functions.items()}
     number = len(poses.condition)
-    coordinates = enclosed_coordinates(mechanism, poses, (), (), np.zeros(number), ())
-    return poses, _enclosed(mechanism, poses, reported, coordinates, laws, [np.ones((number, 1))])
+    coordinates = enclosed_coordinates(mechanism, poses, (), np.zeros(number), ())
+    return poses, _enclosed(mechanism, reported, coordinates, laws, [np.ones((number, 1))])
 
 
 def _with_rates(
@@ -179,33 +182,25 @@ def _with_rates(
 ) -> tuple[CertifiedPoses, EnclosedPoses]:
     """The same with the rates of the points, as many as were solved for."""
     y, *rates = reported.solved.coordinates(times, 2)
-    functions = {**reported.laws, **reported.chassis.functions}
-    laws = {name: law.enclosed(times) for name, law in functions.items()}
+    groups, factors = grouped(mechanism.map, y, _drives(mechanism))
+    together, functions = groups.together, {**reported.laws, **reported.chassis.functions}
+    laws = {
+        name: [part.together(together) for part in law.enclosed(times)] for name, law in functions.items()
+    }
     driven = driven_coordinates(mechanism, laws)
-    poses = CertifiedPoses.of(
-        mechanism, y, {place: _lacking(y[:, place], value) for place, (value, *_) in driven.items()}
-    )
-    together = poses.groups.together
-    states = [poses.y, *(together(rate) for rate in rates)]
-    time = unit_of_time(states)
-    powers = [time**d for d in range(len(states))]
-    computed = [state * p[:, None, None] for state, p in zip(states[1:], powers[1:], strict=True)]
-    known = [
-        {place: parts[d].together(together).scaled(powers[d][:, None]) for place, parts in driven.items()}
-        for d in range(1, len(states))
+    parts = [{place: each[d] for place, each in driven.items()} for d in range(3)]
+    poses = CertifiedPoses.of(mechanism, groups, factors, together(y), parts[0])
+    computed = [
+        with_known(together(rate), mechanism.map.unknowns, known)
+        for rate, known in zip(rates, parts[1:], strict=False)
     ]
-    cut = _left_out(poses, times, reported.solved, [poses.y, *computed], powers)
-    unsolved = poses.groups.most(reported.solved.unsolved(times))
-    coordinates = enclosed_coordinates(mechanism, poses, computed, known, unsolved, cut)
-    return poses, _enclosed(mechanism, poses, reported, coordinates, laws, [p[:, None] for p in powers])
-
-
-def _lacking(computed: Array, exact: Enclosed) -> Known:
-    """What a computed coordinate lacks of where it exactly is."""
-    lacking = (exact.high - computed) + exact.low
-    rounded = np.abs(lacking) + np.abs(exact.low)
-    proven, expected = exact.radius
-    return Known(*np.broadcast_arrays(lacking, proven + 2.0 * UNIT_ROUNDOFF * rounded, expected))
+    time = unit_of_time([poses.pose.size, *(rate.size for rate in computed)])
+    powers = [time**d for d in range(len(rates) + 1)]
+    computed = [rate.scaled(power[:, None, None]) for rate, power in zip(computed, powers[1:], strict=True)]
+    cut = _left_out(poses, times, reported.solved, (y, *rates), powers)
+    unsolved = groups.most(reported.solved.unsolved(times))
+    coordinates = enclosed_coordinates(mechanism, poses, computed, unsolved, cut)
+    return poses, _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
 
 
 def _left_out(
@@ -215,19 +210,33 @@ def _left_out(
     states: Sequence[Array],
     powers: Sequence[Array],
 ) -> list[Array]:
-    """By derivative, what summing a series leaves out and rounds, at most in each group, (G, size)."""
+    """By derivative, what summing a series leaves out and rounds, at most in each group, (G, size).
+
+    Terms grow with the distance from where their series starts, so that they are largest at an end, of the
+    group or of a series.
+
+    Args:
+        states: coordinates and their derivatives, (N, size), units per s^d.
+    """
     groups, found = poses.groups, []
-    size = groups.size
-    for state, summed, power in zip(states, solved.summed(times), powers, strict=False):
-        value = groups.apart(state)
-        condition, time = (np.repeat(each, size)[: groups.count] for each in (poses.condition, power))
-        found.append(groups.most(summed.expected(value, condition, time)))
+    pieces = groups.together(solved.pieces(times))
+    ends = np.zeros(pieces.shape, dtype=bool)
+    ends[:, [0, -1]] = True
+    over = pieces[:, 1:] != pieces[:, :-1]
+    ends[:, 1:] |= over
+    ends[:, :-1] |= over
+    of = np.nonzero(ends)[0]
+    here = np.minimum(np.flatnonzero(ends), groups.count - 1)
+    starts = np.searchsorted(of, np.arange(len(ends)))
+    for state, summed, power in zip(states, solved.summed(times[here]), powers, strict=False):
+        value, time = state[here] * power[of, None], power[of]
+        made = summed.expected(value, poses.condition[of], time)
+        found.append(np.maximum.reduceat(made, starts) if len(of) else made)
     return found
 
 
 def _enclosed(
     mechanism: Mechanism,
-    poses: CertifiedPoses,
     reported: Reported,
     coordinates: Sequence[Enclosed],
     laws: Laws,
@@ -238,12 +247,8 @@ def _enclosed(
     Args:
         powers: of the unit of time of each group, s^d, (G, 1).
     """
-    chassis, together = reported.chassis, poses.groups.together
-    laws = {
-        name: [part.together(together) for part in parts]
-        for name, parts in laws.items()
-        if name in chassis.functions
-    }
+    chassis = reported.chassis
+    laws = {name: laws[name] for name in chassis.functions}
     added = chassis.enclosed(laws, mechanism.origin)
     points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
     in_chassis = points[0]
@@ -289,7 +294,7 @@ def _gain(exact: EnclosedPoses, name: str) -> Array:
     """
     mechanism = exact.mechanism
     a, b, c = mechanism.carrier_weights[name]
-    base, first, second = (exact.points[0][point].high for point in mechanism.topology.carried[name])
+    base, first, second = (exact.points[0][point].middle for point in mechanism.topology.carried[name])
     e1, e2 = first - base, second - base
     rows = sum(
         abs(along) + abs(c) * (edge[..., NEXT] + edge[..., LAST])
@@ -322,9 +327,14 @@ def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, 
 def driven_coordinates(mechanism: Mechanism, laws: Laws) -> dict[int, tuple[Enclosed, Enclosed, Enclosed]]:
     """By place in y, where each driven coordinate and its two derivatives are, each (N,)."""
     return {
-        mechanism.layout.scalar(drive.coordinate): drive.enclosed(laws[drive.input], mechanism.drawing)
-        for drive in mechanism.topology.drives
+        place: drive.enclosed(laws[drive.input], mechanism.drawing)
+        for place, drive in _drives(mechanism).items()
     }
+
+
+def _drives(mechanism: Mechanism) -> dict[int, Drive]:
+    """The drives by the place of their coordinate in y."""
+    return {mechanism.layout.scalar(drive.coordinate): drive for drive in mechanism.topology.drives}
 
 
 def unit_of_time(states: Sequence[Array]) -> Array:
@@ -335,8 +345,7 @@ def unit_of_time(states: Sequence[Array]) -> Array:
     """
     fastest = np.zeros(len(states[0]))
     for d, state in enumerate(states[1:], 1):
-        every = tuple(range(1, state.ndim))
-        largest = np.maximum(state.max(axis=every), -state.min(axis=every))
+        largest = np.abs(state).max(axis=tuple(range(1, state.ndim)))
         fastest = np.maximum(fastest, largest ** (1.0 / d))
     exponent = np.frexp(np.where(np.isfinite(fastest) & (fastest > 0.0), fastest, 1.0))[1]
     return np.asarray(np.ldexp(1.0, -np.clip(exponent, -LONGEST, LONGEST)))

@@ -29,6 +29,10 @@ class SolvedCoordinates(Protocol):
         """How each of these was summed from a series; empty if they were solved for at the instants."""
         ...
 
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Number of the series that each instant is summed from, (N,); of those that were solved for any."""
+        ...
+
     def unsolved(self, instants: Array) -> Array:
         """How far from its assembly each pose was left because no more was asked, proven, in units, (N,).
 

@@ -7,8 +7,16 @@ An `Enclosed` is high + low with two radii:
   running error analysis (Higham, Accuracy and Stability, section 3.3): each operation adds u of its result.
 
 Both follow the same rules, |x| s + r |y| + r s for a product, so they are carried as one array with a
-leading dimension of 2. Numbers that lie close together, such as a point's at neighbouring instants, share
-their radii: where an array of radii has 1 for a dimension, each holds for all numbers along it.
+leading dimension of 2.
+
+Numbers that lie close together, such as a point's at neighbouring instants, share an anchor, high + low, and
+radii: each is high + low + change, |change| <= reach, where the arrays of anchors have 1 for a dimension. A
+change is a plain double, and what rounds it is u of it: less than u of the number by what the numbers lie
+apart, for one operation or four where twice the working precision takes thirty. A product changes by
+
+    (x + dx)(y + dy) - x y = dx (y + dy) + x dy,
+
+of which leaving out the two low parts, two sums and two products round 4 u (|dx| (|y| + |dy|) + |x| |dy|).
 
 Operations keep |low| <= u |high|, up to u^2 of their operands; with that a sum is rounded by 5 u^2 of its
 operands and a product by 8 u^2 of itself, and underflow by less than TINY.
@@ -23,7 +31,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.numerics.double_double import largest, quick_two_sum, two_product, two_sum
+from pointcoord.numerics.double_double import quick_two_sum, two_product, two_sum
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import LAST, NEXT, components_first, components_last
 
@@ -32,6 +40,11 @@ Indices = NDArray[np.intp]
 
 OF_A_SUM = 8.0 * UNIT_ROUNDOFF**2
 OF_A_PRODUCT = 16.0 * UNIT_ROUNDOFF**2
+# What rounds changes, of their reach: a sum; a product; a difference of two numbers of instants; a turn, by
+# its sine and versine; a distance from a reported number.
+SUM_OF_CHANGES, PRODUCT_OF_CHANGES, CHANGE_OF_INSTANTS, TURN_OF_CHANGES, DISTANCE_OF_CHANGES = (
+    count * UNIT_ROUNDOFF for count in (1.0, 4.1, 3.0, 8.0, 3.0)
+)
 TINY = 1e-307  # a product loses less to underflow, by some 16 orders
 NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
@@ -42,23 +55,20 @@ BOTH_WAYS = np.concatenate([NEXT, LAST]), np.concatenate([LAST, NEXT])
 
 @dataclass(frozen=True)
 class Enclosed:
-    """high + low and their radii.
+    """high + low + change and their radii.
 
     Attributes:
-        high, low: of any shape.
-        radius: the proven and the expected one, of that shape with 2 before it and 1 for what shares them.
-        size: at least |high| of all that share a radius, of the shape of one.
+        high, low: of the anchors, of any shape.
+        radius: the proven and the expected one, of that shape with 2 before it.
+        change: from the anchors, of that shape with any number for a dimension of 1.
+        reach: at least |change|, of the anchors' shape.
     """
 
     high: Array
     low: Array
     radius: Array
-    size: Array
-
-    @classmethod
-    def sharing(cls, high: Array, low: Array, radius: Array) -> Enclosed:
-        """From numbers and radii, |low| <= u |high|."""
-        return cls(high, low, radius, largest(np.abs(high), radius.shape[1:]))
+    change: Array
+    reach: Array
 
     @classmethod
     def of(
@@ -71,63 +81,76 @@ class Enclosed:
         total, rest = two_sum(number, others[0])
         radius = np.empty((2, *number.shape))
         radius[0], radius[1] = others[1:]
-        return cls(total, rest, radius, np.abs(total))
+        still = np.zeros_like(total)
+        return cls(total, rest, radius, still, still)
 
     def __add__(self, other: Enclosed) -> Enclosed:
-        total, carry = two_sum(self.high, other.high)
-        high, low = quick_two_sum(total, carry + (self.low + other.low))
-        mine, its = aligned(self.radius, other.radius)
-        radius = mine + its
-        size = largest(np.abs(high), radius.shape[1:])
-        radius += both(OF_A_SUM * (self.size + other.size), UNIT_ROUNDOFF * size)
-        return Enclosed(high, low, radius, size)
-
-    def __neg__(self) -> Enclosed:
-        return Enclosed(-self.high, -self.low, self.radius, self.size)
+        return self._sum(other, other.high, other.low, self.change + other.change)
 
     def __sub__(self, other: Enclosed) -> Enclosed:
-        return self + -other
+        return self._sum(other, -other.high, -other.low, self.change - other.change)
+
+    def __neg__(self) -> Enclosed:
+        return Enclosed(-self.high, -self.low, self.radius, -self.change, self.reach)
+
+    def _sum(self, other: Enclosed, its_high: Array, its_low: Array, change: Array) -> Enclosed:
+        total, carry = two_sum(self.high, its_high)
+        high, low = quick_two_sum(total, carry + (self.low + its_low))
+        mine, its = aligned(self.radius, other.radius)
+        radius, reach = mine + its, self.reach + other.reach
+        radius[0] += OF_A_SUM * (np.abs(self.high) + np.abs(its_high)) + SUM_OF_CHANGES * reach
+        radius[1] += UNIT_ROUNDOFF * (np.abs(high) + reach)
+        return Enclosed(high, low, radius, change, reach)
 
     def __mul__(self, other: Enclosed) -> Enclosed:
         product, carry = two_product(self.high, other.high)
         high, low = quick_two_sum(product, carry + (self.high * other.low + self.low * other.high))
         mine, its = aligned(self.radius, other.radius)
-        radius = self.size * its + mine * (other.size + its)
-        size = largest(np.abs(high), radius.shape[1:])
-        radius += both(OF_A_PRODUCT * size + TINY, UNIT_ROUNDOFF * size + TINY)
-        return Enclosed(high, low, radius, size)
+        its_size = other.size
+        radius, reach = self.size * its, self.reach * its_size + np.abs(self.high) * other.reach
+        radius += mine * (its_size + its)
+        size = np.abs(high)
+        radius[0] += OF_A_PRODUCT * size + PRODUCT_OF_CHANGES * reach + TINY
+        radius[1] += UNIT_ROUNDOFF * (size + reach) + TINY
+        change = other.high + other.change
+        change = self.change * change
+        change += self.high * other.change
+        return Enclosed(high, low, radius, change, reach)
 
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
         """Times powers of two, which rounds nothing but what falls below the normal numbers."""
         factor = np.asarray(powers_of_two, dtype=float)
-        high, low = self.high * factor, self.low * factor
-        radius = self.radius * np.abs(factor)
-        if not (np.abs(factor) >= 1.0).all():
+        high, low, change = self.high * factor, self.low * factor, self.change * factor
+        factor = np.abs(factor)
+        radius, reach = self.radius * factor, self.reach * factor
+        if not (factor >= 1.0).all():
             lost = (self.high != 0.0) & (np.abs(high) < NORMAL) | (self.low != 0.0) & (np.abs(low) < NORMAL)
-            radius = radius + largest(np.where(lost, TINY, 0.0), radius.shape[1:])
-        return Enclosed(high, low, radius, self.size * np.abs(factor))
+            radius += np.where(lost | (self.reach > 0.0), TINY, 0.0)
+        return Enclosed(high, low, radius, change, reach)
 
-    def _expecting(self, angle: Enclosed, outside: Array) -> Enclosed:
-        """Of a function of an angle; infinite beyond the table."""
-        expected = 2.0 * UNIT_ROUNDOFF * self.size + angle.radius[1]
-        return Enclosed(self.high, self.low, both(self.radius[0] + outside, expected), self.size)
+    @property
+    def size(self) -> Array:
+        """At least the magnitude of the numbers at each anchor."""
+        return np.asarray(np.abs(self.high) + self.reach)
+
+    @property
+    def parts(self) -> tuple[Array, Array, Array, Array, Array]:
+        """All arrays."""
+        return self.high, self.low, self.radius, self.change, self.reach
 
     def take(self, places: Indices | list[int] | slice) -> Enclosed:
         """Elements of the last dimension; of a slice a view."""
         # The numbers of a place lie side by side in memory, as those of a component do everywhere.
-        parts = (self.high, self.low, self.radius, self.size)
-        return Enclosed(*(components_last(components_first(part)[places]) for part in parts))
+        return Enclosed(*(components_last(components_first(part)[places]) for part in self.parts))
 
     def component(self, place: int) -> Enclosed:
         """One element of the last dimension."""
-        parts = (self.high, self.low, self.radius, self.size)
-        return Enclosed(*(part[..., place] for part in parts))
+        return Enclosed(*(part[..., place] for part in self.parts))
 
     @property
     def spread_out(self) -> Enclosed:
         """With a last dimension of 1, to multiply vectors."""
-        parts = (self.high, self.low, self.radius, self.size)
-        return Enclosed(*(part[..., None] for part in parts))
+        return Enclosed(*(part[..., None] for part in self.parts))
 
     def cosine_sine(self) -> tuple[Enclosed, Enclosed]:
         """Cosine and sine of an angle between -pi and pi, about the nearest of a table of angles a.
@@ -136,14 +159,17 @@ class Enclosed:
 
             cos = cos a - (l cos a + s sin a),      sin = sin a - (l sin a - s cos a).
 
-        Of s / d and 2 l / d^2 what goes with d^4 is below 1e-12, so that plain doubles do. The expected
-        radius is that of functions right to a unit in the last place.
+        Of s / d and 2 l / d^2 what goes with d^4 is below 1e-12, so that plain doubles do. The changes are by
+        the same formulas, in plain doubles and from the anchors. The expected radius is that of functions
+        right to a unit in the last place.
         """
+        still = np.zeros_like(self.high)
+        anchor = Enclosed(self.high, self.low, self.radius, still, still)
         known = np.nan_to_num(self.high, posinf=0.0, neginf=0.0)
         place = np.clip(np.rint(known * STEPS), -FARTHEST, FARTHEST)
         places = (place + FARTHEST).astype(np.intp)
-        cosine, sine = (self._looked_up(whole, places) for whole in _table())
-        part = self - self.like(place / STEPS)
+        cosine, sine = (Enclosed(*(part[..., places] for part in table.parts)) for table in _table())
+        part = anchor - Enclosed.of(place / STEPS)
         square = part * part
         sines, versines = (
             _less(square, *factors) for factors in ((6.0, 20.0, 42.0, 72.0), (12.0, 30.0, 56.0, 90.0))
@@ -154,46 +180,88 @@ class Enclosed:
             cosine - (back * cosine + turned * sine),
             sine - (back * sine - turned * cosine),
         )
-        found = (value._expecting(self, outside) for value in values)
-        return next(found), next(found)
+        turn, versine = np.sin(self.change), 2.0 * np.sin(0.5 * self.change) ** 2
+        changes = (
+            -(values[0].high * versine + values[1].high * turn),
+            values[0].high * turn - values[1].high * versine,
+        )
+        # No sine or cosine changes by more than its angle does.
+        proven = outside + self.reach * (values[0].radius[0] + values[1].radius[0] + TURN_OF_CHANGES)
+        first, second = (
+            Enclosed(
+                value.high,
+                value.low,
+                both(value.radius[0] + proven, 2.0 * UNIT_ROUNDOFF * value.size + self.radius[1]),
+                change,
+                self.reach,
+            )
+            for value, change in zip(values, changes, strict=True)
+        )
+        return first, second
 
     @property
     def middle(self) -> Array:
-        """high + low, rounded once."""
-        return np.asarray(self.high + self.low)
+        """high + low + change, rounded twice."""
+        return np.asarray((self.high + self.low) + self.change)
 
     def apart(self, reported: Array) -> Array:
-        """Largest distance of the exact number from a reported one that is close, same shape."""
-        distance = np.abs((reported - self.high) - self.low)
-        return np.asarray(distance * (1.0 + 4.0 * UNIT_ROUNDOFF) + self.radius[0])
+        """Largest distance of the exact number from a reported one that is close, shape of the change."""
+        distance = reported - self.high
+        distance -= self.low
+        distance -= self.change
+        np.abs(distance, out=distance)
+        distance *= 1.0 + 8.0 * UNIT_ROUNDOFF
+        distance += self.radius[0] + DISTANCE_OF_CHANGES * self.reach
+        return np.asarray(distance)
 
     def errors(self, reported: Array) -> Array:
         """Proven and expected error of a reported number that is close, with a leading dimension of 2."""
         return both(self.apart(reported), self.radius[1])
 
     def like(self, values: Array, proven: float = 0.0, expected: float = 0.0) -> Enclosed:
-        """Other numbers that share radii as these do."""
-        shape = self.radius.shape[1:]
-        radius = both(np.full(shape, proven), np.full(shape, expected))
-        return Enclosed.sharing(values, np.zeros_like(values), radius)
+        """Plain numbers that share anchors and radii as these do."""
+        return anchored(values, self.high.shape, proven, expected)
 
     def corrected(self, values: Array) -> Enclosed:
         """Values that are off by these numbers, which are far smaller, with what they are off added."""
-        return Enclosed.sharing(*two_sum(values, self.middle), self.radius)
+        total = self.like(values) + self
+        return Enclosed(
+            total.high, total.low, both(total.radius[0], self.radius[1]), total.change, total.reach
+        )
 
     def together(self, group: Callable[[Array], Array]) -> Enclosed:
-        """Numbers of instants, (N, ...), in groups of m that share their radii, (G, m, ...).
+        """Single numbers of instants, (N, ...), in groups of m, (G, m, ...), about the middle one of each.
 
         Args:
             group: puts an array into groups.
         """
+        high, low = group(self.high), group(self.low)
+        middle = slice(high.shape[1] // 2, high.shape[1] // 2 + 1)
+        less = low - low[:, middle]
+        change = (high - high[:, middle]) + less
+        reach, lost = (np.abs(part).max(axis=1, keepdims=True) for part in (change, less))
         proven, expected = (group(part).max(axis=1, keepdims=True) for part in self.radius)
-        return Enclosed.sharing(group(self.high), group(self.low), both(proven, expected))
+        # The two differences may cancel: each is rounded by what it is.
+        radius = both(proven + CHANGE_OF_INSTANTS * (reach + lost), expected)
+        return Enclosed(high[:, middle], low[:, middle], radius, change, reach)
 
-    def _looked_up(self, table: Enclosed, places: Indices) -> Enclosed:
-        """Numbers of a table that share radii as these do."""
-        proven, expected = (largest(part[places], self.radius.shape[1:]) for part in table.radius)
-        return Enclosed.sharing(table.high[places], table.low[places], both(proven, expected))
+
+def anchored(
+    values: Array, shape: tuple[int, ...], proven: ArrayLike = 0.0, expected: ArrayLike = 0.0
+) -> Enclosed:
+    """Plain numbers about the middle ones of those that share an anchor, which has 1 for some dimensions."""
+    middle = tuple(
+        slice(n // 2, n // 2 + 1) if kept == 1 else slice(None)
+        for n, kept in zip(values.shape, shape, strict=True)
+    )
+    shared = tuple(axis for axis, kept in enumerate(shape) if kept == 1)
+    high = values[middle]
+    change = values - high
+    reach = np.maximum(change.max(axis=shared, keepdims=True), -change.min(axis=shared, keepdims=True))
+    # A difference of two numbers of which neither is twice the other is exact (Sterbenz).
+    lost = np.where(2.0 * reach <= np.abs(high), 0.0, SUM_OF_CHANGES * reach)
+    radius = both(proven + lost, np.broadcast_to(expected, reach.shape))
+    return Enclosed(high, np.zeros_like(high), radius, change, reach)
 
 
 def aligned(a: Array, b: Array) -> tuple[Array, Array]:
@@ -243,12 +311,10 @@ def _less(square: Enclosed, *divisors: float) -> Enclosed:
     first, second, third, fourth = divisors
     q, most = square.high, square.size
     rest = (q / first) * (q / second) * (1.0 - q / third * (1.0 - q / fourth))
-    size = largest(np.abs(rest), square.radius.shape[1:])
+    size = np.abs(rest)
     left = 8.0 * UNIT_ROUNDOFF * size + most**5 / (first * second * third * fourth)
     moved = 2.0 * (most / first) / second * square.radius
-    tail = Enclosed.sharing(
-        rest, np.zeros_like(rest), moved + both(left + UNIT_ROUNDOFF * most**2 / first, left)
-    )
+    tail = Enclosed.of(rest, 0.0, *(moved + both(left + UNIT_ROUNDOFF * most**2 / first, left)))
     return Enclosed.of(1.0) - square * _inverse(int(first)) + tail
 
 
@@ -284,37 +350,41 @@ def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
     """Of two numbers, in plain doubles; an infinite radius where the divisor may be 0.
 
     With n, r the numerator and its radius and d, s the divisor's, the exact quotient differs from n/d by at
-    most (r + |n/d| s) / (|d| - s); the two middles and the division are rounded by 4 u of it together.
+    most (r + |n/d| s) / (|d| - s). Each middle is rounded by 2 u of itself, and the quotient by u.
     """
     n, d = numerator.middle, divisor.middle
     r, s = aligned(numerator.radius, divisor.radius)
-    shape = np.broadcast_shapes(r.shape, s.shape)[1:]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        value = n / d
-        least, size = -largest(-np.abs(d), shape), largest(np.abs(value), shape)
-        left = least - s
-        radius = np.where(left > 0.0, (r + size * s) / left, np.inf)
-    value = np.where(d != 0.0, value, 0.0)
-    return Enclosed.sharing(value, np.zeros_like(value), radius + 4.0 * UNIT_ROUNDOFF * size)
+        found = _about(np.where(d != 0.0, n / d, 0.0), numerator, divisor)
+        left = np.abs(divisor.high) - divisor.reach - s
+        off = r + 2.0 * UNIT_ROUNDOFF * numerator.size + found.size * (s + 2.0 * UNIT_ROUNDOFF * divisor.size)
+        radius = np.where(left > 0.0, off / left + UNIT_ROUNDOFF * found.size, np.inf)
+    return Enclosed(found.high, found.low, found.radius + radius, found.change, found.reach)
 
 
 def root(square: Enclosed) -> Enclosed:
     """Square root of what is not negative, in plain doubles.
 
-    |sqrt x - sqrt m| = |x - m| / (sqrt x + sqrt m) <= r / sqrt m, and where m < r it is at most sqrt(m + r);
-    the middle and the root are rounded by 2 u of it together.
+    |sqrt x - sqrt m| = |x - m| / (sqrt x + sqrt m) <= r / sqrt m, and where that says less at most
+    sqrt(m + r). The middle is rounded by 2 u of itself, and the root by u.
     """
-    value, shape = np.sqrt(np.maximum(square.middle, 0.0)), square.radius.shape[1:]
+    found = _about(np.sqrt(np.maximum(square.middle, 0.0)), square)
+    off = square.radius + 2.0 * UNIT_ROUNDOFF * square.size
     with np.errstate(divide="ignore", invalid="ignore"):
-        least = -largest(-value, shape)
-        radius = np.fmin(square.radius / least, np.sqrt(square.size + square.radius))
-    return Enclosed.sharing(value, np.zeros_like(value), radius + 2.0 * UNIT_ROUNDOFF * largest(value, shape))
+        by_slope = off / np.maximum(found.high - found.reach, 0.0)
+    radius = np.fmin(by_slope, np.sqrt(square.size + off)) + UNIT_ROUNDOFF * found.size
+    return Enclosed(found.high, found.low, found.radius + radius, found.change, found.reach)
 
 
 def angle(sine: Enclosed, cosine: Enclosed) -> Enclosed:
     """atan2(sine, cosine), rad, in plain doubles; each has radii of its own, of at most pi."""
     found = np.arctan2(sine.middle, cosine.middle)
-    return Enclosed.sharing(found, np.zeros_like(found), angle_error(sine, cosine, found))
+    return Enclosed.of(found, 0.0, *angle_error(sine, cosine, found))
+
+
+def _about(values: Array, *operands: Enclosed) -> Enclosed:
+    """Plain numbers that share anchors as operands do."""
+    return anchored(values, np.broadcast_shapes(*(operand.high.shape for operand in operands)))
 
 
 def angle_error(sine: Enclosed, cosine: Enclosed, found: Array) -> Array:

@@ -29,7 +29,7 @@ each coordinate differs by among them,
 holds at each of them, a the one whose inverse X is. What is left of C(y) is seen at each by itself, so their
 bounds lose no more than z of their steps.
 
-Floating point: C(y) is taken in twice the working precision (see `double_double`), about the known
+Floating point: C(y) is taken in twice the working precision (see `enclosure`), about the known
 coordinates that the user's numbers mean (`Mechanism.known_data`). What is left of uncertainty in C(y), d,
 adds |X| d to e; products with X add gamma_n of Higham's book, in z as well. Not covered: the rounding of the
 bound's own last operations, made up for by a factor of 1 + 1e-6; it is evaluated in ordinary rounding,
@@ -44,10 +44,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.double_double import doubled_residual
+from pointcoord.numerics.enclosed_rows import differences, residual
+from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.quadratic import QuadraticMap
-from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
@@ -128,28 +129,22 @@ class Certificate:
         return np.asarray(INFLATION * (np.abs(self.step) + self.spread + self.tail[..., None]))
 
 
-def certify(
-    system: QuadraticMap, y: Array, factors: Factors, data: Array, low: Array | None = None
-) -> Certificate:
+def certify(system: QuadraticMap, pose: Enclosed, factors: Factors) -> Certificate:
     """Bound the distance from poses to the assemblies near them.
 
     Args:
-        y: computed coordinates, shape (..., m, size): groups of m poses that lie close together.
-        factors: factorisation of C_u at or very near the middle pose of each group.
-        data: uncertainty of each known coordinate, shape (..., m, size).
-        low: what the known coordinates lack, shape (..., m, size); nothing unless given.
+        pose: computed coordinates, (..., m, size): groups of m poses that lie close together, with what their
+            known ones lack and are uncertain by.
+        factors: factorisation of C_u at or very near the anchor of each group.
     """
     n, inverse = system.unknowns, factors.preconditioner
-    magnitude = np.abs(inverse)
-    data = data.max(axis=-2, keepdims=True)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-        low = np.zeros_like(y) if low is None else low
-        residual, doubt = doubled_residual(system, y, low, data)
-        doubt = doubt + (n + 2) * EPS * np.abs(residual).max(axis=-2, keepdims=True)
-        step, spread = applied(inverse, residual), applied(magnitude, doubt)
+        rows = residual(system, differences(system, pose))
+        middle = rows.middle
+        doubt = rows.radius[0] + (n + 3) * EPS * np.abs(middle).max(axis=-2, keepdims=True)
+        step, spread = applied(inverse, middle), applied(np.abs(inverse), doubt)
         eta = (np.abs(step) + spread).max(axis=-1)
-        missing = data + np.abs(low).max(axis=-2, keepdims=True)
-        defect = defect_of(system, y, inverse, missing[..., 0, :])
+        defect = defect_of(system, pose, inverse)
         z = defect.sum(axis=-1).max(axis=-1)
         found = ball(eta, z[..., None], system.lipschitz(inverse)[..., None])
     return Certificate(
@@ -158,31 +153,30 @@ def certify(
         newton_constant=found.constant,
         contraction=found.contraction,
         defect=defect,
-        residual=residual,
+        residual=middle,
         step=step,
         spread=spread,
         tail=found.tail,
     )
 
 
-def defect_of(system: QuadraticMap, y: Array, inverse: Array, data: Array) -> Array:
+def defect_of(system: QuadraticMap, pose: Enclosed, inverse: Array) -> Array:
     """At least |I - X C_u| at every pose of a group, element by element, (..., unknowns, unknowns).
 
     Args:
-        y: (..., m, size).
-        inverse: X of the middle pose.
-        data: how far any coordinate may be off, (..., size).
+        pose: (..., m, size).
+        inverse: X of the anchor.
     """
-    n, anchor = system.unknowns, y[..., y.shape[-2] // 2, :]
-    reach = (1.0 + 4.0 * UNIT_ROUNDOFF) * np.abs(y - anchor[..., None, :]).max(axis=-2)
+    n, anchor = system.unknowns, pose.high[..., 0, :]
+    data = pose.radius[0] + np.abs(pose.low)
     matrix = system.jacobian(anchor)
-    doubted = (n + 2) * EPS * np.abs(matrix) + system.jacobian_uncertainty(data + reach)
+    doubted = (n + 2) * EPS * np.abs(matrix) + system.jacobian_uncertainty((data + pose.reach)[..., 0, :])
     return np.asarray(np.abs(np.eye(n) - inverse @ matrix) + np.abs(inverse) @ doubted)
 
 
 def applied(matrix: Array, vectors: Array) -> Array:
     """The product of each matrix, (..., n, n), with m vectors, (..., m, n)."""
-    # As in `doubled_residual`, coordinate by coordinate.
+    # Coordinate by coordinate, so that the poses lie side by side in memory.
     product = np.empty((matrix.shape[-2], *vectors.shape[:-1]))
     by_vector = components_last(product)
     np.matmul(matrix, vectors.swapaxes(-1, -2), out=by_vector.swapaxes(-1, -2))

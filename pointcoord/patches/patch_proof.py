@@ -38,7 +38,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.double_double import doubled_residual
+from pointcoord.numerics.enclosed_rows import differences, residual
+from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION, ball
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.multi_index import powers, products
@@ -130,8 +131,8 @@ def _remaining(
     rest[:, pairs.targets] = np.moveaxis(by_power, 0, 1)
     rest[:, 1 : own.count] += left[:, :1] * right[:, 1:] + left[:, 1:] * right[:, :1]
     rows = system.gather(rest)
-    nothing = np.zeros_like(low)
-    rows[:, 0], doubt = doubled_residual(system, series[:, 0], low, nothing)
+    centre = residual(system, differences(system, Enclosed.of(series[:, 0], low)))
+    rows[:, 0] = centre.middle
     exponents = powers(inputs, 2 * order).exponents
     stepped = Jet.of(rows @ np.swapaxes(inverse, -1, -2), exponents)
     # Each coefficient is a sum of products of rounded differences: two terms and what its row sums at order
@@ -149,7 +150,7 @@ def _remaining(
     moved += doubted[0] * later[0] + first[0] * doubted[1]
     spread = (rounded + moved).each(lambda part: _gathered(system, part))
     spread += Jet.of(rows, exponents).scaled((system.unknowns + 2) * EPS)
-    spread += Jet.constant(doubt, inputs)
+    spread += Jet.constant(centre.radius[0] + UNIT_ROUNDOFF * np.abs(rows[:, 0]), inputs)
     return stepped + Jet(
         (spread.value[:, None] @ magnitude)[:, 0],
         spread.first @ magnitude,

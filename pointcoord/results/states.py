@@ -140,6 +140,10 @@ class StatesAtInstants:
         """Nothing: they were solved for."""
         return ()
 
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """There are no series."""
+        return np.zeros(len(instants), dtype=np.intp)
+
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave."""
         return self.solved.left[np.searchsorted(self.solved.times, instants)]
@@ -270,8 +274,12 @@ class StatesOfChain:
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave at the start of each segment."""
         left = np.array([np.max(segment.left) for segment in self.chain.segments])
+        return np.asarray(left[self.pieces(instants)])
+
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Number of the segment of each instant."""
         starts = [segment.start for segment in self.chain.segments]
-        return np.asarray(left[np.searchsorted(starts, instants, side="right") - 1])
+        return np.asarray(np.searchsorted(starts, instants, side="right") - 1)
 
     @property
     def work(self) -> Work:

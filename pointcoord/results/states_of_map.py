@@ -132,6 +132,10 @@ class StatesOfMap:
         parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Number of the patch of each instant."""
+        return self.patches.lookup.at(self._inputs(instants)[0])
+
     def unsolved(self, instants: Array) -> Array:
         """Nothing: middles of patches are solved for as finely as rounding allows."""
         return np.zeros(len(instants))

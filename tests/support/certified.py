@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import Certificate, certify
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -17,7 +18,8 @@ Array = NDArray[np.float64]
 def certify_alone(system: QuadraticMap, y: Array, data: Array | None = None) -> Certificate:
     """The certificate of poses of shape (..., size), each by its own inverse."""
     data = np.zeros_like(y) if data is None else data
-    found = certify(system, y[..., None, :], factorise(system.jacobian(y)), data[..., None, :])
+    pose = Enclosed.of(y[..., None, :], 0.0, data[..., None, :])
+    found = certify(system, pose, factorise(system.jacobian(y)))
     return replace(
         found,
         **{

@@ -51,7 +51,7 @@ def test_neighbours_that_share_an_inverse_are_as_well_proven_as_each_alone_in_an
     instants = np.linspace(motion.times[0], motion.times[-1], 4500)
     mixed = np.random.default_rng(1).permutation(4500)
     together, other = (motion.proof_of(motion.at(each), rates) for each in (instants, instants[mixed]))
-    monkeypatch.setattr("pointcoord.bounds.certified_poses.SIZES", (1,))
+    monkeypatch.setattr("pointcoord.bounds.certified_poses.LARGEST", 1)
     alone = motion.proof_of(motion.at(instants), rates)
     assert not np.array_equal(together.pose_bound, alone.pose_bound)  # they were proven together
     # Sharing may cost this part of the pose's error, of the step and of what it leaves; a carried point is

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord.bounds.certified_poses import CertifiedPoses, Known
+from pointcoord.bounds.certified_poses import CertifiedPoses, grouped, with_known
 from pointcoord.bounds.enclosed_points import enclosed_coordinates
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.enclosure import Enclosed
@@ -64,18 +64,17 @@ def enclosed(
         state[:, P], state[:, Q] = p, q
         states.append(state)
     states[0][:, ONE] = 1.0
-    nothing = Known(*np.zeros((3, COUNT)))
-    mechanism = SimpleNamespace(map=system, drawn_lacks=np.zeros(5), drawn_doubt=np.zeros(5))
-    poses = CertifiedPoses.of(cast(Mechanism, mechanism), states[0], {P: nothing, Q: nothing})
-    assert poses.groups.size == 1
-    driven = [{P: Enclosed.of(p[:, None]), Q: Enclosed.of(q[:, None])} for p, q in numbers[1:]]
-    rates = [state[:, None] for state in states[1:]]
-    exact_states = enclosed_coordinates(
-        cast(Mechanism, mechanism), poses, rates, driven, np.full(COUNT, unsolved), ()
-    )
-    return [
-        Enclosed.sharing(state.high[:, 0], state.low[:, 0], state.radius[:, :, 0]) for state in exact_states
+    mechanism = cast(Mechanism, SimpleNamespace(map=system, drawn_lacks=np.zeros(5), drawn_doubt=np.zeros(5)))
+    groups, factors = grouped(system, states[0], (P, Q))
+    assert groups.size == 1
+    driven = [{P: Enclosed.of(p[:, None]), Q: Enclosed.of(q[:, None])} for p, q in numbers]
+    poses = CertifiedPoses.of(mechanism, groups, factors, states[0][:, None], driven[0])
+    rates = [
+        with_known(state[:, None], 1, known) for state, known in zip(states[1:], driven[1:], strict=True)
     ]
+    exact_states = enclosed_coordinates(mechanism, poses, rates, np.full(COUNT, unsolved), ())
+    assert not any(state.change.any() for state in exact_states)
+    return [Enclosed.of(s.high[:, 0], s.low[:, 0], *s.radius[:, :, 0]) for s in exact_states]
 
 
 @pytest.mark.parametrize("off", [U, 1e-9, 1e-5, 1e-3])

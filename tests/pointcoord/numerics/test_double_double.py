@@ -1,4 +1,4 @@
-"""Sums, products and residuals in twice the working precision, against rational arithmetic."""
+"""Sums and products in twice the working precision, against rational arithmetic."""
 
 from fractions import Fraction
 
@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import (
-    doubled_residual,
     exact_square,
     pair_cross,
     pair_product,
@@ -38,46 +37,6 @@ def test_squares_of_distances_are_right_to_the_square_of_the_rounding_unit(seed:
     high, low = exact_square(a, b)
     exact = sum((Fraction(p) - Fraction(q)) ** 2 for p, q in zip(a.tolist(), b.tolist(), strict=True))
     assert abs(Fraction(float(high)) + Fraction(float(low)) - exact) <= 256 * U**2 * exact
-
-
-@given(seed=st.integers(0, 2**32 - 1), moved=st.booleans())
-def test_doubled_residual_is_right_to_within_what_it_says_itself(
-    strut: Mechanism, seed: int, moved: bool
-) -> None:
-    rng = np.random.default_rng(seed)
-    system, n = strut.map, strut.map.unknowns
-    y = strut.drawn + np.concatenate([rng.normal(size=n), np.zeros(system.size - n)])
-    low = np.zeros_like(y)
-    low[n:] = rng.uniform(-4.0, 4.0, size=system.size - n) * float(U) * y[n:]
-    data = np.abs(y) * 1e-10 * moved
-    value, doubt = doubled_residual(system, y, low, data)
-    meant = [
-        Fraction(a) + Fraction(b) + Fraction(c)
-        for a, b, c in zip(
-            y.tolist(), low.tolist(), (data * rng.uniform(-1.0, 1.0, size=len(y))).tolist(), strict=True
-        )
-    ]
-    for row, found, least in zip(system.rows, value.tolist(), doubt.tolist(), strict=True):
-        exact = sum(
-            Fraction(p.coefficient)
-            * (meant[p.left[0]] - meant[p.left[1]])
-            * (meant[p.right[0]] - meant[p.right[1]])
-            for p in row
-        )
-        assert abs(Fraction(found) - exact) <= Fraction(least)
-        if not moved:
-            # One rounding of the result is all that is left of it, and squares of roundings.
-            assert least <= 3 * float(U) * abs(found) + 1e-28
-
-
-def test_residuals_of_a_batch_are_those_of_its_members(strut: Mechanism) -> None:
-    rng = np.random.default_rng(4)
-    y = strut.drawn + rng.normal(size=(2, 3, strut.map.size))
-    low, data = 1e-17 * rng.normal(size=y.shape), 1e-12 * rng.random(y.shape)
-    value, doubt = doubled_residual(strut.map, y, low, data)
-    for member in np.ndindex(2, 3):
-        alone = doubled_residual(strut.map, y[member], low[member], data[member])
-        assert np.array_equal([value[member], doubt[member]], alone)
 
 
 @given(seed=st.integers(0, 2**32 - 1))

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.numerics.enclosure import Enclosed, angle, cross, dot, quotient, root
+from pointcoord.numerics.enclosure import Enclosed, anchored, angle, cross, dot, quotient, root
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 U = 2.0**-53
@@ -37,6 +37,113 @@ def test_sums_and_products_of_any_numbers_within_the_radii_lie_within_theirs(
     # Nothing but the radii of the operands and some roundings of twice the working precision.
     own = abs(a.high) * b.radius[0] + a.radius[0] * (abs(b.high) + b.radius[0])
     assert (a * b).radius[0] <= 1.001 * own + 17 * U**2 * abs(float(a.high * b.high)) + 2e-300
+
+
+REACHES = st.sampled_from([0.0, 2.0**-40, 0.01, 3.0])
+
+
+def group(rng: np.random.Generator, reach: float, radius: float) -> Enclosed:
+    """Numbers in five groups of four."""
+    high = rng.uniform(0.5, 2.0, (5, 1))
+    radii = np.abs(rng.uniform(0.0, radius, (2, 5, 1)))
+    change = reach * rng.uniform(-1.0, 1.0, (5, 4))
+    return Enclosed(high, U * high * rng.uniform(-1.0, 1.0, (5, 1)), radii, change, np.full((5, 1), reach))
+
+
+def exact_group(number: Enclosed, part: float = 0.0) -> list[Fraction]:
+    """The numbers, each with a part of its proven radius."""
+    parts = (number.high, number.low, number.change, number.radius[0])
+    each = zip(*(np.broadcast_to(a, (5, 4)).ravel().tolist() for a in parts), strict=True)
+    return [Fraction(h) + Fraction(lo) + Fraction(c) + Fraction(part) * Fraction(r) for h, lo, c, r in each]
+
+
+@given(st.integers(0, 2**32 - 1), REACHES, REACHES, st.sampled_from([0.0, 1e-18, 0.1]))
+def test_sums_and_products_of_groups_lie_within_radii_that_they_share(
+    seed: int, first: float, second: float, radius: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    a, b, one = group(rng, first, radius), group(rng, second, radius), Enclosed.of(rng.uniform(0.5, 2.0))
+    s, t = rng.choice([-1.0, 1.0], 2).tolist()
+    x, y = exact_group(a, s), exact_group(b, t)
+    z = [exact(one)] * 20
+    for made, true in (
+        (a + b, [p + q for p, q in zip(x, y, strict=True)]),
+        (a - b, [p - q for p, q in zip(x, y, strict=True)]),
+        (a * b, [p * q for p, q in zip(x, y, strict=True)]),
+        (one * a, [p * q for p, q in zip(x, z, strict=True)]),
+        (a - one, [p - q for p, q in zip(x, z, strict=True)]),
+        (a.scaled(0.25), [p / 4 for p in x]),
+    ):
+        least = np.broadcast_to(made.radius[0], (5, 4)).ravel().tolist()
+        found = exact_group(made)
+        for p, q, r in zip(found, true, least, strict=True):
+            assert abs(p - q) <= Fraction(r) * (1 + Fraction(1, 10**6))
+        assert (np.abs(made.change) <= made.reach * (1.0 + 4 * U)).all()
+
+
+def test_what_rounds_changes_is_counted_and_no_more_than_that() -> None:
+    """Of exact numbers the largest error is a good part of the radius, which is u of the reach."""
+    rng = np.random.default_rng(3)
+    pairs = [(group(rng, 0.7, 0.0), group(rng, 0.9, 0.0)) for _ in range(200)]
+    made: dict[str, list[tuple[Enclosed, list[Fraction]]]] = {
+        "sum": [
+            (a + b, [p + q for p, q in zip(exact_group(a), exact_group(b), strict=True)]) for a, b in pairs
+        ],
+        "product": [
+            (a * b, [p * q for p, q in zip(exact_group(a), exact_group(b), strict=True)]) for a, b in pairs
+        ],
+    }
+    for seed in range(200):
+        values = np.random.default_rng(seed).uniform(0.5, 9.0, (5, 4))
+        about = anchored(values, (5, 1))
+        made.setdefault("anchored", []).append((about, [Fraction(v) for v in values.ravel().tolist()]))
+        low = U * values * rng.uniform(-1.0, 1.0, values.shape)
+        lone = Enclosed.of(values.ravel(), low.ravel())
+        parts = zip(lone.high.tolist(), lone.low.tolist(), strict=True)
+        true = [Fraction(h) + Fraction(lo) for h, lo in parts]
+        made.setdefault("together", []).append((lone.together(lambda x: x.reshape(5, 4)), true))
+    for name, cases in made.items():
+        shares = []
+        for number, true in cases:
+            radii = np.broadcast_to(number.radius[0], (5, 4)).ravel().tolist()
+            for p, q, r in zip(exact_group(number), true, radii, strict=True):
+                assert abs(p - q) <= Fraction(r), name
+                shares.append(float(abs(p - q) / Fraction(r)) if r else 0.0)
+        assert max(shares) > 0.2, name
+
+
+def test_a_group_is_as_far_from_reported_numbers_as_it_says_and_a_quotient_is_within_its_radius() -> None:
+    rng = np.random.default_rng(5)
+    for reach in (0.0, 1e-3, 0.3):
+        a, b = group(rng, reach, 1e-17), group(rng, reach, 1e-17)
+        small = a * Enclosed.of(1e-16)
+        found = quotient(small, b)
+        reported = b.middle * (1.0 + 4.0 * U * rng.uniform(-1.0, 1.0, (5, 4)))
+        apart = b.apart(reported).ravel().tolist()
+        radius = np.broadcast_to(found.radius[0], (5, 4)).ravel().tolist()
+        for part in (-1.0, 1.0):
+            for x, y, r, most in zip(
+                exact_group(b, part), reported.ravel().tolist(), apart, apart, strict=True
+            ):
+                assert abs(x - Fraction(y)) <= Fraction(r) <= Fraction(most)
+            for n, d, q, r in zip(
+                exact_group(small, part), exact_group(b, -part), exact_group(found), radius, strict=True
+            ):
+                assert abs(n / d - q) <= Fraction(r)
+
+
+@pytest.mark.parametrize("reach", [0.0, 1e-6, 0.01, 0.4])
+def test_cosines_and_sines_of_a_group_lie_within_radii_that_they_share(reach: float) -> None:
+    rng = np.random.default_rng(7)
+    angle = group(rng, reach, 1e-19)
+    with mpmath.workdps(50):
+        for found, function in zip(angle.cosine_sine(), (mpmath.cos, mpmath.sin), strict=True):
+            radius = np.broadcast_to(found.radius[0], (5, 4)).ravel().tolist()
+            for part in (-1.0, 0.0, 1.0):
+                for x, value, r in zip(exact_group(angle, part), exact_group(found), radius, strict=True):
+                    true = function(mpmath.mpf(x.numerator) / x.denominator)
+                    assert abs(true - mpmath.mpf(value.numerator) / value.denominator) <= r
+            assert (found.radius[0] <= 1e-18 + 9.0 * U * reach).all()
 
 
 def test_a_power_of_two_rounds_nothing_but_what_falls_below_the_normal_numbers() -> None:
@@ -79,10 +186,7 @@ def test_quotients_roots_and_angles_of_groups_lie_within_their_radii(seed: int) 
     r = 10.0 ** rng.uniform(-12.0, -2.0, (2, 3, 1))
     middles, off = rng.choice([-1.0, 1.0], (2, 3, 5)) * rng.uniform(0.1, 3.0, (2, 3, 5)), np.empty((2, 3, 5))
     off[:] = r * rng.choice([-1.0, 1.0], (2, 3, 5))
-    x, y = (
-        Enclosed.sharing(m, np.zeros_like(m), np.stack([part, part]))
-        for m, part in zip(middles, r, strict=True)
-    )
+    x, y = (anchored(m, part.shape, part, part) for m, part in zip(middles, r, strict=True))
     (a, b), one = middles + off, Enclosed.of(0.3)
     for found, true in (
         (quotient(x, y), a / b),

@@ -1,0 +1,51 @@
+"""The rows of a quadratic map of coordinates that are enclosed (see `enclosure`)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.quadratic import QuadraticMap
+
+Indices = NDArray[np.intp]
+Edges = tuple[Enclosed, Enclosed]
+
+
+def differences(system: QuadraticMap, state: Enclosed) -> Edges:
+    """Both differences of every term, (..., terms), of coordinates (..., size)."""
+    (first, second), (left, right) = system.differences
+    each = state.take(first) - state.take(second)
+    return each.take(left), each.take(right)
+
+
+def residual(system: QuadraticMap, a: Edges) -> Enclosed:
+    """C(a) of the differences of a state, (..., rows)."""
+    return _row_sums(system, a[0] * a[1])
+
+
+def twice_polar(system: QuadraticMap, a: Edges, b: Edges) -> Enclosed:
+    """2 B(a, b) of two states' differences, (..., rows)."""
+    return _row_sums(system, (a[0] * b[1]).scaled(2.0) if a is b else a[0] * b[1] + b[0] * a[1])
+
+
+def _row_sums(system: QuadraticMap, products: Enclosed) -> Enclosed:
+    """Sums of terms, without their coefficients, into rows."""
+    coefficients, starts = system.terms
+    terms = products.scaled(coefficients)
+    total = terms.take(starts)
+    for rows, places in _runs(len(coefficients), starts):
+        longer = total.take(rows) + terms.take(places)
+        for whole, part in zip(total.parts, longer.parts, strict=True):
+            whole[..., rows] = part
+    return total
+
+
+def _runs(count: int, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
+    """Of runs of terms, those that have a second one, a third and so on, and its place."""
+    lengths = np.diff(starts, append=count)
+    for place in range(1, int(lengths.max())):
+        rows = np.flatnonzero(lengths > place)
+        yield rows, starts[rows] + place
