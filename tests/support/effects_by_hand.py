@@ -5,7 +5,7 @@ an effect adds a line to `BY_HAND`; a test finds it missing.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mpmath import mp, mpc, mpf, workdps
 
@@ -27,6 +27,9 @@ class Car:
         damper: its two ends, if there is one.
         in_chassis: the positions before the turns of the chassis.
         drawn: as drawn.
+        moving, moving_in_chassis: how the points and those in the chassis' frame change by an input, per mm.
+        driven_turn: how every body turns by the input.
+        origin: from the user's to that of the points.
         up, right, outboard: of the car.
     """
 
@@ -40,9 +43,19 @@ class Car:
     wheel_radius: mpf
     in_chassis: Mapping[str, Vector]
     drawn: Mapping[str, Vector]
+    moving: Mapping[str, Vector]
+    moving_in_chassis: Mapping[str, Vector]
+    driven_turn: Vector
+    origin: Vector
     up: Vector
     right: Vector
     outboard: Vector
+
+    def ahead(self, step: mpf) -> "Car":
+        """The car after a step of the input."""
+        points = {n: [plus(p[0], self.moving[n], step), *p[1:]] for n, p in self.points.items()}
+        in_chassis = {n: plus(p, self.moving_in_chassis[n], step) for n, p in self.in_chassis.items()}
+        return replace(self, points=points, in_chassis=in_chassis)
 
     @property
     def places(self) -> dict[str, Vector]:
@@ -161,6 +174,45 @@ def _damper(car: Car) -> Numbers:
     return {"dimension": {"damper_length": [mp.sqrt(dot(line, line))]}}
 
 
+STEP = mpf(10) ** -16  # of central differences: what they leave out is its square
+
+
+def _slopes(base: Callable[[Car], Numbers], car: Car) -> dict[str, mpf]:
+    """The derivative of each number of an effect by the input, by differences in many digits."""
+    (ahead,), (behind,) = (base(car.ahead(step)).values() for step in (STEP, -STEP))
+    return {name: (ahead[name][0] - behind[name][0]) / (2 * STEP) for name in ahead}
+
+
+def _by_rack(effect: str) -> Callable[[Car], Numbers]:
+    def numbers(car: Car) -> Numbers:
+        (quantity,) = BY_HAND[effect](car)
+        found = _slopes(BY_HAND[effect], car)
+        return {PER_MM[quantity]: {f"{name}_by_rack": [slope] for name, slope in found.items()}}
+
+    return numbers
+
+
+def _by_travel(effect: str) -> Callable[[Car], Numbers]:
+    def numbers(car: Car) -> Numbers:
+        (quantity,) = BY_HAND[effect](car)
+        travel = _slopes(_wheel_travel, car)["travel"]
+        found = _slopes(BY_HAND[effect], car)
+        return {PER_MM[quantity]: {f"{name}_by_travel": [slope / travel] for name, slope in found.items()}}
+
+    return numbers
+
+
+def _roll_centre(car: Car) -> Numbers:
+    """Where the normal of the contact point's way meets the middle plane, in the front view."""
+    contact, centre = car.contact(car.places), car.wheel_axis[1]
+    arm = plus(contact, car.places[centre], -1)
+    velocity = plus(car.moving[centre], cross(car.driven_turn, arm))
+    # The normal leads from the contact point inwards by its distance, and up by as much as it rises.
+    out = dot(plus(contact, car.origin), car.outboard)
+    return {"dimension": {"roll_centre_height": [out * dot(velocity, car.outboard) / dot(velocity, car.up)]}}
+
+
+PER_MM = {"wheel": "angle_gradient", "dimension": "dimension_gradient"}
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
     "velocity": _of_points("velocity", 1),
@@ -173,7 +225,11 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "wheel_travel": _wheel_travel,
     "steering_axis": _steering_axis,
     "damper": _damper,
+    "roll_centre": _roll_centre,
 }
+OF_THE_CAR = ("camber", "wheel_angles", "toe", "caster", "wheel_travel", "steering_axis", "damper")
+BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in OF_THE_CAR}
+BY_HAND |= {f"{name}_by_rack": _by_rack(name) for name in OF_THE_CAR}
 
 
 def by_hand(effect: str, car: Car) -> Numbers:

@@ -60,6 +60,14 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
     tilt = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
     with workdps(DIGITS):
         omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
+        # The knuckle moves as one body by an input, and every other point by itself.
+        turn, other_turn = (exactly(1e-3 * v) for v in rng.normal(size=(2, 3)))
+        knuckle = (*topology.bodies[topology.knuckle], *topology.wheel_axis)
+        shifts, other_shifts = (
+            {n: v if n in knuckle else plus(v, exactly(rng.normal(size=3))) for n in topology.points}
+            for v in (exactly(rng.normal(size=3)), exactly(rng.normal(size=3)))
+        )
+        origin = exactly(mechanism.origin)
         points = {}
         for name in topology.points:
             turned = axes @ tilt @ mechanism.drawing.vectors[name]
@@ -68,6 +76,10 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             velocity = plus(cross(omega, p), speed)
             acceleration = plus(plus(cross(alpha, p), cross(omega, cross(omega, p))), hard)
             points[name] = (plus(p, place), velocity, acceleration)
+        in_chassis = {
+            name: exactly(unit * (axes @ roll @ mechanism.drawing.vectors[name])) for name in points
+        }
+        places = {name: state[0] for name, state in points.items()}
         return Car(
             points=points,
             added=[exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))],
@@ -75,9 +87,11 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             bodies=tuple(topology.bodies),
             damper=topology.damper,
             wheel_radius=mpf(RADIUS),
-            in_chassis={
-                name: exactly(unit * (axes @ roll @ mechanism.drawing.vectors[name])) for name in points
-            },
+            in_chassis=in_chassis,
+            moving={n: plus(shifts[n], cross(turn, p)) for n, p in places.items()},
+            moving_in_chassis={n: plus(other_shifts[n], cross(other_turn, p)) for n, p in in_chassis.items()},
+            driven_turn=turn,
+            origin=origin,
             drawn={name: exactly(unit * mechanism.drawing.vectors[name]) for name in points},
             wheel_axis=topology.wheel_axis,
             steering_axis=topology.steering_axis,
@@ -99,7 +113,10 @@ def poses_of(car: Car, mechanism: Mechanism) -> Poses:
     """The car as a solver would report it, at one instant."""
     states = [{name: rounded(p[d])[None] for name, p in car.points.items()} for d in range(3)]
     in_chassis = {name: rounded(p)[None] for name, p in car.in_chassis.items()}
-    return Poses(mechanism, axes_of(car), states, in_chassis, [rounded(v)[None] for v in car.added])
+    added = [rounded(v)[None] for v in car.added]
+    one = tuple({n: rounded(p)[None] for n, p in of.items()} for of in (car.moving, car.moving_in_chassis))
+    slopes = dict.fromkeys(("by_travel", "by_rack"), one)
+    return Poses(mechanism, axes_of(car), states, in_chassis, added, slopes)
 
 
 def enclosed(vector: Vector, factor: float) -> Enclosed:
@@ -116,9 +133,12 @@ def exact_poses_of(car: Car, mechanism: Mechanism) -> EnclosedPoses:
     points = [{n: enclosed(p[d], TIME**d / unit) for n, p in car.points.items()} for d in range(3)]
     added = [enclosed(v, 1.0) for v in car.added]
     in_chassis = {n: enclosed(p, 1.0 / unit) for n, p in car.in_chassis.items()}
-    return EnclosedPoses(
-        mechanism, axes_of(car), points, in_chassis, added, [np.array([TIME**d]) for d in range(3)]
+    one = tuple(
+        {n: enclosed(p, 1.0 / unit) for n, p in of.items()} for of in (car.moving, car.moving_in_chassis)
     )
+    slopes = dict.fromkeys(("by_travel", "by_rack"), one)
+    powers = [np.array([TIME**d]) for d in range(3)]
+    return EnclosedPoses(mechanism, axes_of(car), points, in_chassis, added, powers, slopes)
 
 
 def parts(numbers: Numbers) -> Iterator[tuple[str, str, Array]]:
@@ -191,6 +211,10 @@ def test_its_proof_covers_a_wrong_number_and_what_is_expected_does_not(
             assert expected == pytest.approx(before, rel=1e-3)
 
 
+def turned_by(vectors: Mapping[str, Array], turn: Array) -> dict[str, Array]:
+    return {name: vector @ turn.T for name, vector in vectors.items()}
+
+
 @each_effect
 @some
 @given(seed=seeds, scene=cars, mirrored=st.booleans())
@@ -209,13 +233,14 @@ def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
         right=sense * (turn @ poses.axes.right),
         outboard=turn @ poses.axes.outboard,
     )
-    drawn = {n: place @ turn.T for n, place in mechanism.drawing.vectors.items()}
+    drawing = replace(mechanism.drawing, vectors=turned_by(mechanism.drawing.vectors, turn))
     other = Poses(
-        replace(mechanism, drawing=replace(mechanism.drawing, vectors=drawn)),
+        replace(mechanism, drawing=drawing, origin=mechanism.origin @ turn.T),
         axes,
-        [{n: state @ turn.T for n, state in states.items()} for states in poses.states],
-        {n: place @ turn.T for n, place in poses.in_chassis.items()},
+        [turned_by(states, turn) for states in poses.states],
+        turned_by(poses.in_chassis, turn),
         [None if added is None else added @ turn.T for added in poses.added],
+        {way: tuple(turned_by(of, turn) for of in both) for way, both in poses.slopes.items()},
     )
     found = effect.evaluate(poses)
     for quantity, part, array in parts(effect.evaluate(other)):
@@ -238,7 +263,7 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     added = [None if a is None else a * scale for a in poses.added]
     larger = replace(
         poses,
-        mechanism=replace(mechanism, unit=mechanism.unit * scale),
+        mechanism=replace(mechanism, unit=mechanism.unit * scale, origin=mechanism.origin * scale),
         axes=replace(poses.axes, wheel_radius=RADIUS * scale),
         states=states,
         in_chassis={n: place * scale for n, place in poses.in_chassis.items()},
@@ -246,7 +271,10 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     )
     found = EVERY[name].evaluate(poses)
     for quantity, part, array in parts(EVERY[name].evaluate(larger)):
-        factor = scale if QUANTITIES[quantity].unit.startswith("mm") else 1.0
+        # Slopes, per mm, are the same.
+        factor = {"mm": scale, "mm/s": scale, "mm/s^2": scale, "rad/mm": 1.0 / scale}.get(
+            QUANTITIES[quantity].unit, 1.0
+        )
         assert np.array_equal(array, factor * found[quantity][part])
 
 
