@@ -49,10 +49,6 @@ class Groups:
         """Numbers by group, (G, m, ...), as those of the instants, (N, ...)."""
         return array.reshape(-1, *array.shape[2:])[: self.count]
 
-    def most(self, array: Array) -> Array:
-        """The largest of each group, (G, ...), of numbers (N, ...)."""
-        return np.asarray(self.together(array).max(axis=1))
-
 
 @dataclass(frozen=True)
 class CertifiedPoses:
@@ -70,12 +66,7 @@ class CertifiedPoses:
 
     @classmethod
     def of(
-        cls,
-        mechanism: Mechanism,
-        groups: Groups,
-        factors: Factors,
-        y: Array,
-        driven: Mapping[int, Enclosed],
+        cls, mechanism: Mechanism, groups: Groups, factors: Factors, y: Array, driven: Mapping[int, Enclosed]
     ) -> CertifiedPoses:
         """Certify poses.
 
@@ -87,11 +78,6 @@ class CertifiedPoses:
         system = mechanism.map
         pose = with_known(y, system.unknowns, driven, mechanism.drawn_lacks, mechanism.drawn_doubt)
         return cls(groups, pose, factors, certify(system, pose, factors))
-
-    @property
-    def condition(self) -> Array:
-        """Condition number of the Jacobian of each group's anchor, (G,)."""
-        return self.factors.condition
 
 
 def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Groups, Factors]:

@@ -25,7 +25,7 @@ operands and a product by 8 u^2 of itself, and underflow by less than TINY.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -225,9 +225,7 @@ class Enclosed:
     def corrected(self, values: Array) -> Enclosed:
         """Values that are off by these numbers, which are far smaller, with what they are off added."""
         total = self.like(values) + self
-        return Enclosed(
-            total.high, total.low, both(total.radius[0], self.radius[1]), total.change, total.reach
-        )
+        return replace(total, radius=both(total.radius[0], self.radius[1]))
 
     def together(self, group: Callable[[Array], Array]) -> Enclosed:
         """Single numbers of instants, (N, ...), in groups of m, (G, m, ...), about the middle one of each.
