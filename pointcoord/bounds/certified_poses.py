@@ -91,12 +91,14 @@ def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Gr
     while True:
         groups = Groups(len(y), size)
         together = groups.together(y)
+        factors = factorise(system.jacobian(together[:, size // 2]))
+        if size == 1:
+            break
         moving = {place: anchored(together[..., place], (len(together), 1)) for place in driven}
         pose = with_known(together, system.unknowns, moving)
-        factors = factorise(system.jacobian(pose.high[:, 0]))
         with np.errstate(all="ignore"):
             z = defect_of(system, pose, factors.preconditioner).sum(axis=-1).max(initial=0.0)
-            if size == 1 or z <= SHARED:
+            if z <= SHARED:
                 break
             size = _power_of_two(size * SHARED / z)  # z falls about as the size does
     return groups, factors
