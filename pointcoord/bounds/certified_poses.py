@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +21,6 @@ from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
-Number = TypeVar("Number", bound=np.generic)
 
 # Poses of a group at most, and what sharing an inverse may cost their bounds: this part of the error.
 LARGEST, SHARED = 256, 0.02
@@ -37,7 +35,7 @@ class Groups:
     count: int
     size: int
 
-    def together(self, array: NDArray[Number]) -> NDArray[Number]:
+    def together(self, array: Array) -> Array:
         """Numbers of the instants, (N, ...), by group, (G, m, ...)."""
         number = -(-self.count // self.size)
         if number * self.size == self.count:

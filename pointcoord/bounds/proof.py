@@ -219,7 +219,7 @@ def _left_out(
         states: coordinates and their derivatives, (N, size), units per s^d.
     """
     groups, found = poses.groups, []
-    pieces = groups.together(solved.pieces(times))
+    pieces = groups.together(solved.pieces(times).astype(float))
     ends = np.zeros(pieces.shape, dtype=bool)
     ends[:, [0, -1]] = True
     over = pieces[:, 1:] != pieces[:, :-1]

@@ -163,8 +163,7 @@ class Enclosed:
         the same formulas, in plain doubles and from the anchors. The expected radius is that of functions
         right to a unit in the last place.
         """
-        still = np.zeros_like(self.high)
-        anchor = Enclosed(self.high, self.low, self.radius, still, still)
+        anchor = Enclosed.of(self.high, self.low, *self.radius)
         known = np.nan_to_num(self.high, posinf=0.0, neginf=0.0)
         place = np.clip(np.rint(known * STEPS), -FARTHEST, FARTHEST)
         places = (place + FARTHEST).astype(np.intp)
