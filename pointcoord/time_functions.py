@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import comb, factorial, perm
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -97,15 +97,17 @@ class Polynomial:
         """
         t = np.asarray(instants, dtype=float)
         result = np.zeros((*t.shape, order + 1))
+        # Python's own number in place of an array without dimensions, which takes five times as long.
+        numbers: Any = t if t.ndim else t.item()
+        count = min(order + 1, len(self.coefficients))
         with np.errstate(over="ignore", invalid="ignore"):
-            for k in range(min(order + 1, len(self.coefficients))):
-                high, low = self._shifted(k)
-                doubled = _doubled_horner(high, low, t)
-                if not np.isfinite(doubled).all():
-                    # Splitting a number above 1e300 overflows; there only the plain sum is left.
-                    plain = np.polynomial.polynomial.polyval(t, np.array(high))
-                    doubled = np.where(np.isfinite(doubled), doubled, plain)
-                result[..., k] = doubled
+            for k in range(count):
+                result[..., k] = _doubled_horner(*self._shifted(k), numbers)
+            if not np.isfinite(result).all():
+                # Splitting a number above 1e300 overflows; there only the plain sum is left.
+                for k in range(count):
+                    plain = np.polynomial.polynomial.polyval(t, np.array(self._shifted(k)[0]))
+                    np.copyto(result[..., k], plain, where=~np.isfinite(result[..., k]))
         return result
 
     def _shifted(self, k: int) -> tuple[list[float], list[float]]:
@@ -409,13 +411,13 @@ def _about(series: Array, doubts: Array, half: Array, rounded: Array) -> tuple[A
         return np.where(still, value, value - edge), np.where(still, value, value + edge)
 
 
-def _doubled_horner(highs: list[float], lows: list[float], t: Array) -> Array:
-    """sum_j (high_j + low_j) t^j, rounded about once."""
-    high, low = np.full_like(t, highs[-1]), np.full_like(t, lows[-1])
+def _doubled_horner(highs: list[Any], lows: list[Any], t: Any) -> Any:
+    """sum_j (high_j + low_j) t^j of an array or a number, rounded about once."""
+    high, low = highs[-1], lows[-1]
     for c, c_low in zip(highs[-2::-1], lows[-2::-1], strict=True):
         product, rest = two_product(high, t)
         rest = rest + low * t
-        high, carry = two_sum(product, np.array(c))
+        high, carry = two_sum(product, c)
         low = carry + (rest + c_low)
     return high + low
 
@@ -426,9 +428,11 @@ def cosine_and_sine(angle: Array) -> tuple[Array, Array]:
     Both are parts of e = exp(i a), and e' = i a' e gives, term by term,
     e_k = (i/k) sum_{j=1..k} j a_j e_{k-j}.
     """
+    count = angle.shape[-1]
+    # From the last term to the first, so that those that a term is made of are a slice.
     terms = np.zeros(angle.shape, dtype=complex)
-    terms.real[..., 0], terms.imag[..., 0] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
-    turned = 1j * np.arange(angle.shape[-1]) * angle
-    for k in range(1, angle.shape[-1]):
-        terms[..., k] = (turned[..., 1 : k + 1] * terms[..., k - 1 :: -1][..., :k]).sum(axis=-1) / k
-    return terms.real, terms.imag
+    terms.real[..., -1], terms.imag[..., -1] = np.cos(angle[..., 0]), np.sin(angle[..., 0])
+    turned = -1j * np.arange(count) * angle  # of which a scalar product takes the conjugate
+    for k in range(1, count):
+        terms[..., -1 - k] = np.vecdot(turned[..., 1 : k + 1], terms[..., -k:]) / k
+    return terms.real[..., ::-1], terms.imag[..., ::-1]

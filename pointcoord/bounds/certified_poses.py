@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +21,6 @@ from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
-Number = TypeVar("Number", bound=np.generic)
 
 # Poses of a group at most, and what sharing an inverse may cost their bounds: this part of the error.
 LARGEST, SHARED = 256, 0.02
@@ -37,7 +35,7 @@ class Groups:
     count: int
     size: int
 
-    def together(self, array: NDArray[Number]) -> NDArray[Number]:
+    def together(self, array: Array) -> Array:
         """Numbers of the instants, (N, ...), by group, (G, m, ...)."""
         number = -(-self.count // self.size)
         if number * self.size == self.count:
@@ -48,10 +46,6 @@ class Groups:
     def apart(self, array: Array) -> Array:
         """Numbers by group, (G, m, ...), as those of the instants, (N, ...)."""
         return array.reshape(-1, *array.shape[2:])[: self.count]
-
-    def most(self, array: Array) -> Array:
-        """The largest of each group, (G, ...), of numbers (N, ...)."""
-        return np.asarray(self.together(array).max(axis=1))
 
 
 @dataclass(frozen=True)
@@ -70,12 +64,7 @@ class CertifiedPoses:
 
     @classmethod
     def of(
-        cls,
-        mechanism: Mechanism,
-        groups: Groups,
-        factors: Factors,
-        y: Array,
-        driven: Mapping[int, Enclosed],
+        cls, mechanism: Mechanism, groups: Groups, factors: Factors, y: Array, driven: Mapping[int, Enclosed]
     ) -> CertifiedPoses:
         """Certify poses.
 
@@ -87,11 +76,6 @@ class CertifiedPoses:
         system = mechanism.map
         pose = with_known(y, system.unknowns, driven, mechanism.drawn_lacks, mechanism.drawn_doubt)
         return cls(groups, pose, factors, certify(system, pose, factors))
-
-    @property
-    def condition(self) -> Array:
-        """Condition number of the Jacobian of each group's anchor, (G,)."""
-        return self.factors.condition
 
 
 def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Groups, Factors]:
@@ -105,12 +89,14 @@ def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Gr
     while True:
         groups = Groups(len(y), size)
         together = groups.together(y)
+        factors = factorise(system.jacobian(together[:, size // 2]))
+        if size == 1:
+            break
         moving = {place: anchored(together[..., place], (len(together), 1)) for place in driven}
         pose = with_known(together, system.unknowns, moving)
-        factors = factorise(system.jacobian(pose.high[:, 0]))
         with np.errstate(all="ignore"):
             z = defect_of(system, pose, factors.preconditioner).sum(axis=-1).max(initial=0.0)
-            if size == 1 or z <= SHARED:
+            if z <= SHARED:
                 break
             size = _power_of_two(size * SHARED / z)  # z falls about as the size does
     return groups, factors

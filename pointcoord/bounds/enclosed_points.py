@@ -158,7 +158,7 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     rounded = _applied(magnitude, rest.radius[1, :, 0])
     # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
     # after one refinement.
-    shared = gamma * poses.condition * rounded.max(axis=-1)
+    shared = gamma * poses.factors.condition * rounded.max(axis=-1)
     return _moved(computed, step, proven + tail, rounded + shared[:, None])
 
 

@@ -172,7 +172,7 @@ def _positions(
     poses = CertifiedPoses.of(mechanism, groups, factors, together(y), driven)
     functions = reported.chassis.functions
     laws = {name: [law.enclosed(times)[0].together(together)] for name, law in functions.items()}
-    number = len(poses.condition)
+    number = len(poses.factors.condition)
     coordinates = enclosed_coordinates(mechanism, poses, (), np.zeros(number), ())
     return poses, _enclosed(mechanism, reported, coordinates, laws, [np.ones((number, 1))])
 
@@ -198,7 +198,7 @@ def _with_rates(
     powers = [time**d for d in range(len(rates) + 1)]
     computed = [rate.scaled(power[:, None, None]) for rate, power in zip(computed, powers[1:], strict=True)]
     cut = _left_out(poses, times, reported.solved, (y, *rates), powers)
-    unsolved = groups.most(reported.solved.unsolved(times))
+    unsolved = together(reported.solved.unsolved(times)).max(axis=1)
     coordinates = enclosed_coordinates(mechanism, poses, computed, unsolved, cut)
     return poses, _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
 
@@ -219,7 +219,7 @@ def _left_out(
         states: coordinates and their derivatives, (N, size), units per s^d.
     """
     groups, found = poses.groups, []
-    pieces = groups.together(solved.pieces(times))
+    pieces = groups.together(solved.pieces(times).astype(float))
     ends = np.zeros(pieces.shape, dtype=bool)
     ends[:, [0, -1]] = True
     over = pieces[:, 1:] != pieces[:, :-1]
@@ -230,7 +230,7 @@ def _left_out(
     starts = np.searchsorted(of, np.arange(len(ends)))
     for state, summed, power in zip(states, solved.summed(times[here]), powers, strict=False):
         value, time = state[here] * power[of, None], power[of]
-        made = summed.expected(value, poses.condition[of], time)
+        made = summed.expected(value, poses.factors.condition[of], time)
         found.append(np.maximum.reduceat(made, starts) if len(of) else made)
     return found
 
@@ -280,7 +280,9 @@ def _of_poses(
         else:
             bound = np.maximum(bound, error)
     middle = groups.together(times)[:, groups.size // 2]
-    condition = np.interp(times, middle, poses.condition) if groups.size > 1 else poses.condition
+    condition = (
+        np.interp(times, middle, poses.factors.condition) if groups.size > 1 else poses.factors.condition
+    )
     residual = np.abs(certificate.residual).max(axis=-1)
     own, bound, carried, gain, residual = (groups.apart(a) for a in (own, bound, carried, gain, residual))
     return float(mechanism.unit) * own, bound, carried, gain, condition, residual

@@ -135,7 +135,8 @@ class Mechanism:
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
         for drive, place in zip(topology.drives, topology.driven, strict=True):
             known[..., place - layout.unknowns] = drive.series(inputs[drive.input], self.drawing)
-        if np.isfinite(known).all() and all(np.isfinite(series).all() for series in inputs.values()):
+        # What is no number in an input is none in the coordinate that it drives.
+        if np.isfinite(known).all():
             return known
         for name, series in inputs.items():
             if not np.isfinite(series).all():

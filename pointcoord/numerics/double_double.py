@@ -60,8 +60,8 @@ def two_product(a: Array, b: Array) -> tuple[Array, Array]:
 
 
 def _upper_half(a: Array) -> Array:
-    scaled = SPLITTER * a
-    return np.asarray(scaled - (scaled - a))
+    scaled: Array = SPLITTER * a
+    return scaled - (scaled - a)
 
 
 def exact_square(a: Array, b: Array) -> tuple[Array, Array]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import QuadraticMap
 
-Indices = NDArray[np.intp]
 Edges = tuple[Enclosed, Enclosed]
 
 
@@ -35,17 +31,10 @@ def _row_sums(system: QuadraticMap, products: Enclosed) -> Enclosed:
     """Sums of terms, without their coefficients, into rows."""
     coefficients, starts = system.terms
     terms = products.scaled(coefficients)
-    total = terms.take(starts)
-    for rows, places in _runs(len(coefficients), starts):
-        longer = total.take(rows) + terms.take(places)
+    total, lengths = terms.take(starts), np.diff(starts, append=len(coefficients))
+    for place in range(1, int(lengths.max())):
+        rows = np.flatnonzero(lengths > place)
+        longer = total.take(rows) + terms.take(starts[rows] + place)
         for whole, part in zip(total.parts, longer.parts, strict=True):
             whole[..., rows] = part
     return total
-
-
-def _runs(count: int, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
-    """Of runs of terms, those that have a second one, a third and so on, and its place."""
-    lengths = np.diff(starts, append=count)
-    for place in range(1, int(lengths.max())):
-        rows = np.flatnonzero(lengths > place)
-        yield rows, starts[rows] + place

@@ -25,7 +25,7 @@ operands and a product by 8 u^2 of itself, and underflow by less than TINY.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -163,8 +163,7 @@ class Enclosed:
         the same formulas, in plain doubles and from the anchors. The expected radius is that of functions
         right to a unit in the last place.
         """
-        still = np.zeros_like(self.high)
-        anchor = Enclosed(self.high, self.low, self.radius, still, still)
+        anchor = Enclosed.of(self.high, self.low, *self.radius)
         known = np.nan_to_num(self.high, posinf=0.0, neginf=0.0)
         place = np.clip(np.rint(known * STEPS), -FARTHEST, FARTHEST)
         places = (place + FARTHEST).astype(np.intp)
@@ -225,9 +224,7 @@ class Enclosed:
     def corrected(self, values: Array) -> Enclosed:
         """Values that are off by these numbers, which are far smaller, with what they are off added."""
         total = self.like(values) + self
-        return Enclosed(
-            total.high, total.low, both(total.radius[0], self.radius[1]), total.change, total.reach
-        )
+        return replace(total, radius=both(total.radius[0], self.radius[1]))
 
     def together(self, group: Callable[[Array], Array]) -> Enclosed:
         """Single numbers of instants, (N, ...), in groups of m, (G, m, ...), about the middle one of each.

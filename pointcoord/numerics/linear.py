@@ -155,8 +155,9 @@ def factorise(matrix: Array) -> Factors:
     row_scale = np.ldexp(1.0, 1 - np.frexp(np.where(usable, largest, 1.0))[1])
     scaled = matrix * row_scale[..., None]
     sound = usable.all(axis=-1)
-    safe = scaled if sound.all() else _with_identity(scaled, sound)
-    blocks = inverse_by_blocks(safe) if sound.all() else None
+    whole = bool(sound.all())
+    safe = scaled if whole else _with_identity(scaled, sound)
+    blocks = inverse_by_blocks(safe) if whole else None
     if blocks is not None:
         condition = _condition(scaled, blocks.inverse)
         return Factors(scaled, blocks.inverse, row_scale, condition, blocks.substitution)
@@ -164,10 +165,10 @@ def factorise(matrix: Array) -> Factors:
         inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:
         # One member with an exact zero pivot stops the whole batch: set such members aside.
-        sound &= np.linalg.slogdet(safe)[0] != 0.0
+        sound, whole = sound & (np.linalg.slogdet(safe)[0] != 0.0), False
         inverse = np.linalg.inv(_with_identity(safe, sound))
     condition = _condition(scaled, inverse)
-    if not sound.all():
+    if not whole:
         inverse = np.where(sound[..., None, None], inverse, np.inf)
         condition = np.where(sound, condition, np.inf)
     return Factors(scaled, inverse, row_scale, condition)

@@ -44,7 +44,7 @@ class Product:
 
 Row = tuple[Product, ...]
 # Of a derivative's entries; see `_pattern`.
-Pattern = tuple[Indices, Array, Indices, Indices]
+Pattern = tuple[Indices, Indices, Array, Indices, Indices]
 
 # Terms times coordinates up to which full matrices of zeros and ones cost less than picking elements.
 DENSE = 2**14
@@ -173,15 +173,20 @@ class QuadraticMap:
     size: int
 
     @cached_property
-    def _terms(self) -> tuple[Array, Indices, Indices, Indices, Indices, Indices]:
+    def _terms(self) -> tuple[Array, Indices, Indices, Indices]:
+        """Coefficients of all terms, both ends of their left factors and then of their right ones, (2 terms,)
+        each, and where each row starts.
+        """
         products = [product for row in self.rows for product in row]
-        ends = np.array([(*p.left, *p.right) for p in products], dtype=np.intp).reshape(-1, 4)
+        ends = np.array([p.left for p in products] + [p.right for p in products], dtype=np.intp).reshape(
+            -1, 2
+        )
         starts = np.cumsum([0, *(len(row) for row in self.rows[:-1])])
         coefficients = np.array([p.coefficient for p in products])
-        return coefficients, ends[:, 0], ends[:, 1], ends[:, 2], ends[:, 3], starts.astype(np.intp)
+        return coefficients, ends[:, 0].copy(), ends[:, 1].copy(), starts.astype(np.intp)
 
     @cached_property
-    def _jacobian_pattern(self) -> tuple[Indices, Array, Indices, Indices]:
+    def _jacobian_pattern(self) -> Pattern:
         return _pattern(self, tuple(range(self.unknowns)))
 
     @cached_property
@@ -231,16 +236,16 @@ class QuadraticMap:
     @cached_property
     def differences(self) -> tuple[tuple[Indices, Indices], tuple[Indices, Indices]]:
         """Both ends of every difference, each once, and which of them are both factors of every term."""
-        _, a, b, c, d, _ = self._terms
-        ends, places = np.unique(
-            np.stack([np.concatenate([a, c]), np.concatenate([b, d])]), axis=1, return_inverse=True
-        )
-        return (ends[0], ends[1]), (places[: len(a)], places[len(a) :])
+        coefficients, plus, minus, _ = self._terms
+        ends, places = np.unique(np.stack([plus, minus]), axis=1, return_inverse=True)
+        count = len(coefficients)
+        return (ends[0], ends[1]), (places[:count], places[count:])
 
     def factors(self, y: Array) -> tuple[Array, Array]:
         """Both differences of every term, each of shape (..., terms)."""
-        _, a, b, c, d, _ = self._terms
-        return y.take(a, axis=-1) - y.take(b, axis=-1), y.take(c, axis=-1) - y.take(d, axis=-1)
+        coefficients, plus, minus, _ = self._terms
+        both, count = y.take(plus, axis=-1) - y.take(minus, axis=-1), len(coefficients)
+        return both[..., :count], both[..., count:]
 
     def gather(self, products: Array) -> Array:
         """Sum the products of factors, shape (..., terms), into rows, shape (..., rows)."""
@@ -276,19 +281,20 @@ class QuadraticMap:
     @property
     def filled(self) -> Indices:
         """Where C_u has entries, row after row, among all of its places."""
-        return self._jacobian_pattern[3]
+        return self._jacobian_pattern[-1]
 
     def entries(self, y: Array) -> Array:
         """These entries of C_u(y), shape (..., entries)."""
         return self._entries(y, self._jacobian_pattern)
 
     def _entries(self, y: Array, pattern: Pattern) -> Array:
-        factors, coefficients, first, _ = pattern
-        both = np.concatenate(self.factors(y), axis=-1)
-        return np.add.reduceat(both.take(factors, axis=-1) * coefficients, first, axis=-1)
+        plus, minus, coefficients, first, _ = pattern
+        parts = y.take(plus, axis=-1) - y.take(minus, axis=-1)
+        parts *= coefficients
+        return np.add.reduceat(parts, first, axis=-1)
 
     def _derivative(self, y: Array, pattern: Pattern, columns: int) -> Array:
-        flat = pattern[3]
+        flat = pattern[-1]
         matrix = np.zeros((*y.shape[:-1], len(self.rows) * columns))
         if len(flat):
             matrix[..., flat] = self._entries(y, pattern)
@@ -296,19 +302,12 @@ class QuadraticMap:
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
-        _, a, b, c, d, _ = self._terms
-        return self.jacobian_change(
-            data.take(a, axis=-1) + data.take(b, axis=-1), data.take(c, axis=-1) + data.take(d, axis=-1)
-        )
-
-    def jacobian_change(self, left: Array, right: Array) -> Array:
-        """The same when the two differences of each term move by `left` and `right`, (..., terms)."""
-        factors, coefficients, first, flat = self._jacobian_pattern
-        both = np.concatenate([left, right], axis=-1)
-        entries = np.add.reduceat(both.take(factors, axis=-1) * np.abs(coefficients), first, axis=-1)
-        matrix = np.zeros((*left.shape[:-1], len(self.rows) * self.unknowns))
-        matrix[..., flat] = entries
-        return matrix.reshape(*left.shape[:-1], len(self.rows), self.unknowns)
+        plus, minus, coefficients, first, flat = self._jacobian_pattern
+        parts = data.take(plus, axis=-1) + data.take(minus, axis=-1)
+        parts *= np.abs(coefficients)
+        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
+        matrix[..., flat] = np.add.reduceat(parts, first, axis=-1)
+        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""How far the computed C(y) may be from the exact one, shape (..., rows).
@@ -317,10 +316,11 @@ class QuadraticMap:
         coordinates (shape (..., size)); the row adds the rounding of its products and of their sum,
         gamma = (terms + 2) u relative to the sum of magnitudes (Higham, Accuracy and Stability, ch. 3).
         """
-        coefficients, a, b, c, d, starts = self._terms
-        left, right = (np.abs(factor) for factor in self.factors(y))
-        left_error = UNIT_ROUNDOFF * left + data.take(a, axis=-1) + data.take(b, axis=-1)
-        right_error = UNIT_ROUNDOFF * right + data.take(c, axis=-1) + data.take(d, axis=-1)
+        coefficients, plus, minus, starts = self._terms
+        sizes, count = np.abs(y.take(plus, axis=-1) - y.take(minus, axis=-1)), len(coefficients)
+        errors = UNIT_ROUNDOFF * sizes + data.take(plus, axis=-1) + data.take(minus, axis=-1)
+        left, right = sizes[..., :count], sizes[..., count:]
+        left_error, right_error = errors[..., :count], errors[..., count:]
         gamma = (max(len(row) for row in self.rows) + 2) * UNIT_ROUNDOFF
         spread = gamma * left * right + left * right_error + left_error * (right + right_error)
         return np.add.reduceat(spread * np.abs(coefficients), starts, axis=-1)
@@ -339,28 +339,23 @@ class QuadraticMap:
 
 @lru_cache(maxsize=256)
 def _pattern(system: QuadraticMap, coordinates: tuple[int, ...]) -> Pattern:
-    """Where each term's derivative goes: factor index, signed coefficient, run starts, flat position.
+    """What each term's derivative is: ends of a factor, signed coefficient, run starts, flat position.
 
-    d/dy_a of c (y_a - y_b) R is c R, so an entry takes the other factor of its term; factors are
-    numbered left ones first, then right ones.
+    d/dy_a of c (y_a - y_b) R is c R, so an entry takes the other factor of its term.
     """
-    count = sum(len(row) for row in system.rows)
     column = {coordinate: place for place, coordinate in enumerate(coordinates)}
-    entries: list[tuple[int, int, float]] = []
-    number = 0
+    entries: list[tuple[int, int, int, float]] = []
     for index, row in enumerate(system.rows):
         for product in row:
-            for ends, other in ((product.left, number + count), (product.right, number)):
+            for ends, other in ((product.left, product.right), (product.right, product.left)):
                 for coordinate, sign in ((ends[0], 1.0), (ends[1], -1.0)):
                     if coordinate in column:
                         position = index * len(column) + column[coordinate]
-                        entries.append((position, other, sign * product.coefficient))
-            number += 1
+                        entries.append((position, *other, sign * product.coefficient))
     entries.sort(key=lambda entry: entry[0])
-    flat = np.array([entry[0] for entry in entries], dtype=np.intp)
+    flat, plus, minus = (np.array([entry[i] for entry in entries], dtype=np.intp) for i in range(3))
     first = np.flatnonzero(np.diff(flat, prepend=-1)).astype(np.intp)
-    factors = np.array([entry[1] for entry in entries], dtype=np.intp)
-    return factors, np.array([entry[2] for entry in entries]), first, flat[first]
+    return plus, minus, np.array([entry[3] for entry in entries]), first, flat[first]
 
 
 @dataclass(frozen=True)

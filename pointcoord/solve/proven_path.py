@@ -170,7 +170,7 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors) -> floa
     flat = np.ascontiguousarray(local.swapaxes(1, 2)).reshape(pieces, n, -1)
     moved = (inverse @ flat).reshape(pieces, n, order + 1, n)
     moved[:, :, 0] -= np.eye(n)
-    change = np.abs(moved).sum(axis=2)
+    change = np.ones(order + 1) @ np.abs(moved)
     ends = (reach * np.arange(1.0, pieces + 1.0) / pieces)[:, None] ** powers
     remaining = (np.abs(inverse @ rest.T) @ ends[..., None])[..., 0]
     preconditioner = inverse * factors.row_scale
