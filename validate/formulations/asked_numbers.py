@@ -19,6 +19,12 @@ def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     return {quantity: asked[quantity] for quantity in QUANTITIES if quantity in asked}
 
 
+def asked_of_the_car(scene: Scene) -> tuple[str, ...]:
+    """The names of the numbers of the car that it asks for, of all quantities."""
+    asked = asked_numbers(scene).items()
+    return tuple(name for quantity, names in asked if QUANTITIES[quantity].of == "car" for name in names)
+
+
 def per_second(quantity: str) -> int:
     """How many times a quantity is divided by a time: 1 of a rate, 2 of an acceleration, by its unit."""
     return {"s": 1, "s^2": 2}.get(QUANTITIES[quantity].unit.partition("/")[2], 0)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
@@ -16,6 +17,7 @@ from validate.formulations.input_rates import rates
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
 from validate.reference import NoReferenceError
+from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
 
@@ -110,12 +112,17 @@ class Problem:
 
 
 def asked_of(found: Numbers, scene: Scene) -> Numbers:
-    """What a scene asks for, of all that was found."""
-    return {
-        quantity: {name: found[quantity][name] for name in names if name in found[quantity]}
-        for quantity, names in asked_numbers(scene).items()
-        if quantity in found
-    }
+    """What a scene asks for, of all that was found.
+
+    Numbers of the car of a quantity that is not found by its name are taken from `OF_CAR`.
+    """
+    asked: dict[str, dict[str, Array]] = {}
+    for quantity, names in asked_numbers(scene).items():
+        of_car = QUANTITIES[quantity].of == "car" and quantity not in found
+        numbers = found.get(OF_CAR if of_car else quantity)
+        if numbers is not None:
+            asked[quantity] = {name: numbers[name] for name in names if name in numbers}
+    return asked
 
 
 def require_the_drawn_car(scene: Scene, movement: Mapping[str, float]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
+from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Solution
 from validate.peers.errors import PeerError
@@ -80,5 +81,6 @@ class OutsideProgram:
         closed = engine.closed(TOLERANCE)
         require_the_drawn_car(problem.scene, linkage.moved(closed.places))
         poses = engine.poses(value, TOLERANCE, closed)
-        found = numbers_of(linkage, inputs.chassis, poses, engine.rates(poses, rate, bend))
+        wanted = asked_of_the_car(problem.scene)
+        found = numbers_of(linkage, inputs, poses, engine.rates(poses, rate, bend), wanted)
         return Found(found, linkage.accuracy(poses.last_step))

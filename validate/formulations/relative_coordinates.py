@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import Scene
 from validate.extras import MissingPackage
+from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Solution
 from validate.relative.errors import InputError, PoseError, RelativeError
@@ -76,8 +77,8 @@ def _found(problem: Problem, model: Model, poses: Poses) -> Found:
     inputs = {name: array[: len(poses.q)] for name, array in problem.laws.items()}
     model.require_left_out(poses, inputs)
     chassis = ChassisMotion.of(problem.scene.mechanism.plain(tuple(problem.scene.inputs)), inputs)
-    turn = None if chassis is None else chassis.turn[0]
-    numbers = model.numbers(poses, model.rates(poses, inputs), turn)
+    wanted = asked_of_the_car(problem.scene)
+    numbers = model.numbers(poses, model.rates(poses, inputs), inputs, wanted)
     with np.errstate(over="ignore"):  # what is too large has no claim either
         return Found(numbers if chassis is None else chassis.moved(numbers), model.accuracy(poses))
 

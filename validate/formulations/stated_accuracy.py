@@ -60,7 +60,7 @@ from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.asked_numbers import asked_numbers, per_second
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Accuracy, Numbers
@@ -175,6 +175,7 @@ class _Held:
         self.unit = float(design.unit)
         self.origin = np.array([float(x) for x in design.origin])
         self.asked = asked_numbers(scene)
+        self.of_car = [name for name in asked_of_the_car(scene) if name in EFFECTS]
         drawn = {name: np.array([float(x) for x in place]) for name, place in design.table.items()}
         self.size = float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
         bodies = {name: points for name, points in design.plain["bodies"].items() if name != CHASSIS}
@@ -307,8 +308,7 @@ class _Held:
         """Of every number of the car: what the pose makes of it, and the points that it is made of, which are
         off themselves.
         """
-        names = [n for q, names in self.asked.items() if QUANTITIES[q].of == "car" for n in names]
-        wanted = available((n for n in names if n in EFFECTS), provided(self.design))
+        wanted = available(self.of_car, provided(self.design))
         drawn = drawn_car(self.design, float)
         placed = known.equations.points_of([jet.value for jet in solved], drawn.points)
         count = 3 * len(placed)

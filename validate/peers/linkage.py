@@ -39,7 +39,7 @@ from validate.spanning_tree.cut import (
     across,
     cut,
 )
-from validate.spanning_tree.wheels import Angle, knuckles, wheel_angles
+from validate.spanning_tree.wheels import Wheels, knuckles
 
 Array = NDArray[np.float64]
 
@@ -86,10 +86,12 @@ class Inputs:
     Attributes:
         driven: driven coordinates with two time derivatives, (N, 3, drives).
         chassis: motion of the chassis, None if it rests.
+        laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
     """
 
     driven: Array
     chassis: ChassisMotion | None
+    laws: Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,8 @@ class Linkage:
         joints: of the tree and of what closes and drives it, parents first.
         rods: bodies on a ball joint whose spin about the axis changes nothing.
         points: every moving point, as a place of a body.
-        bodies: those whose turn is reported, by the name that it is reported by. wheel: likewise the angles.
+        bodies: those whose turn is reported, by the name that it is reported by.
+        wheels: what numbers of the wheels are made of.
     """
 
     plain: Mapping[str, Any]
@@ -112,7 +115,7 @@ class Linkage:
     driven: tuple[Driven, ...]
     points: Mapping[str, Place]
     bodies: Mapping[str, str]
-    wheel: Mapping[str, Angle]
+    wheels: Wheels
 
     @property
     def unit(self) -> float:
@@ -155,7 +158,7 @@ class Linkage:
             if drive.kind == "angle" and outside.any():
                 raise PeerError(f"{drive.input} is outside 0 to pi rad", int(np.argmax(outside)))
             found.append(driven.coordinate(near))
-        return Inputs(np.stack(found, axis=-1), ChassisMotion.of(self.plain, laws))
+        return Inputs(np.stack(found, axis=-1), ChassisMotion.of(self.plain, laws), laws)
 
 
 def linkage_of(plain: Mapping[str, Any]) -> Linkage:
@@ -178,7 +181,7 @@ def linkage_of(plain: Mapping[str, Any]) -> Linkage:
         driven=tuple(made.driven),
         points={name: place for name, place in tree.points.items() if place.body != CHASSIS},
         bodies=knuckles(plain),
-        wheel=wheel_angles(plain),
+        wheels=Wheels.of(plain, tree),
     )
 
 

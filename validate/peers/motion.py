@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.peers.linkage import Linkage
-from validate.spanning_tree.chassis import ChassisMotion
+from validate.peers.linkage import Inputs, Linkage
+from validate.reference.effects.registry import ANGLES
+from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
 
@@ -49,12 +50,20 @@ class Rates:
 
 
 def numbers(
-    linkage: Linkage, chassis: ChassisMotion | None, poses: Poses, rates: Rates | None = None
+    linkage: Linkage,
+    inputs: Inputs | None,
+    poses: Poses,
+    rates: Rates | None = None,
+    effects: Iterable[str] = ANGLES,
 ) -> dict[str, dict[str, Array]]:
-    """All that is known of a motion, by quantity and name, in the car's axes, mm, s and rad."""
+    """All that is known of a motion, by quantity and name, in the car's axes, mm, s and rad.
+
+    Args:
+        inputs: what moves the chassis; it rests where there are none.
+        effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
+    """
     tree, unit, still = linkage.tree, linkage.unit, np.zeros((len(poses.driven), 3))
     near = {name: poses.places.get(name, still + place.at) for name, place in tree.points.items()}
-    lines = {name: near[angle.end] - near[angle.start] for name, angle in linkage.wheel.items()}
     found: dict[str, dict[str, Array]] = {
         "position": {name: place * unit + tree.origin for name, place in near.items()}
     }
@@ -63,8 +72,7 @@ def numbers(
             found[quantity] = {name: moving.get(name, still) * unit for name in near}
         found["angular_velocity"] = dict(rates.spin)
         found["angular_acceleration"] = dict(rates.spin_rate)
-    if chassis is not None:
-        found = chassis.moved(found)
-        lines = {name: chassis.directions(line) for name, line in lines.items()}
-    found["wheel"] = {name: angle.of(lines[name]) for name, angle in linkage.wheel.items()}
+    if inputs is not None and inputs.chassis is not None:
+        found = inputs.chassis.moved(found)
+    found[OF_CAR] = linkage.wheels.numbers(near, {} if inputs is None else inputs.laws, effects)
     return found

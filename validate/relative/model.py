@@ -10,7 +10,7 @@ Lengths go in and come out in mm; inside, the car has a size between one and two
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,12 +18,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from validate.reference.effects.registry import ANGLES
 from validate.relative.errors import HardpointsError, InputError, PoseError
 from validate.relative.follow import Blocked, Poses, at_places, closed, follow
 from validate.relative.rates import Rates, rates_of
 from validate.relative.tree import Places, Tree, U
 from validate.spanning_tree.cut import CutError, Place, cut
-from validate.spanning_tree.wheels import Angle, knuckles, wheel_angles
+from validate.spanning_tree.wheels import OF_CAR, Wheels, knuckles
 
 Array = NDArray[np.float64]
 Arrays = dict[str, Array]
@@ -43,7 +44,7 @@ ROUNDING = 4.0 * U
 
 @dataclass(frozen=True)
 class Line:
-    """A line through two points, of which angles are made.
+    """A line through two points, of which numbers of the wheel are made.
 
     Attributes:
         places: start and end, or, where one body carries both, their difference as drawn: a direction, which
@@ -72,13 +73,14 @@ class Model:
     Attributes:
         tree: Pinocchio's model and the rows; its workspace serves one thread at a time.
         home: the closed drawing.
-        bodies: those that are reported, by the name that they are reported by. wheel: likewise the angles.
+        bodies: those that are reported, by the name that they are reported by.
+        wheels: what numbers of the wheels are made of.
     """
 
     tree: Tree
     home: Poses
     bodies: Mapping[str, str]
-    wheel: Mapping[str, Angle]
+    wheels: Wheels
 
     @property
     def unit(self) -> float:
@@ -99,9 +101,8 @@ class Model:
 
     @cached_property
     def _lines(self) -> dict[tuple[str, str], Line]:
-        """Lines of the angles, by their points."""
-        ends = dict.fromkeys((angle.start, angle.end) for angle in self.wheel.values())
-        return {pair: Line.of(self.tree, *self.tree.cut.line(*pair)) for pair in ends}
+        """Lines of the wheels, by their points."""
+        return {pair: Line.of(self.tree, *self.tree.cut.line(*pair)) for pair in self.wheels.ends}
 
     def poses(self, inputs: Inputs, times: ArrayLike, tolerance: float = 0.0) -> Poses:
         """Solve the poses at instants one after the other, from the closed drawing.
@@ -188,24 +189,26 @@ class Model:
         second = rates.accelerations
         return {name: second[:, self.tree.number[body], 3:] for name, body in self.bodies.items()}
 
-    def angles(self, poses: Poses, turn: Array | None = None) -> Arrays:
-        """Angles of the wheels, (N,), rad; on a chassis that is turned, (N, 3, 3)."""
-        lines = {ends: self._turned(line.now(poses.matrices), turn) for ends, line in self._lines.items()}
-        return {name: angle.of(lines[angle.start, angle.end]) for name, angle in self.wheel.items()}
-
-    @staticmethod
-    def _turned(vectors: Array, turn: Array | None) -> Array:
-        return vectors if turn is None else np.asarray(np.einsum("nij,n...j->n...i", turn, vectors))
-
     def numbers(
-        self, poses: Poses, rates: Rates | None = None, turn: Array | None = None
+        self,
+        poses: Poses,
+        rates: Rates | None = None,
+        inputs: Mapping[str, Array] | None = None,
+        effects: Iterable[str] = ANGLES,
     ) -> dict[str, Arrays]:
-        """By quantity and point, body or angle: all, or positions and angles where no rates are given.
+        """By quantity and name: all, or what positions tell where no rates are given.
 
         Args:
-            turn: of the chassis, which only angles are given with, (N, 3, 3).
+            inputs: as for `rates`; of those that turn the chassis, which only the numbers of the wheels are
+                given with.
+            effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
         """
-        found = {"position": self.positions(poses), "wheel": self.angles(poses, turn)}
+        along = {ends: line.now(poses.matrices) for ends, line in self._lines.items()}
+        places = self._by_point(at_places(poses, self._places))
+        found = {
+            "position": self.positions(poses),
+            OF_CAR: self.wheels.numbers(places, inputs or {}, effects, along),
+        }
         if rates is None:
             return found
         return found | {
@@ -290,4 +293,4 @@ def build(plain: Mapping[str, Any]) -> Model:
     except Blocked as end:
         there = tree.cut.told(end.here)
         raise PoseError(end.problem, None, there, there, end.condition, end.links) from end
-    return Model(tree, home, knuckles(plain), wheel_angles(plain))
+    return Model(tree, home, knuckles(plain), Wheels.of(plain, tree.cut))

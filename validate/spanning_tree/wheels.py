@@ -1,63 +1,106 @@
-"""Angles of wheels and steering axes: each that of a line projected on two directions of the car.
+"""Wheels of a mechanism for witnesses: numbers that are made of where points are.
 
-    angle = atan2(line . sine, line . cosine)
-
-With n from the inner point of the wheel's axis to the wheel centre, k from the lower to the upper point of
-the steering axis, u up, o outboard, f forward and r = -f: camber (n . -u, n . o), kingpin (k . -o, k . u),
-toe (n . f, n . o), caster (k . r, k . u).
+They are the reference's own definitions, over arrays: a witness that takes them shares these with the
+reference. It is a witness of where the points are, not of what is made of them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.spanning_tree.cut import car_directions
+from validate.reference.effects.car import RADIUS, Car, DrawnCar, Line
+from validate.reference.effects.registry import ANGLES, EFFECTS, available
+from validate.reference.vectors import Vector
+from validate.spanning_tree.chassis import ChassisMotion
+from validate.spanning_tree.cut import SpanningTree, car_directions
 
 Array = NDArray[np.float64]
+Ends = tuple[str, str]
 
-ANGLES = {
-    "camber": ("wheel_axis", "down", "outboard"),
-    "kingpin": ("steering_axis", "inboard", "up"),
-    "toe": ("wheel_axis", "forward", "outboard"),
-    "caster": ("steering_axis", "rearward", "up"),
-}
+OF_CAR = "car"
+"""What witnesses call these numbers among all that they found, by quantity."""
 
 
 @dataclass(frozen=True)
-class Angle:
-    """One angle of a wheel.
+class Wheels:
+    """The wheels of a flat mechanism, in its tree's lengths.
 
     Attributes:
-        start, end: points of its line. sine, cosine: directions, (3,).
+        plain: the flat mechanism. tree: of it.
+        cars: as drawn, of each part by its prefix, which the names of its roles and numbers have.
     """
 
-    start: str
-    end: str
-    sine: Array
-    cosine: Array
+    plain: Mapping[str, Any]
+    tree: SpanningTree
+    cars: Mapping[str, DrawnCar]
 
-    def of(self, line: Array) -> Array:
-        """The angle of the line, (N,), rad, from its vector, (N, 3)."""
-        return np.arctan2(line @ self.sine, line @ self.cosine)
+    @classmethod
+    def of(cls, plain: Mapping[str, Any], tree: SpanningTree) -> Wheels:
+        """The wheels that roles name."""
+        parts: dict[str, dict[str, Any]] = {}
+        for role, named in plain["roles"].items():
+            part, dot, last = role.rpartition(".")
+            parts.setdefault(part + dot, {})[last] = named
+        directions, radius = car_directions(plain), plain["wheel_radius"]
+        points = {name: _vector(place) for name, place in tree.drawn.items()}
+        cars = {
+            prefix: DrawnCar.of(
+                roles=roles,
+                points=points,
+                up=_vector(directions["up"]),
+                right=_vector(directions["right"]),
+                side=_side(plain, roles, directions["right"]),
+                wheel_radius=None if radius is None else radius / tree.unit,
+                origin=_vector(-tree.origin / tree.unit),
+                number=float,
+            )
+            for prefix, roles in parts.items()
+        }
+        return cls(plain, tree, {prefix: car for prefix, car in cars.items() if car.ends})
 
+    @property
+    def ends(self) -> tuple[Ends, ...]:
+        """The two points of every line."""
+        return tuple(dict.fromkeys(pair for car in self.cars.values() for pair in car.ends.values()))
 
-def wheel_angles(plain: Mapping[str, Any]) -> dict[str, Angle]:
-    """The angles that a flat mechanism's roles give, by name; of a part with its prefix."""
-    directions, found = car_directions(plain), {}
-    for role, points in plain["roles"].items():
-        prefix, dot, last = role.rpartition(".")
-        for name, (axis, sine, cosine) in ANGLES.items():
-            if last == axis:
-                outboard = _outboard(plain, prefix + dot, directions)
-                named = {**directions, "outboard": outboard, "inboard": -outboard}
-                start, end = points
-                found[prefix + dot + name] = Angle(start, end, named[sine], named[cosine])
-    return found
+    def numbers(
+        self,
+        places: Mapping[str, Array],
+        inputs: Mapping[str, Array],
+        names: Iterable[str] = ANGLES,
+        along: Mapping[Ends, Array] | None = None,
+    ) -> dict[str, Array]:
+        """Numbers of the wheels, (N,), rad or mm; those that are not made of positions alone are left out.
+
+        Args:
+            places: of the points relative to the chassis, (N, 3), in the tree's lengths.
+            inputs: value, rate and acceleration by name, (N, 3), rad or mm, and s; of those that turn the
+                chassis, where they are given.
+            names: of the numbers, as the reference has them.
+            along: lines from one point to another, (N, 3), where they are known better than both ends.
+        """
+        points = {name: places[name] for ends in self.ends for name in ends}
+        vectors = {ends: points[ends[1]] - points[ends[0]] for ends in self.ends} | dict(along or {})
+        turned_points, turned_vectors = points, vectors
+        turns = {name: given for name, given in self.plain["inputs"].items() if "turns" in given}
+        still = {**self.plain, "points": self.tree.drawn, "inputs": turns}
+        turning = ChassisMotion.of(still, inputs)
+        if turning is not None:
+            turned_points = turning.moved({"position": points})["position"]
+            turned_vectors = {ends: turning.directions(vector) for ends, vector in vectors.items()}
+        wanted = [name for name in names if name in EFFECTS and EFFECTS[name].along is None]
+        found = {}
+        for prefix, one in self.cars.items():
+            car = Car(one, _lines(one, turned_points, turned_vectors), _lines(one, points, vectors))
+            has = {*one.ends, *([] if one.wheel_radius is None else [RADIUS])}
+            for name, effect in available(wanted, has).items():
+                found[prefix + name] = effect.evaluate(car) * self.tree.unit**effect.power
+        return found
 
 
 def knuckles(plain: Mapping[str, Any]) -> dict[str, str]:
@@ -65,13 +108,24 @@ def knuckles(plain: Mapping[str, Any]) -> dict[str, str]:
     return {body: body for role, body in plain["roles"].items() if role.rpartition(".")[2] == "knuckle"}
 
 
-def _outboard(plain: Mapping[str, Any], prefix: str, directions: Mapping[str, Array]) -> Array:
-    """Outboard of a part: from its inboard point to the wheel centre; without such points the car's side."""
-    right, roles = directions["right"], plain["roles"]
-    inboard, wheel = roles.get(f"{prefix}inboard"), roles.get(f"{prefix}wheel_axis", ("", ""))[1]
+def _lines(car: DrawnCar, points: Mapping[str, Array], vectors: Mapping[Ends, Array]) -> dict[str, Line]:
+    return {
+        role: Line(_vector(points[ends[0]]), _vector(points[ends[1]]), _vector(vectors[ends]))
+        for role, ends in car.ends.items()
+    }
+
+
+def _vector(array: Array) -> Vector:
+    """Its components, (3,) or (N, 3)."""
+    return array[..., 0], array[..., 1], array[..., 2]
+
+
+def _side(plain: Mapping[str, Any], roles: Mapping[str, Any], right: Array) -> int:
+    """1 where outboard of a part is right, from its inboard point to the wheel centre; without such points by
+    the car's side.
+    """
+    inboard, wheel = roles.get("inboard"), roles.get("wheel_axis", ("", ""))[1]
     if inboard and wheel:
         points = plain["points"]
-        on_the_right = (np.array(points[wheel]) - np.array(points[inboard])) @ right > 0.0
-    else:
-        on_the_right = plain["side"] == "right"
-    return right if on_the_right else -right
+        return 1 if (np.array(points[wheel]) - np.array(points[inboard])) @ right > 0.0 else -1
+    return 1 if plain["side"] == "right" else -1

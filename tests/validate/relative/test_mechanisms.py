@@ -16,6 +16,7 @@ from relative_cars import sine
 from validate.relative.errors import InputError, PoseError
 from validate.relative.model import Model, build
 from validate.spanning_tree.chassis import ChassisMotion
+from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
 TABLES = json.loads((Path(__file__).parent / "vdsim_rear_axles.json").read_text("utf-8"))
@@ -43,7 +44,7 @@ def test_a_rear_axle_moves_as_vdsim_says(name: str) -> None:
     model = build(plain(mechanism_file(name), {"points": points, **CAR}, ["wheel_travel"]))
     numbers, _ = everything(model, {"wheel_travel": held(1000.0 * table[:, 0])})
     track = (numbers["position"]["wheel_centre"][:, 1] - points["wheel_centre"][1]) / 1000.0
-    found = np.stack([numbers["wheel"]["camber"], numbers["wheel"]["toe"], track], axis=-1)
+    found = np.stack([numbers[OF_CAR]["camber"], numbers[OF_CAR]["toe"], track], axis=-1)
     assert np.abs(found - table[:, 1:]).max() < car["accuracy"]
     # Any other angle would be seen.
     assert np.abs(table[:, 1:]).max(axis=0).min() > 1e4 * car["accuracy"]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way, laws_at
+from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of, require_the_drawn_car
 from validate.formulations.outside_programs import linkage_in
 from validate.formulations.registry import OUTSIDE, WORDS, engine_of
@@ -44,7 +45,8 @@ def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
             when = f"at t = {instants[error.instant]:.6g} s: {error.problem}"
             raise PeerError(when, error.instant) from None
         rates = engine.rates(poses, rate, bend) if moves else None
-        return Answer(asked_of(numbers(linkage, inputs.chassis, poses, rates), scene), poses.counts)
+        found = numbers(linkage, inputs, poses, rates, asked_of_the_car(scene))
+        return Answer(asked_of(found, scene), poses.counts)
 
     return solve
 

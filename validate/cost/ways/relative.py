@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way, laws_at
+from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of
 from validate.formulations.protocol import Numbers
 from validate.spanning_tree.chassis import ChassisMotion
@@ -32,7 +33,7 @@ def in_joints(scene: Scene, tolerance: float) -> Solve:
         found: Numbers = {"position": model.positions(poses)}
         if scene.effects:
             rates = model.rates(poses, laws) if moves else None
-            found = model.numbers(poses, rates, None if chassis is None else chassis.turn[0])
+            found = model.numbers(poses, rates, laws, asked_of_the_car(scene))
         found = found if chassis is None else chassis.moved(found)
         return Answer(asked_of(found, scene), {"newton_steps": poses.steps, "residuals": poses.evaluations})
 

@@ -1,1 +1,1 @@
-"""What the reference tells of a pose beside points and bodies: one file an effect."""
+"""What the reference tells of a pose beside points and bodies: one file for a group of effects."""

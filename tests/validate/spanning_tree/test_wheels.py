@@ -1,0 +1,89 @@
+"""Numbers of wheels by the witnesses, held to the reference at the same poses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from mechanism_files import plain_scene
+from numpy.typing import NDArray
+
+from validate.peers.in_mujoco import InMujoco
+from validate.peers.linkage import linkage_of
+from validate.peers.motion import numbers as numbers_of
+from validate.reference import Design, instants_of
+from validate.reference.effects.registry import ANGLES, EFFECTS, OF_POSITIONS
+from validate.relative.model import build
+from validate.spanning_tree.wheels import OF_CAR
+
+Array = NDArray[np.float64]
+
+# The greatest is 1 m; places are rounded some ten times, raised by no more than a hundred, and an angle is
+# that of a line of 50 mm.
+WITHIN_MM, WITHIN_RAD = 1e-10, 2e-12
+SCENES = ("pushrod", "double-wishbone", "off-axis-strut", "five-link")
+
+
+def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
+    """A mechanism on a chassis that rolls, pitches and is displaced, and three poses near its drawing."""
+    plain = plain_scene(name, wheel_radius=300.0)
+    first, second = plain["bodies"]["chassis"][:2]
+    plain["inputs"] |= {
+        "roll": {"turns": "chassis", "about": first, "along": "forward"},
+        "pitch": {"turns": "chassis", "about": second, "along": "right"},
+        "aside": {"moves": "chassis", "along": "right"},
+        "up": {"moves": "chassis", "along": "up"},
+    }
+    drawn = {drive.input: drive for drive in build(plain).tree.drives}
+    unit = build(plain).unit
+    values = {n: d.drawn if d.is_angle else d.drawn * unit for n, d in drawn.items()}
+    sizes = {n: 0.1 if d.is_angle else 8.0 for n, d in drawn.items()}
+    values |= {"roll": 0.03, "pitch": -0.02, "aside": 40.0, "up": -70.0, "heave": 5.0}
+    laws = {}
+    for n in plain["inputs"]:
+        going = values[n] + sizes.get(n, 0.01) * np.array([-1.0, 0.3, 1.0])
+        laws[n] = np.stack([going, 0.0 * going, 0.0 * going], axis=-1)
+    return plain, laws
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_witnesses_give_every_number_of_positions(name: str) -> None:
+    plain, laws = moved(name)
+    model = build(plain)
+    by_tree = model.numbers(model.poses(laws, np.arange(3.0)), None, laws, OF_POSITIONS)[OF_CAR]
+    linkage = linkage_of(plain)
+    engine, inputs = InMujoco(linkage), linkage.inputs(laws)
+    poses = engine.poses(inputs.driven[:, 0], 1e-12, engine.closed(1e-12))
+    by_program = numbers_of(linkage, inputs, poses, effects=EFFECTS)[OF_CAR]
+    each = [{n: tuple(law[i].tolist()) for n, law in laws.items()} for i in range(3)]
+    exact = list(instants_of(Design.from_plain(plain), each, effects=OF_POSITIONS))
+    assert set(by_tree) == set(by_program) == set(exact[0].effects)
+    assert ("damper_length" in by_tree) == (name == "pushrod")
+    for found in (by_tree, by_program):
+        for number, values in found.items():
+            within = WITHIN_RAD if EFFECTS[number].unit == "rad" else WITHIN_MM
+            wanted = [float(instant.effects[number]) for instant in exact]
+            assert np.abs(values - wanted).max() < within, number
+
+
+def test_only_the_numbers_that_are_asked_for_are_given_and_angles_where_none_are() -> None:
+    plain, laws = moved("double-wishbone")
+    model = build(plain)
+    poses = model.poses(laws, np.arange(3.0))
+    assert set(model.numbers(poses)[OF_CAR]) == set(ANGLES)
+    asked = ["toe", "recession", "toe_by_travel", "no such number"]
+    assert set(model.numbers(poses, effects=asked)[OF_CAR]) == {"toe", "recession"}
+
+
+def test_the_wheels_of_an_axle_are_each_of_their_own_side() -> None:
+    plain = plain_scene("axle-parallel", wheel_radius=300.0)
+    model = build(plain)
+    values = {"left.wheel_travel": 20.0, "right.wheel_travel": 20.0, "rack": 0.0}
+    laws = {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}
+    found = model.numbers(model.poses(laws, np.zeros(1)), effects=OF_POSITIONS)[OF_CAR]
+    right = {name.removeprefix("right."): x for name, x in found.items() if name.startswith("right.")}
+    assert set(right) == set(OF_POSITIONS) - {"damper_length"}
+    for name, value in right.items():
+        assert np.abs(found[f"left.{name}"] - value).max() < WITHIN_MM, name
+    assert np.abs(right["travel"] - 20.0).max() < WITHIN_MM
