@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses, Groups, grouped, with_known
-from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates, enclosed_points
+from pointcoord.bounds.enclosed_points import EnclosedPoses, Points, enclosed_coordinates, enclosed_points
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.slopes import input_slopes
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.vectors import LAST, NEXT
@@ -40,6 +41,11 @@ LONGEST = 400
 
 class Bounded(Protocol):
     """Something that reports numbers and knows how far they are off."""
+
+    @property
+    def way(self) -> str:
+        """Along which way it takes derivatives by an input; empty if it takes none."""
+        ...
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> Numbers:
         """Proven and expected error of each of its numbers, each with a leading dimension of 2.
@@ -200,7 +206,35 @@ def _with_rates(
     cut = _left_out(poses, times, reported.solved, (y, *rates), powers)
     unsolved = together(reported.solved.unsolved(times)).max(axis=1)
     coordinates = enclosed_coordinates(mechanism, poses, computed, unsolved, cut)
-    return poses, _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
+    exact = _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
+    ways = dict.fromkeys(effect.way for effect in reported.effects if effect.way)
+    slopes = {way: _slopes(mechanism, poses, y, laws, reported.chassis, unsolved, way) for way in ways}
+    return poses, replace(exact, slopes=slopes)
+
+
+def _slopes(
+    mechanism: Mechanism,
+    poses: CertifiedPoses,
+    y: Array,
+    laws: Laws,
+    chassis: ChassisMotion,
+    unsolved: Array,
+    way: str,
+) -> tuple[Points, Points]:
+    """The derivatives of places by the input of a way: as rates where it alone moves, by 1 a unit of time."""
+    (name, *_) = (*mechanism.topology.driven_along(way), "")
+    known = {}
+    for place, drive in _drives(mechanism).items():
+        value = laws[drive.input][0]
+        rate, still = (value.like(np.full(value.middle.shape, float(r))) for r in (drive.input == name, 0.0))
+        known[place] = drive.enclosed((value, rate, still), mechanism.drawing)[1]
+    computed = poses.groups.together(input_slopes(mechanism, y, name))
+    slopes = with_known(computed, mechanism.map.unknowns, known)
+    coordinates = enclosed_coordinates(mechanism, poses, [slopes], unsolved, ())
+    places = enclosed_points(mechanism, coordinates)
+    values = {n: laws[n][0] for n in chassis.turning}
+    held = {n: [value, value.like(np.zeros(value.middle.shape))] for n, value in values.items()}
+    return chassis.turned_exactly(held, places, float(mechanism.unit))[1], places[1]
 
 
 def _left_out(

@@ -56,16 +56,17 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
     """A car of a drawing's shape, turned anyhow against axes of its own, in a rigid motion at an instant."""
     topology, unit = mechanism.topology, float(mechanism.unit)
     axes = Rotation.random(random_state=rng).as_matrix()  # columns: rearward, right, up
-    roll = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
     tilt = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
+    own = np.random.default_rng(int(1e9 * abs(tilt[0, 1])))
+    roll = Rotation.from_rotvec(own.normal(size=3) * 0.2).as_matrix()
     with workdps(DIGITS):
         omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
         # The knuckle moves as one body by an input, and every other point by itself.
-        turn, other_turn = (exactly(1e-3 * v) for v in rng.normal(size=(2, 3)))
+        turn, other_turn = (exactly(1e-3 * v) for v in own.normal(size=(2, 3)))
         knuckle = (*topology.bodies[topology.knuckle], *topology.wheel_axis)
         shifts, other_shifts = (
-            {n: v if n in knuckle else plus(v, exactly(rng.normal(size=3))) for n in topology.points}
-            for v in (exactly(rng.normal(size=3)), exactly(rng.normal(size=3)))
+            {n: v if n in knuckle else plus(v, exactly(own.normal(size=3))) for n in topology.points}
+            for v in (exactly(own.normal(size=3)), exactly(own.normal(size=3)))
         )
         origin = exactly(mechanism.origin)
         points = {}
