@@ -50,6 +50,7 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from itertools import combinations
 from math import sqrt
 
@@ -68,7 +69,9 @@ from validate.reference import Design
 from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
-from validate.reference.effects.at_pose import car_at, drawn_car, provided
+from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
+from validate.reference.effects.car import KNUCKLE, Car
+from validate.reference.effects.effect import RACK
 from validate.reference.effects.registry import EFFECTS, available
 from validate.reference.in_doubles import (
     inverse_of,
@@ -84,7 +87,7 @@ from validate.reference.in_doubles import (
 )
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_turns
-from validate.reference.vectors import Vector
+from validate.reference.vectors import Scalar, Vector, each
 
 Array = NDArray[np.float64]
 
@@ -200,13 +203,31 @@ class _Held:
         change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
-        claims = self._claims(off, with_slopes(jets, slopes), known, growth)
+        along = {}
+        for way, driver in self._drivers().items():
+            # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
+            driving = self._driving(way, driver, laws)
+            own = unknown_jets_of(values, inverse, driving)
+            along[way] = with_slopes(own, motion_of_a_miss(first, own, inverse, driving)), driving
+        claims = self._claims(off, with_slopes(jets, slopes), known, growth, along)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
             q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
             for q, of in claims.items()
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
+
+    def _drivers(self) -> dict[str, str]:
+        """By way, the input that numbers along it are derivatives by; of the ways that are asked for."""
+        ways = {EFFECTS[name].along for name in self.of_car}
+        return {way: name for way, name in drivers(self.design).items() if way in ways}
+
+    def _driving(self, way: str, driver: str, laws: Mapping[str, Array]) -> Known:
+        """The inputs where they are, and one that moves; a slide by the design's own lengths."""
+        rate = self.unit if way == RACK else 1.0
+        held = {n: np.stack([law[:, 0], *np.zeros((2, len(law)))], axis=-1) for n, law in laws.items()}
+        held[driver][:, 1] = rate
+        return known_in_doubles(self.design, held, len(held[driver]))
 
     def _pose(
         self, places: Mapping[str, Array], known: Known
@@ -251,29 +272,46 @@ class _Held:
         slopes = np.array([np.broadcast_to(slope_of(x), shape) for x in read])
         return np.asarray(np.abs(np.einsum("nij,jkn->nik", matrix, slopes)).sum(axis=-1))
 
+    def _per_length(
+        self, states: Mapping[str, Sequence[Array]], turns: Mapping[str, Sequence[Vector]]
+    ) -> tuple[Array, Array, Array]:
+        """What a point that is off by 1 makes of its own place, rate and acceleration, each (N,), beside it.
+
+        Args:
+            states: by point its value and derivatives, each (N, 3). turns: of every body, likewise.
+        """
+        chassis = states[self.design.plain["bodies"][CHASSIS][0]]
+        count = len(chassis[0])
+        turning, bending = (
+            np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
+        )
+        fastest, hardest = (
+            np.max([_lengths(state[d] - chassis[d]) for state in states.values()], axis=0) for d in (1, 2)
+        )
+        return (
+            np.zeros(count),
+            ROOT_3 * (turning + fastest / self.size),
+            ROOT_3 * (bending + turning**2 + hardest / self.size),
+        )
+
     def _claims(
-        self, off: Array, solved: Sequence[Jet], known: Known, growth: Sequence[Array]
+        self,
+        off: Array,
+        solved: Sequence[Jet],
+        known: Known,
+        growth: Sequence[Array],
+        along: Mapping[str, tuple[Sequence[Jet], Known]],
     ) -> dict[str, dict[str, Array]]:
         points = known.points_of(solved)
         turns = body_turns(solved, known)
         count = len(growth[0])
         states = {name: [values_of(order_of(p, d), count) for d in range(3)] for name, p in points.items()}
-        turning, bending = (
-            np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
-        )
         chassis = states[self.design.plain["bodies"][CHASSIS][0]]
-        fastest, hardest = (
-            np.max([_lengths(state[d] - chassis[d]) for state in states.values()], axis=0) for d in (1, 2)
-        )
-        per_length = (
-            np.zeros(count),
-            ROOT_3 * (turning + fastest / self.size),
-            ROOT_3 * (bending + turning**2 + hardest / self.size),
-        )
+        per_length = self._per_length(states, turns)
         moved = {name: _off(order_of(p, 0), count) * growth[0][:, None] for name, p in points.items()}
         missed = {name: off[:, None] + (move if self.solves else 0.0) for name, move in moved.items()}
         far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
-        of_car = self._of_car(off, solved, known, growth[0])
+        of_car = self._of_car(off, solved, known, growth, along)
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
             d, of = per_second(quantity), QUANTITIES[quantity].of
@@ -304,26 +342,65 @@ class _Held:
                 claims[quantity] = {n: of_car[n] for n in names if n in of_car}
         return claims
 
-    def _of_car(self, off: Array, solved: Sequence[Jet], known: Known, growth: Array) -> dict[str, Array]:
+    def _of_car(
+        self,
+        off: Array,
+        solved: Sequence[Jet],
+        known: Known,
+        growth: Sequence[Array],
+        along: Mapping[str, tuple[Sequence[Jet], Known]],
+    ) -> dict[str, Array]:
         """Of every number of the car: what the pose makes of it, and the points that it is made of, which are
         off themselves.
         """
         wanted = available(self.of_car, provided(self.design))
-        drawn = drawn_car(self.design, float)
-        placed = known.equations.points_of([jet.value for jet in solved], drawn.points)
-        count = 3 * len(placed)
-        places = {
-            name: _with_own(place, off, 3 * first, count, growth)
-            for first, (name, place) in enumerate(placed.items())
-        }
-        car = car_at(drawn, known.chassis.still(), places)
+        cars: dict[str | None, Car] = {None: self._car(off, [jet.value for jet in solved], known, growth)}
+        for way, (driven, driving) in along.items():
+            pose = [Dual(jet.value, jet.rate) for jet in driven]
+            points, turns = driving.points_of(driven), body_turns(driven, driving)
+            states = {n: [values_of(order_of(p, d), len(off)) for d in range(3)] for n, p in points.items()}
+            cars[way] = self._car(off, pose, driving, growth, self._per_length(states, turns)[1])
         found = {}
         for name, effect in wanted.items():
-            if effect.along is None:
-                number = effect.evaluate(car)
-                claim = np.abs(slope_of(number)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(number))
-                found[name] = self.unit**effect.power * np.where(np.isfinite(claim), claim, 0.0)
+            number = effect.evaluate(cars[effect.along])
+            claim = np.abs(slope_of(number)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(number))
+            found[name] = self.unit**effect.power * np.where(np.isfinite(claim), claim, 0.0)
         return found
+
+    def _car(
+        self,
+        off: Array,
+        pose: Sequence[Scalar],
+        known: Known,
+        growth: Sequence[Array],
+        per_length: Array | None = None,
+    ) -> Car:
+        """The car, each of whose points is off by itself; where it moves, that moves it otherwise too."""
+        drawn = drawn_car(self.design, float)
+        placed = known.equations.points_of(pose, drawn.points)
+        body = self.design.role(KNUCKLE)
+        turns = per_length is not None and body in self.design.mechanism.frames
+        frame = known.equations.frame_of(pose, body) if turns else ()
+        count = 3 * (len(placed) + len(frame))
+
+        def apart(place: Vector, number: int, off: Array, rate: Array) -> Vector:
+            """A point, or a line of a body, off by so much in each coordinate, and its slopes likewise."""
+            own = partial(_with_own, first=3 * number, count=count)
+            if per_length is None:
+                return own(place, off, growth=growth[0])
+            values = own(each(value_of, place), off, growth=growth[0])
+            slopes = own(each(slope_of, place), rate, growth=growth[1])
+            x, y, z = (Dual(value, slope) for value, slope in zip(values, slopes, strict=True))
+            return x, y, z
+
+        rate = off * (0.0 if per_length is None else per_length)
+        places = {name: apart(p, i, off, rate) for i, (name, p) in enumerate(placed.items())}
+        lines = []
+        for i, line in enumerate(frame, len(placed)):
+            # A body turns by what its points are off over its least height, at both ends.
+            length = 2.0 * _lengths(values_of(each(value_of, line), len(off))) / self.heights[body]
+            lines.append(apart(line, i, off * length, rate * length))
+        return car_at(drawn, known.chassis.still(), places, (lines[0], lines[1]) if lines else None)
 
 
 def _height(a: Array, b: Array, c: Array) -> float:
