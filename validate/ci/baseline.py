@@ -18,14 +18,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
+import shutil
 import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from typing import IO, Any, BinaryIO, Literal
+from typing import IO, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,11 +33,12 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
-from validate.comparison.given import given
+from validate.comparison.given import given, usable
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
 from validate.output.files import unwritable, write_whole
+from validate.output.motion_tables import npz_member
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -46,6 +47,7 @@ Places = Mapping[str, Mapping[str, int]]
 
 FORMAT, VERSION = "pointcoord baseline", 1
 ALLOWED = "a file that --save-baseline wrote"
+NEVER = np.empty(0)  # the instants at which a run gives what it does not give
 DAMAGED = (
     ValueError,
     EOFError,
@@ -68,21 +70,18 @@ class Move:
     """How far one quantity of one point, body or angle moved since the baseline.
 
     Attributes:
-        moved: largest movement of any component, in `unit`, and the `instant` (s) where it is.
-        bound: what both claims allow there.
-        share: largest moved / bound over all instants and components; it agrees up to 1.
-        verdict: `moved` beyond the bound; `new` is not in the baseline and `gone` no longer given: NaN then.
+        row: the formulation's numbers then compared with its numbers now: the difference is the movement, the
+            tolerance what both claims allow; NaN of what only one of the two runs has.
+        verdict: `moved` beyond that; `new` is not in the baseline and `gone` no longer given.
     """
 
-    formulation: str
-    quantity: str
-    name: str
-    unit: str
-    moved: float
-    bound: float
-    share: float
-    instant: float
+    row: Comparison
     verdict: MoveVerdict
+
+    @property
+    def formulation(self) -> str:
+        """Whose numbers they are."""
+        return self.row.first
 
 
 @dataclass(frozen=True)
@@ -187,7 +186,14 @@ class Baseline:
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
         found = Since(name, "compared", "", tuple(_moves(name, scene, then.solutions, outcomes, factor)))
-        return found if found.replaced is None else replace(found, words=_another(name, *found.replaced))
+        if found.replaced is None:
+            return found
+        lacking, others = map(", ".join, found.replaced)
+        words = (
+            f"{name} has another formulation than in the baseline: {others} in the place of {lacking}, of "
+            "which no number could be compared with it"
+        )
+        return replace(found, words=words)
 
     def gone(self, names: Iterable[str]) -> tuple[str, ...]:
         """The scenes of the baseline that are none of these."""
@@ -195,77 +201,34 @@ class Baseline:
         return tuple(name for name in self.scenes if name not in there)
 
 
-def _another(name: str, lacking: Sequence[str], others: Sequence[str]) -> str:
-    return (
-        f"{name} has another formulation than in the baseline: {', '.join(others)} in the place of "
-        f"{', '.join(lacking)}, of which no number could be compared with it"
-    )
-
-
 def _moves(
     name: str, scene: Scene, then: Sequence[Solution], outcomes: Sequence[Outcome], factor: float
 ) -> Iterator[Move]:
     before, now = ({one.formulation: one for one in some} for some in (then, solutions_of(scene, outcomes)))
     for formulation in dict.fromkeys((*now, *before)):
-        if formulation not in now:
-            yield from _only(before[formulation], "gone")
-        elif formulation not in before:
-            yield from _only(now[formulation], "new")
-        else:
-            ends = before[formulation], now[formulation]
-            asked = {
-                quantity: tuple(dict.fromkeys(name for end in ends for name in end.numbers.get(quantity, ())))
-                for quantity in QUANTITIES
-            }
-            outcome = compare_solutions(scene, *ends, name, asked, factor)
-            yield from (_move(row, formulation, ends[0]) for row in outcome.rows)
+        # A run that has no such formulation has no number of it.
+        nothing = Solution(formulation, NEVER, {}, Accuracy(NEVER))
+        one, two = before.get(formulation, nothing), now.get(formulation, nothing)
+        asked = {
+            quantity: tuple({**one.numbers.get(quantity, {}), **two.numbers.get(quantity, {})})
+            for quantity in QUANTITIES
+        }
+        for row in compare_solutions(scene, one, two, name, asked, factor).rows:
+            yield Move(row, _verdict(row, one))
 
 
-def _only(solution: Solution, verdict: MoveVerdict) -> Iterator[Move]:
-    """What one of the two runs alone has."""
-    nan = math.nan
-    for quantity, numbers in solution.numbers.items():
-        unit = QUANTITIES[quantity].unit
-        yield from (
-            Move(solution.formulation, quantity, name, unit, nan, nan, nan, nan, verdict) for name in numbers
-        )
-
-
-def _move(row: Comparison, formulation: str, then: Solution) -> Move:
-    verdict: MoveVerdict
-    if row.verdict == "disagrees":
-        verdict = "moved"
-    elif row.verdict == "not given":
-        verdict = "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
-    else:
-        verdict = row.verdict
-    return Move(
-        formulation=formulation,
-        quantity=row.quantity,
-        name=row.name,
-        unit=row.unit,
-        moved=row.difference,
-        bound=row.tolerance,
-        share=row.share,
-        instant=row.instant,
-        verdict=verdict,
-    )
+def _verdict(row: Comparison, then: Solution) -> MoveVerdict:
+    if row.verdict == "not given":
+        return "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
+    return "moved" if row.verdict == "disagrees" else row.verdict
 
 
 def solutions_of(scene: Scene, outcomes: Iterable[Outcome]) -> tuple[Solution, ...]:
-    """Each formulation's solution once, as a comparison takes it: what is no number of the scene is out."""
+    """Each formulation's solution once, as a comparison takes it."""
     found: dict[str, Solution] = {}
     for solution in (solution for outcome in outcomes for solution in outcome.solutions):
         if solution.formulation not in found:
-            clean = given(solution, scene.instants)
-            numbers, claims = (
-                {quantity: part for quantity, part in arrays.items() if part}
-                for arrays in (clean.numbers, clean.claims)
-            )
-            accuracy = Accuracy(clean.condition, claims)
-            found[solution.formulation] = Solution(
-                solution.formulation, scene.instants[clean.found], numbers, accuracy
-            )
+            found[solution.formulation] = usable(solution, scene.instants)
     return tuple(found.values())
 
 
@@ -306,7 +269,7 @@ class Recorder:
         self._scenes: dict[str, dict[str, Any]] = {}
         self._count = 0
         self._gathered = _gathering_place()
-        self._archive = zipfile.ZipFile(self._gathered, "w", zipfile.ZIP_DEFLATED, allowZip64=True)
+        self._archive = zipfile.ZipFile(self._gathered, "w", zipfile.ZIP_DEFLATED)
 
     def __len__(self) -> int:
         return len(self._scenes)
@@ -344,19 +307,10 @@ class Recorder:
         }
 
     def _put(self, array: Array) -> int:
-        self._member(f"a{self._count}", array)
+        with _room():
+            npz_member(self._archive, f"a{self._count}", array.shape, array.dtype.str, [array])
         self._count += 1
         return self._count - 1
-
-    def _member(self, name: str, array: NDArray[Any]) -> None:
-        # The same bytes whenever it is written: an entry made by hand has no time of its own.
-        entry = zipfile.ZipInfo(f"{name}.npy")
-        entry.compress_type = zipfile.ZIP_DEFLATED
-        try:
-            with self._archive.open(entry, "w", force_zip64=True) as member:
-                np.lib.format.write_array(member, np.asarray(array, order="C"), allow_pickle=False)
-        except OSError as error:
-            raise unwritable(tempfile.gettempdir(), error) from None
 
     def write(self, target: str) -> None:
         """Write the baseline; nothing can be added after that.
@@ -365,20 +319,13 @@ class Recorder:
             OutputError: it cannot be written; what was there is whole.
         """
         head = {"program": self._program, "scenes": list(self._scenes.values())}
-        words = {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
-        for name, word in words.items():
-            self._member(name, np.array(word))
-        try:
+        with _room():
+            for name, content in (("format", FORMAT), ("version", VERSION), ("head", json.dumps(head))):
+                array = np.array([content])
+                npz_member(self._archive, name, (), array.dtype.str, [array])
             self._archive.close()
-        except OSError as error:
-            raise unwritable(tempfile.gettempdir(), error) from None
-
-        def put(stream: BinaryIO) -> None:
-            self._gathered.seek(0)
-            while block := self._gathered.read(2**20):
-                stream.write(block)
-
-        write_whole(target, put)
+        self._gathered.seek(0)
+        write_whole(target, lambda stream: shutil.copyfileobj(self._gathered, stream))
 
     def __enter__(self) -> Recorder:
         return self
@@ -391,11 +338,18 @@ class Recorder:
                 one.close()
 
 
-def _gathering_place() -> IO[bytes]:
+@contextmanager
+def _room() -> Iterator[None]:
+    """A disk on which nothing can be gathered is the fault of where it is."""
     try:
-        return tempfile.TemporaryFile()
+        yield
     except OSError as error:
         raise unwritable(tempfile.gettempdir(), error) from None
+
+
+def _gathering_place() -> IO[bytes]:
+    with _room():
+        return tempfile.TemporaryFile()
 
 
 def read_baseline(target: str) -> Baseline:

@@ -22,7 +22,7 @@ from validate.paper.tables import PaperRow
 if TYPE_CHECKING:  # most runs compare no file
     from validate.measured.comparing import DataOutcome
 
-Case = tuple[Examined, Outcome]
+CUT_OFF = "the run did not come to its end"
 
 
 @dataclass
@@ -36,7 +36,7 @@ class Record:
         examined: what came of each scene, in order. since: each against the baseline.
         files: of results, by the name of the scene whose car they are held to.
         paper: the paper's printed tables beside ours.
-        stopped: why the rest was not run. ended: the status of a run that came to its end.
+        stopped: why the rest was not run.
     """
 
     names: Sequence[str]
@@ -46,14 +46,18 @@ class Record:
     since: list[Since] = field(default_factory=list)
     files: dict[str, DataOutcome] = field(default_factory=dict)
     paper: Sequence[PaperRow] = ()
-    stopped: str = "the run did not come to its end"
-    ended: ExitStatus | None = None
+    stopped: str = CUT_OFF
 
     def add(self, examined: Examined, since: Since | None = None) -> None:
         """Take in a scene; the numbers themselves are let go."""
         self.examined.append(without_numbers(examined))
         if since is not None:
             self.since.append(since)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run came to its end, be it before its last scene."""
+        return not self.not_run or self.stopped != CUT_OFF
 
     @property
     def not_run(self) -> tuple[str, ...]:
@@ -66,10 +70,9 @@ class Record:
         return () if self.baseline is None else self.baseline.gone(self.names)
 
     @property
-    def outcomes(self) -> Iterator[Case]:
+    def outcomes(self) -> Iterator[Outcome]:
         """Every comparison of every scene."""
-        for examined in self.examined:
-            yield from ((examined, outcome) for outcome in examined.outcomes)
+        return (outcome for examined in self.examined for outcome in examined.outcomes)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -99,21 +102,22 @@ class Record:
 
 def without_numbers(examined: Examined) -> Examined:
     """What came of a scene, and no more the numbers that it came from."""
-    printed = None if examined.printed is None else _told(examined.printed)
-    return replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=printed)
+    printed = None if examined.printed is None else _emptied(examined.printed)
+    return replace(examined, outcomes=tuple(map(_emptied, examined.outcomes)), printed=printed)
 
 
-def _told(outcome: Outcome) -> Outcome:
+def _emptied(outcome: Outcome) -> Outcome:
     one, two = (
-        Solution(solution.formulation, solution.times, {}, _without_claims(solution.accuracy))
+        # What is left of an accuracy says whether it was stated, which decides what passes.
+        Solution(
+            solution.formulation,
+            solution.times,
+            {},
+            Accuracy(np.ones(0), blind=solution.accuracy.blind, stated=solution.accuracy.stated),
+        )
         for solution in outcome.solutions
     )
     return replace(outcome, solutions=(one, two))
-
-
-def _without_claims(accuracy: Accuracy) -> Accuracy:
-    """What is left says whether the accuracy was stated, which decides what passes."""
-    return Accuracy(np.ones(0), blind=accuracy.blind, stated=accuracy.stated)
 
 
 def ends_the_run(examined: Examined, since: Since | None) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import get_args
 
@@ -27,7 +27,7 @@ from validate.output.report import (
     worst_rows,
 )
 from validate.output.table import Cell, Table
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown, some_of
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NOT_TESTED = "not tested"
@@ -35,8 +35,7 @@ NOT_TESTED = "not tested"
 
 def named(names: Sequence[str]) -> str:
     """The first names of many."""
-    rest = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return ", ".join(names[:NAMED]) + rest
+    return some_of(names, NAMED)
 
 
 def standing(examined: Examined) -> tuple[str, str]:
@@ -66,25 +65,26 @@ def sentence(record: Record) -> str:
 
 def _of_files(record: Record) -> Iterator[str]:
     for name, file in record.files.items():
-        by_verdict: dict[str, list[str]] = {}
-        for row in file.outcome.rows:
-            by_verdict.setdefault(row.verdict, []).append(about(row.quantity, row.name))
-        agree, source = len(by_verdict.pop("agrees", ())), file.outcome.solutions[0].formulation
-        yield f"{source} and the car of {name}: {agree} of {len(file.outcome.rows)} agree"
-        yield from (f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))
+        rows, source = file.outcome.rows, file.outcome.solutions[0].formulation
+        by_verdict = gathered((row.verdict, about(row.quantity, row.name)) for row in rows)
+        agree = len(by_verdict.pop("agrees", ()))
+        yield f"{source} and the car of {name}: {agree} of {len(rows)} agree"
+        yield from _by_verdict(by_verdict)
+
+
+def _by_verdict(names: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    yield from (f"{verdict}: {named(some)}" for verdict, some in sorted(names.items()))
 
 
 def _of_scenes(record: Record) -> Iterator[str]:
-    by_verdict: dict[str, list[str]] = {}
-    for one in record.examined:
-        verdict, why = standing(one)
-        by_verdict.setdefault(f"{verdict} ({why})" if why else verdict, []).append(one.name)
+    verdicts = ((*standing(one), one.name) for one in record.examined)
+    by_verdict = gathered((f"{verdict} ({why})" if why else verdict, name) for verdict, why, name in verdicts)
     yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
-    yield from (f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))
+    yield from _by_verdict(by_verdict)
     if record.not_run:
         yield f"not run ({record.stopped}): {named(record.not_run)}"
     # How much of what is asked for was compared, of a solver that may give what it has.
-    stated = [outcome.counts for _, outcome in record.outcomes if outcome.stated]
+    stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
     if count := sum(counts[verdict] for verdict in get_args(Verdict)):
         rest = "".join(f", {counts[v]} {v}" for v in ("not given", NOT_TESTED) if counts[v])
@@ -196,11 +196,11 @@ def undecided(examined: Examined) -> Iterator[str]:
     """Of what nothing can be said, and why; what has one reason together."""
     for outcome in examined.outcomes:
         yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
-        found: dict[str, list[str]] = {}
-        for row in sorted(outcome.undecided, key=lambda row: row.verdict == "not given"):
-            reason = f"{row.verdict}: {why_undecided(row, outcome)}"
-            found.setdefault(reason, []).append(about(row.quantity, row.name))
-        yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in found.items())
+        rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
+        reasons = gathered(
+            (f"{row.verdict}: {why_undecided(row, outcome)}", about(row.quantity, row.name)) for row in rows
+        )
+        yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in reasons.items())
 
 
 def silence(examined: Examined) -> str:
@@ -221,11 +221,8 @@ def by_scene(record: Record, *lines: Lines) -> list[str]:
     """Lines of all scenes, each once, with the scenes that it is about."""
     told = []
     for of in lines:
-        scenes: dict[str, dict[str, None]] = {}
-        for one in record.examined:
-            for line in of(one):
-                scenes.setdefault(line, {})[one.name] = None
-        told += [f"{named(list(names))}: {line}" for line, names in scenes.items()]
+        scenes = gathered((line, one.name) for one in record.examined for line in of(one))
+        told += [f"{named([*dict.fromkeys(names)])}: {line}" for line, names in scenes.items()]
     return told
 
 

@@ -256,7 +256,7 @@ def compare_scenes(
         if all_of_ours and not own and not record.not_run:
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
-        ending.status = record.ended = record.status
+        ending.status = record.status
         if page is not None and telling is not None:
             told("the page", len(names))
             whole = page.write(telling.run(head, record), console)

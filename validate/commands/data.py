@@ -86,7 +86,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
         console.show(report.file_parts(found))
         if step := next_step(record):
             console.say(step)
-        ending.status = record.ended = examined.status
+        ending.status = examined.status
         if page is not None:
             telling = page.telling(1)
             telling.add(examined, scene, found)

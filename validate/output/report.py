@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -85,14 +85,19 @@ def pair_of(outcome: Outcome) -> str:
 
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
-    worst: dict[str, Comparison] = {}
     # A solver that states an accuracy need not give everything.
     order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
-    for row in outcome.rows:
+    return list(worst_of(outcome.rows, order).values())
+
+
+def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN) -> dict[str, Comparison]:
+    """By heading the row whose verdict is the last one in an order, of several the largest share."""
+    worst: dict[str, Comparison] = {}
+    for row in rows:
         key = heading(row.quantity, row.name)
         if key not in worst or _severity(row, order) > _severity(worst[key], order):
             worst[key] = row
-    return list(worst.values())
+    return worst
 
 
 def _severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:

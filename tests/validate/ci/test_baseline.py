@@ -14,7 +14,7 @@ from program import PAST_ITS_END, short_scene
 from pointcoord import Scene
 from validate import Outcome, Solution, compare
 from validate.ci import baseline as module
-from validate.ci.baseline import Baseline, Recorder, read_baseline
+from validate.ci.baseline import Baseline, Move, Recorder, Since, read_baseline
 from validate.ci.junit import junit
 from validate.ci.record import Record
 from validate.cli import main
@@ -44,6 +44,10 @@ def moved(error: float) -> Outcome:
     return compare_solutions(SCENE, one, two.with_numbers({"position": numbers}), "steer")
 
 
+def by_number(since: Since) -> dict[tuple[str, str, str], Move]:
+    return {(move.formulation, move.row.quantity, move.row.name): move for move in since.moves}
+
+
 def test_a_baseline_gives_back_every_number_and_claim_bit_by_bit(tmp_path: Path) -> None:
     (steer,) = saved(tmp_path).scenes.values()
     for then, now in zip(steer.solutions, OUTCOME.solutions, strict=True):
@@ -61,7 +65,7 @@ def test_a_baseline_gives_back_every_number_and_claim_bit_by_bit(tmp_path: Path)
 def test_a_run_that_is_the_same_has_moved_by_nothing(tmp_path: Path) -> None:
     since = saved(tmp_path).since("steer", SCENE, [OUTCOME])
     assert (since.standing, since.status) == ("compared", ExitStatus.AGREE)
-    assert {move.moved for move in since.moves} == {0.0}
+    assert {move.row.difference for move in since.moves} == {0.0}
     assert {move.verdict for move in since.moves} == {"agrees"}
     assert len(since.moves) == 2 * len(OUTCOME.rows)
 
@@ -79,12 +83,12 @@ def test_a_number_has_moved_beyond_twice_its_claim_and_not_below(
         - OUTCOME.solutions[1].numbers["position"]["wheel_centre"]
     ).max()
     since = saved(tmp_path).since("steer", SCENE, [outcome])
-    found = {(move.formulation, move.quantity, move.name): move for move in since.moves}
+    found = by_number(since)
     move = found.pop(("absolute", "position", "wheel_centre"))
     assert move.verdict == verdict
-    assert move.moved == added
-    assert move.share == pytest.approx(added / (2.0 * claim), rel=1e-9)
-    assert move.instant == SCENE.instants[17]
+    assert move.row.difference == added
+    assert move.row.share == pytest.approx(added / (2.0 * claim), rel=1e-9)
+    assert move.row.instant == SCENE.instants[17]
     assert {other.verdict for other in found.values()} == {"agrees"}
     assert since.status is (ExitStatus.DISAGREE if verdict == "moved" else ExitStatus.AGREE)
 
@@ -121,7 +125,9 @@ def test_numbers_that_are_new_or_gone_are_named(tmp_path: Path) -> None:
     more = {"position": {**two.numbers["position"], "brake": two.numbers["position"]["wheel_centre"]}}
     changed = replace(OUTCOME, solutions=(replace(one, numbers=less), two.with_numbers(more)))
     since = saved(tmp_path).since("steer", SCENE, [changed])
-    odd = {(m.formulation, m.quantity, m.name): m.verdict for m in since.moves if m.verdict != "agrees"}
+    odd = {
+        (m.formulation, m.row.quantity, m.row.name): m.verdict for m in since.moves if m.verdict != "agrees"
+    }
     assert odd.pop(("absolute", "position", "brake")) == "new"
     assert {(who, what) for who, what, _ in odd} == {("pointcoord", "velocity")}
     assert set(odd.values()) == {"gone"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -12,7 +11,7 @@ from validate.comparison.examined import Examined
 from validate.html.plot import Panel, Plots, plain
 from validate.html.run import Run
 from validate.html.section import Block, Section
-from validate.output.report import about, heading, used, when
+from validate.output.report import about, used, when, worst_of
 
 MOST = 1000  # rows of the table: a page stays small
 DRAWN = 60  # rows of the picture
@@ -40,7 +39,7 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 def _picture(drawn: Sequence[Examined]) -> Block:
     """A heat map; of several pairs of formulations the one that uses most."""
-    cells = [_worst(one) for one in drawn]
+    cells = [worst_of(row for outcome in one.outcomes for row in outcome.rows) for one in drawn]
     quantities = list(dict.fromkeys(name for row in cells for name in row))
     given = [[row.get(name) for name in quantities] for row in cells]
     trace = {
@@ -66,22 +65,6 @@ def _picture(drawn: Sequence[Examined]) -> Block:
         "showlegend": False,
     }
     return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)
-
-
-def _worst(one: Examined) -> dict[str, Comparison]:
-    worst: dict[str, Comparison] = {}
-    for outcome in one.outcomes:
-        for row in outcome.rows:
-            key = heading(row.quantity, row.name)
-            if key not in worst or _rank(row) > _rank(worst[key]):
-                worst[key] = row
-    return worst
-
-
-def _rank(row: Comparison) -> tuple[int, float]:
-    """What is seen of several: a disagreement first, then what is not tested, then the largest share."""
-    order = ("not given", "agrees", "not tested", "disagrees").index(row.verdict)
-    return order, row.share if math.isfinite(row.share) else 0.0
 
 
 def _level(row: Comparison) -> float:
