@@ -4,22 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from itertools import product
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, NotComputed, Samples, Scene
+from pointcoord import Motion, NotComputed, Scene
 from pointcoord.effects.angle import WheelAngles
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.registry import ALWAYS, EFFECTS
+from pointcoord.wording import meant
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
-Read = Callable[[Motion, Samples], Array]
+
+
+class Given(Protocol):
+    """Numbers of a motion or of another solution at instants."""
+
+    @property
+    def times(self) -> Array:
+        """Shape (N,), s."""
+        ...
+
+    @property
+    def numbers(self) -> Mapping[str, Mapping[str, Array]]:
+        """By quantity and name, (N, 3) or (N,)."""
+        ...
+
+
+Read = Callable[[Motion, Given], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
@@ -35,7 +52,7 @@ class Number:
         unit: of what `read` gives.
         sign: where it is positive, in words; empty if that goes without saying.
         panel: numbers of the same are drawn over the same axis.
-        read: its values at the instants of samples of a motion, (N,).
+        read: its values at the instants of samples of a motion, (N,); KeyError where they do not have it.
         missing: why it is not there; None if the scene asks for it.
     """
 
@@ -59,6 +76,15 @@ class Number:
             return self.path[1]
         return ".".join(self.path[1:] if self.path[0] == ALWAYS[0].quantities[0].name else self.path)
 
+    def shown(self, motion: Motion, samples: Given, degrees: bool = True) -> Array:
+        """Its values as a picture has them, (N,): an angle in degrees, or in radians."""
+        values = self.read(motion, samples)
+        return np.degrees(values) if degrees and self.unit == "rad" else values
+
+    def unit_shown(self, degrees: bool = True) -> str:
+        """The unit of these."""
+        return "deg" if degrees and self.unit == "rad" else self.unit
+
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
     """Time, travel of the wheel and inputs of a scene, and every number that it can ask for."""
@@ -78,14 +104,14 @@ def _travel(scene: Scene) -> Number:
     centre, place = wheel_centre(scene), ALWAYS[0].quantities[0]
     up = np.array(scene.mechanism.up)
 
-    def read(motion: Motion, samples: Samples) -> Array:
+    def read(motion: Motion, samples: Given) -> Array:
         return np.asarray(movement(scene, motion, samples) @ up)
 
     missing = _unreported(scene, place, centre)
     return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", (TRAVEL,), read, missing)
 
 
-def movement(scene: Scene, motion: Motion, samples: Samples) -> Array:
+def movement(scene: Scene, motion: Motion, samples: Given) -> Array:
     """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
     centre = wheel_centre(scene)
     readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
@@ -139,7 +165,7 @@ def _of_car(effect: Effect, quantity: Quantity, name: str, missing: NotComputed 
     angles = effect.angles if isinstance(effect, WheelAngles) else ()
     words, sign = next(((a.words, a.sign) for a in angles if a.name == name), (name, ""))
 
-    def read(_: Motion, samples: Samples) -> Array:
+    def read(_: Motion, samples: Given) -> Array:
         return samples.numbers[quantity.name][name]
 
     path = (quantity.name, name)
@@ -147,7 +173,7 @@ def _of_car(effect: Effect, quantity: Quantity, name: str, missing: NotComputed 
 
 
 def _component(scene: Scene, quantity: Quantity, name: str, i: int, missing: NotComputed | None) -> Number:
-    def read(_: Motion, samples: Samples) -> Array:
+    def read(_: Motion, samples: Given) -> Array:
         return samples.numbers[quantity.name][name][..., i]
 
     along = _along(scene, i)
@@ -182,8 +208,9 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     fitting = [n for n in numbers if _in_order(parts, n.path)]
     fitting = [n for n in fitting if n.path[0] == fitting[0].path[0]]
     if not fitting:
+        known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
         raise UsageError(
-            f"{shown(words)!r} is no number of this scene{_meant(words, numbers)}; {_there(numbers)}"
+            f"{shown(words)!r} is no number of this scene{meant(words, known)}; {_there(numbers)}"
         )
     if len({n.path[:2] for n in fitting}) > 1:
         some = ", ".join(dict.fromkeys(".".join(n.path[:2]) for n in fitting))
@@ -197,12 +224,6 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
 def _in_order(parts: Sequence[str], path: Sequence[str]) -> bool:
     rest = iter(path)
     return all(part in rest for part in parts)
-
-
-def _meant(words: str, numbers: Sequence[Number]) -> str:
-    known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
-    near = get_close_matches(words, known, n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
 
 
 def _there(numbers: Sequence[Number]) -> str:

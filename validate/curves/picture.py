@@ -79,7 +79,7 @@ def _draw(
 ) -> None:
     plain(axes)
     for set_limits, numbers in ((axes.set_xlim, curves.across), (axes.set_ylim, curves.up)):
-        values = np.concatenate([_values(n, motion, samples, degrees) for n in numbers])
+        values = np.concatenate([n.shown(motion, samples, degrees) for n in numbers])
         known = values[np.isfinite(values)]
         if known.size and np.ptp(known) <= STILL * max(float(np.abs(known).max()), 1.0):
             middle = float(np.median(known))
@@ -88,8 +88,8 @@ def _draw(
     several = len(curves.across) > 1 or len(curves.up) > 1
     for i, (across, up) in enumerate(curves.pairs):
         axes.plot(
-            _values(across, motion, samples, degrees),
-            _values(up, motion, samples, degrees),
+            across.shown(motion, samples, degrees),
+            up.shown(motion, samples, degrees),
             color=COLOURS[i % len(COLOURS)],
             linestyle=STYLES[i % len(STYLES)] if several else "-",
             linewidth=1.4,
@@ -107,15 +107,9 @@ def _draw(
         axes.legend(fontsize=7.0, framealpha=0.8, edgecolor=FAINT)
 
 
-def _values(number: Number, motion: Motion, samples: Samples, degrees: bool) -> Array:
-    values = number.read(motion, samples)
-    return np.degrees(values) if degrees and number.unit == "rad" else values
-
-
 def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
     """What an axis shows, with its unit and its sign; of several numbers what they have in common."""
     first = numbers[0]
-    unit = "deg" if degrees and first.unit == "rad" else first.unit
     words = first.words if len(numbers) == 1 else _common([n.words for n in numbers])
     signs = {n.sign for n in numbers}
     sign = f"\n{fill(f'+ {first.sign}', letters)}" if len(signs) == 1 and first.sign else ""
@@ -123,7 +117,7 @@ def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
         sign = "\n" + fill(
             "; ".join(dict.fromkeys(f"+{n.path[-1]} {n.sign}" for n in numbers if n.sign)), letters
         )
-    return f"{fill(f'{words} [{unit}]', letters)}{sign}"
+    return f"{fill(f'{words} [{first.unit_shown(degrees)}]', letters)}{sign}"
 
 
 def _common(texts: Sequence[str]) -> str:

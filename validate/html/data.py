@@ -96,5 +96,5 @@ def _published(tables: Iterable[Published]) -> Iterator[Iterable[object]]:
 
 def _hard(hard: HardCases) -> Iterator[Iterable[object]]:
     for case in hard.cases:
-        for a in case.answers:
-            yield case.name, a.value, a.formulation, a.outcome, a.error, a.bound, case.unit, a.reason
+        for value, a in case.answers:
+            yield case.name, value, a.formulation, a.outcome, a.error, a.bound, case.unit, a.reason

@@ -7,12 +7,16 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from validate.ci.record import Record, without_numbers
 from validate.ci.verdict import sentence
 from validate.comparison.examined import Examined
+from validate.comparison.given import usable
 from validate.cost.report import Report
 from validate.exit_status import ExitStatus, combined
+from validate.formulations.protocol import Accuracy, Solution
 from validate.html.hard_cases import HardCases
 from validate.measured.comparing import DataOutcome
 from validate.output.document import Head
@@ -53,6 +57,22 @@ class Told:
         if self.examined.outcomes or not self.examined.complaint:
             return ""
         return self.examined.complaint.removeprefix(f"{self.examined.name}: ")
+
+    @property
+    def models(self) -> tuple[Solution, ...]:
+        """Both solutions of its first comparison: what each really gives, when it does.
+
+        Of a scene that is refused there is one at most: what pointcoord solves of it before it stops.
+        """
+        if self.scene is None:
+            return ()
+        if self.examined.outcomes:
+            both = self.examined.outcomes[0].solutions
+            return tuple(usable(solution, self.scene.instants) for solution in both)
+        if self.motion is None:
+            return ()
+        times = self.motion.times
+        return (Solution("pointcoord", times, self.motion.numbers, Accuracy(np.ones(len(times)))),)
 
 
 @dataclass

@@ -36,11 +36,15 @@ def with_unit(value: float, unit: str, digits: int = 1) -> str:
 
 def in_degrees(value: float, unit: str) -> str:
     """The same with angles in degrees, as users read them; a dash where there is no number."""
-    if math.isnan(value):
-        return "-"
+    factor, unit = degrees_of(unit)
+    return "-" if math.isnan(value) else f"{factor * value:.1e} {unit}"
+
+
+def degrees_of(unit: str) -> tuple[float, str]:
+    """By what a number is multiplied to be read in degrees, and the unit that it has then: deg/s of rad/s."""
     if unit.startswith("rad"):
-        value, unit = math.degrees(value), unit.replace("rad", "deg", 1)
-    return f"{value:.1e} {unit}"
+        return math.degrees(1.0), unit.replace("rad", "deg", 1)
+    return 1.0, unit
 
 
 def used(share: float) -> str:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validate.html.plot import OTHER, OURS, Panel, Plots, axis, numbers
+from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, axis, curve, marks
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.report import findings_table, paper_sentence, paper_tables
@@ -45,16 +44,12 @@ def _of_figure(figure: Figure) -> Panel:
     return Panel(f"Figure {figure.number}: {figure.words}, over time", tuple(_traces(figure)), layout)
 
 
-def _traces(figure: Figure) -> Iterator[Mapping[str, Any]]:
-    times = numbers(figure.times, 6)
+def _traces(figure: Figure) -> Iterator[Trace]:
     for (name, values), dash in zip(figure.curves.items(), DASHES, strict=False):
-        line = {"color": OURS, "dash": dash}
-        yield {"x": times, "y": numbers(values, 6), "name": name, "mode": "lines", "line": line}
+        yield curve(name, figure.times, values, OURS, dash=dash)
     if figure.printed is not None:
         at, values = figure.printed
-        marker = {"symbol": "x", "color": OTHER, "size": 7}
-        shown = {"x": numbers(at, 6), "y": numbers(values, 6)}
-        yield {**shown, "name": "printed", "mode": "markers", "marker": marker}
+        yield marks("printed", at, values, OTHER)
 
 
 def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
@@ -63,21 +58,14 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
         ("omega", "rad/s", [(row.printed.omega, row.omega) for row in rows]),
         ("alpha", "rad/s^2", [(row.printed.alpha, row.alpha) for row in rows]),
     )
-    times = numbers(np.array([row.printed.time for row in rows]), 6)
+    times = [row.printed.time for row in rows]
     for words, unit, pairs in kinds:
-        values = np.array(pairs)
         for i, component in enumerate("xyz"):
+            printed, ours = np.array(pairs)[:, :, i].T
             layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{unit}]")}
-            looks = (("printed", "x", OTHER), ("computed", "circle-open", OURS))
-            traces = tuple(
-                {
-                    "x": times,
-                    "y": numbers(values[:, side, i], 6),
-                    "name": name,
-                    "mode": "markers",
-                    "marker": {"symbol": symbol, "color": colour, "size": 7},
-                }
-                for side, (name, symbol, colour) in enumerate(looks)
+            traces = (
+                marks("printed", times, printed, OTHER),
+                marks("computed", times, ours, OURS, "circle-open"),
             )
             yield Panel(f"{words}, {component}, over time", traces, layout)
 
