@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.ci.baseline import Baseline, Since
 from validate.ci.moves import baseline_data
@@ -34,6 +35,7 @@ class Record:
         factor: how many times the derived tolerance differences are held to.
         baseline: that the scenes are held to, if there is one.
         examined: what came of each scene, in order. since: each against the baseline.
+        scenes: those of them that could be read, by name.
         files: of results, by the name of the scene whose car they are held to.
         paper: the paper's printed tables beside ours.
         stopped: why the rest was not run.
@@ -44,13 +46,16 @@ class Record:
     baseline: Baseline | None = None
     examined: list[Examined] = field(default_factory=list)
     since: list[Since] = field(default_factory=list)
+    scenes: dict[str, Scene] = field(default_factory=dict)
     files: dict[str, DataOutcome] = field(default_factory=dict)
     paper: Sequence[PaperRow] = ()
     stopped: str = CUT_OFF
 
-    def add(self, examined: Examined, since: Since | None = None) -> None:
+    def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Take in a scene; the numbers themselves are let go."""
-        self.examined.append(without_numbers(examined))
+        self.examined.append(_without_numbers(examined))
+        if scene is not None:
+            self.scenes[examined.name] = scene
         if since is not None:
             self.since.append(since)
 
@@ -100,7 +105,7 @@ class Record:
         }
 
 
-def without_numbers(examined: Examined) -> Examined:
+def _without_numbers(examined: Examined) -> Examined:
     """What came of a scene, and no more the numbers that it came from."""
     printed = None if examined.printed is None else _emptied(examined.printed)
     return replace(examined, outcomes=tuple(map(_emptied, examined.outcomes)), printed=printed)

@@ -206,7 +206,7 @@ def compare_scenes(
     files.require_writable()
     if page is not None:
         page.require()
-    telling = None if page is None else page.telling(len(names))
+    drawings = None if page is None else page.drawings(len(names))
     head = Head.of("validate", options.command, options.timings)
     journal = Journal(options.json, head, console)
 
@@ -238,7 +238,8 @@ def compare_scenes(
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
             else:
                 examined = scene
-            record.add(examined, since)
+            read = scene if isinstance(scene, Scene) else None
+            record.add(examined, since, read)
             _say(
                 examined,
                 since,
@@ -247,8 +248,8 @@ def compare_scenes(
                 console,
                 max(map(len, shown_names)),
             )
-            if telling is not None:
-                telling.add(examined, scene if isinstance(scene, Scene) else None)
+            if drawings is not None:
+                drawings.add(examined, read)
             journal.keep(record.data, finished())
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
@@ -257,9 +258,12 @@ def compare_scenes(
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
         ending.status = record.status
-        if page is not None and telling is not None:
+        if page is not None and drawings is not None:
+            # Most runs make no page.
+            from validate.html.run import Run
+
             told("the page", len(names))
-            whole = page.write(telling.run(head, record), console)
+            whole = page.write(Run(head, record, drawings.kept), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute

@@ -80,7 +80,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
             found = compare_results(measured, scene, name, options.accuracy, options.tolerance_factor)
         examined = _examined(found, scene, name)
         record.files[name] = found
-        record.add(examined)
+        record.add(examined, scene=scene)
         for warning in examined.warnings:
             console.warn(f"{name}: {warning}")
         console.show(report.file_parts(found))
@@ -88,9 +88,10 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
             console.say(step)
         ending.status = examined.status
         if page is not None:
-            telling = page.telling(1)
-            telling.add(examined, scene, found)
-            whole = page.write(telling.run(head, record), console)
+            # Most files make no page.
+            from validate.html.run import Run
+
+            whole = page.write(Run(head, record), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import add_json, add_quiet, leave_output_to, needed, require_target
+from validate.commands.usage import add_json, add_quiet, leave_output_to, require_target
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.formulations.registry import NAMES
 from validate.output.console import Console
 from validate.output.document import Head, Journal

@@ -40,9 +40,9 @@ def data_files(run: Run) -> Mapping[str, str]:
     if run.head.kind == "cost":
         return {}
     files = {RESULTS: json_text(run.document)}
-    if run.told:
+    if run.record.examined:
         files[COMPARISONS] = csv_of(_head(Comparison), _comparisons(run))
-    if run.files:
+    if run.record.files:
         names = ("row", "over", "at", "column", "is", "unit", "given", "ours", "difference", "held_to")
         files[NUMBERS] = csv_of(names, _numbers(run))
     if run.published:
@@ -66,17 +66,15 @@ def _head(kind: type) -> tuple[str, ...]:
 
 
 def _comparisons(run: Run) -> Iterator[Iterable[object]]:
-    for one in run.told:
-        for outcome in one.examined.outcomes:
-            yield from (asdict(row).values() for row in outcome.rows)
+    return (asdict(row).values() for outcome in run.record.outcomes for row in outcome.rows)
 
 
 def _numbers(run: Run) -> Iterator[Iterable[object]]:
     """Numbers of a file, and what they were held to in the comparison."""
-    for file in run.files:
+    for file in run.record.files.values():
         for i, (row, at) in enumerate(zip(file.rows, file.at.tolist(), strict=True)):
             for held in file.columns:
-                what, allowed = held.series.meaning, run.factor * held.tolerance[i]
+                what, allowed = held.series.meaning, run.record.factor * held.tolerance[i]
                 told = (held.series.values[i], held.ours[i], held.gap[i], allowed)
                 yield (row, file.over, at, held.series.column, what.words, what.unit, *map(float, told))
 

@@ -12,7 +12,7 @@ from pointcoord.effects.registry import ALWAYS
 from validate.curves.numbers import TRAVEL, Number, numbers_of, usual, wheel_centre
 from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, axis, curve, fewer, marks, plain
-from validate.html.run import Told
+from validate.html.run import Drawn
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ MARKS = 25
 PLACE = ALWAYS[0].quantities[0].name
 
 
-def wheel_angles(one: Told, models: Sequence[Solution], points: int) -> tuple[Plots | None, str]:
+def wheel_angles(one: Drawn, models: Sequence[Solution], points: int) -> tuple[Plots | None, str]:
     """The curves of a scene, and what there is to say of them, such as why there are none."""
     if one.scene is None or one.motion is None or not models:
         return None, "no curves: pointcoord solves no instant of it"

@@ -28,7 +28,7 @@ from validate.html.folder import PAGE
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.plot import Plots
-from validate.html.run import FIRST, FURTHER, Run, Telling
+from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
 from validate.html.section import Paragraph
 from validate.html.sections.motion import Spatial
 from validate.output.console import Console
@@ -126,22 +126,22 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
     content = Scene.load("double-wishbone").model_dump(exclude_none=True)
     content["time"] = content["time"] | {"samples": 301}
     scene, count = Scene.from_mapping(content), 400
-    telling = Telling(count)
-    for i in range(count):
-        name = f"a folder of mine/with a long name of a scene {i:03d}.toml"
-        if i % 50 == 20:
-            telling.add(Examined(name=name, problem=f"{name}: is broken at line {i}"), None)
-        else:
-            telling.add(replace(spoiled(wide) if i % 20 == 13 else wide, name=name), scene)
-    run = run_of(*telling.told)
+    names = [f"a folder of mine/with a long name of a scene {i:03d}.toml" for i in range(count)]
+    record, drawings = Record(names), Drawings(count)
+    for i, name in enumerate(names):
+        examined = replace(spoiled(wide) if i % 20 == 13 else wide, name=name)
+        if broken := i % 50 == 20:
+            examined = Examined(name=name, problem=f"{name}: is broken at line {i}")
+        there = None if broken else scene
+        record.add(examined, scene=there)
+        drawings.add(examined, there)
+    run = Run(head(), record, drawings.kept)
     text = page(run, {})
     assert len(text.encode()) < 8e6
     drawn = [int(one.examined.name[-8:-5]) for one in run.drawn]
     assert drawn == [*range(FIRST), *range(13, 13 + 20 * FURTHER, 20)]
     # The numbers of the others are let go: hundreds of scenes fit into memory.
-    outcomes = [outcome for one in run.told if not one.drawn for outcome in one.examined.outcomes]
-    assert outcomes
-    assert not any(solution.numbers for outcome in outcomes for solution in outcome.solutions)
+    assert not any(solution.numbers for outcome in record.outcomes for solution in outcome.solutions)
     shown = Read(text)
     assert f"Drawn are {FIRST + FURTHER} of {count} scenes" in shown.text
     assert len([given for _, given in shown.tags if "data-motion" in given]) == FIRST + FURTHER
@@ -627,8 +627,6 @@ def test_a_drawing_that_closes_to_rounding_is_told_so_and_no_number_of_rounding_
 ) -> None:
     assert wide.closing is not None
     assert 0.0 < wide.closing["largest"] < 1e-6
-    telling = Telling(1)
-    telling.add(wide, Scene.load("double-wishbone"))
-    text = read(run_of(*telling.told)).text
+    text = read(run_of(Drawn(wide, Scene.load("double-wishbone")))).text
     assert "it closes, no point moves by more than rounding" in text
     assert "closing it moves" not in text

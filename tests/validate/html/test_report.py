@@ -22,7 +22,7 @@ from validate.cli import main
 from validate.comparison.examined import Examined, examine
 from validate.html.page import page
 from validate.html.plot import fewer
-from validate.html.run import Told
+from validate.html.run import Drawn
 from validate.html.sections import sections
 from validate.output.document import schema_text
 from validate.output.report import worst_rows
@@ -75,17 +75,17 @@ class Read(HTMLParser):
             self.verdict += data
 
 
-def told(name: str, scene: Scene, factor: float = 1.0) -> Told:
+def told(name: str, scene: Scene, factor: float = 1.0) -> Drawn:
     examined = examine(name, scene, (("pointcoord", "absolute"),), False, factor)
-    return Told(examined, scene, simulate(scene))
+    return Drawn(examined, scene, simulate(scene))
 
 
 @pytest.fixture(scope="module")
-def bounce() -> Told:
+def bounce() -> Drawn:
     return told("bounce", Scene.load("bounce"))
 
 
-def spoiled(one: Told) -> Told:
+def spoiled(one: Drawn) -> Drawn:
     """The same with one comparison that disagrees."""
     outcome = one.examined.outcomes[0]
     rows = (replace(outcome.rows[0], share=7.0, verdict="disagrees"), *outcome.rows[1:])
@@ -127,7 +127,7 @@ def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> No
         assert all(cell.startswith(("agrees", "not asked for")) for cell in row[2:])
 
 
-def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Told) -> None:
+def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Drawn) -> None:
     run = run_of(spoiled(bounce), replace(bounce, examined=replace(bounce.examined, name="other")))
     read = Read(page(run, FILES))
     assert read.verdict == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
@@ -139,18 +139,18 @@ def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: T
 
 
 def test_a_scene_that_cannot_be_read_is_no_agreement() -> None:
-    run = run_of(Told(Examined(name="no such", problem="no such: is no scene"), None))
+    run = run_of(Drawn(Examined(name="no such", problem="no such: is no scene"), None))
     read = Read(page(run, FILES))
     assert read.verdict == "0 of 1 scene agrees; not tested (wrong input): no such."
     assert run.status == 2
 
 
-def test_a_wider_tolerance_is_said_in_the_verdict(bounce: Told) -> None:
+def test_a_wider_tolerance_is_said_in_the_verdict(bounce: Drawn) -> None:
     assert "2.0 times" in run_of(bounce, factor=2.0).sentence
     assert "times" not in run_of(bounce).sentence
 
 
-def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
+def test_the_page_loads_nothing_and_forbids_to(bounce: Drawn) -> None:
     read = Read(page(run_of(bounce), FILES))
     policies = [
         given["content"] or "" for tag, given in read.opened if given.get("http-equiv", "") and tag == "meta"
@@ -167,7 +167,7 @@ def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
         assert tag != "a" or (given["href"] or "").startswith("#") or given["href"] in FILES
 
 
-def test_every_section_has_a_name_of_its_own_and_a_heading(bounce: Told) -> None:
+def test_every_section_has_a_name_of_its_own_and_a_heading(bounce: Drawn) -> None:
     read = Read(page(run_of(bounce), FILES))
     ids = [given["id"] for _, given in read.opened if "id" in given]
     assert len(set(ids)) == len(ids)
@@ -224,7 +224,7 @@ def plots(read: Read) -> list[tuple[str, dict[str, Any]]]:
     ]
 
 
-def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Told) -> None:
+def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Drawn) -> None:
     run = run_of(bounce)
     shown = [(words, one) for words, one in plots(Read(page(run, FILES))) if "of its tolerance" in words]
     worst = worst_rows(bounce.examined.outcomes[0])
@@ -236,7 +236,7 @@ def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Told
         assert row.unit in one["layout"]["yaxis"]["title"]["text"]
 
 
-def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Told) -> None:
+def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Drawn) -> None:
     shown = [(w, one) for w, one in plots(Read(page(run_of(bounce), FILES))) if w.startswith("wheel travel")]
     assert len(shown) >= 2
     for _, one in shown:
@@ -289,7 +289,7 @@ def test_the_errata_are_those_of_the_data_each_with_its_number(built_in: Path) -
         assert any(row[2].startswith(number) for row in line), finding
 
 
-def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Told) -> None:
+def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Drawn) -> None:
     read = Read(page(run_of(bounce), FILES))
     (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
     first, second = bounce.examined.outcomes[0].solutions
@@ -336,7 +336,7 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
         assert len(list(csv.DictReader(stream))) == 11 * 4 + 21 * 2
 
 
-def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Told) -> None:
+def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Drawn) -> None:
     closing = bounce.examined.closing
     assert closing is not None
     read = Read(page(run_of(bounce), FILES))

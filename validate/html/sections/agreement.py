@@ -27,10 +27,10 @@ ROW, EDGE = 1.4, 8.0  # rem, of a row of the picture and of what stands around i
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    table = None if run.record is None else agreement(run.record, MOST)
-    if run.record is None or table is None or not table.rows:
+    table = agreement(run.record, MOST)
+    if not table.rows:
         return []
-    compared = [] if run.files else [one for one in run.record.examined if one.outcomes]
+    compared = [] if run.record.files else [one for one in run.record.examined if one.outcomes]
     # Where something is not as wanted it is seen however many scenes there are.
     kept = {one.name for one in sorted(compared, key=lambda one: one.status == 0)[:DRAWN]}
     drawn = [one for one in compared if one.name in kept]

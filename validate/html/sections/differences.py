@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.over_time import over_time
 from validate.html.plot import Panel, Plots, fewer, gaps
-from validate.html.run import Run, Told
+from validate.html.run import Drawn, Run
 from validate.html.section import Block, Section, which
 from validate.output.report import about, pair_of, worst_rows
 
@@ -22,7 +22,7 @@ def _blocks(run: Run) -> Sequence[Block]:
     return [*which(run), *blocks] if blocks else []
 
 
-def _of_scene(one: Told, points: int) -> Iterator[Block]:
+def _of_scene(one: Drawn, points: int) -> Iterator[Block]:
     if one.scene is None:
         return
     for outcome in one.examined.outcomes:

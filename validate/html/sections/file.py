@@ -10,7 +10,7 @@ import numpy as np
 from validate.ci.record import explained, why_undecided
 from validate.comparison.compare import Comparison
 from validate.html.plot import OTHER, OURS, Panel, Plots, axis, curve, fewer, gaps, marks, plain
-from validate.html.run import Run, Told
+from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome
 from validate.output.report import about, counted_as, degrees_of, held_to, in_degrees, when, worst_rows
@@ -22,16 +22,16 @@ HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "what woul
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [block for one in run.told if one.file is not None for block in _of_file(run, one, one.file)]
+    return [block for name, file in run.record.files.items() for block in _of_file(run, name, file)]
 
 
-def _of_file(run: Run, one: Told, file: DataOutcome) -> Iterator[Block]:
+def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
     outcome = file.outcome
     source = outcome.solutions[0].formulation
     rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
     yield Paragraph(
-        f"{source} beside the car of {one.examined.name}: {counted_as(len(file.rows), 'row')} over "
-        f"{file.over}, {held_to(run.factor)}."
+        f"{source} beside the car of {name}: {counted_as(len(file.rows), 'row')} over "
+        f"{file.over}, {held_to(run.record.factor)}."
     )
     caption = "Each point, body or angle that the file gives; angles in degrees."
     if len(rows) > MOST:

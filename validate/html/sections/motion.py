@@ -15,7 +15,7 @@ from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
 from validate.formulations.protocol import Solution
 from validate.html.plot import Plots
-from validate.html.run import Run, Told
+from validate.html.run import Drawn, Run
 from validate.html.section import PLOTLY, Block, Section, which
 from validate.html.wheel_angles import wheel_angles
 from validate.output.table import Table
@@ -59,7 +59,7 @@ def _blocks(run: Run) -> Sequence[Block]:
     return [*which(run), *blocks, *_closing(run)]
 
 
-def _of_scene(one: Told, scene: Scene, run: Run) -> Block:
+def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
     models, instants = one.models, scene.instants
     topology = scene.mechanism.topology
     # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
@@ -166,7 +166,7 @@ def _closing(run: Run) -> Iterator[Block]:
         yield Table(("scene", *points), rows, caption=CLOSING, folded=True)
 
 
-def _movements(one: Told) -> Mapping[str, float]:
+def _movements(one: Drawn) -> Mapping[str, float]:
     closing = one.examined.closing or {}
     movements: Mapping[str, float] = closing.get("movements", {})
     return movements
@@ -177,7 +177,7 @@ def _size(movement: float) -> str:
     return f"{movement:.3g}" if movement > ROUNDING else "rounding"
 
 
-def _caption(one: Told, models: Sequence[Solution]) -> str:
+def _caption(one: Drawn, models: Sequence[Solution]) -> str:
     lines = ("wide blue lines", "narrow orange lines")
     told = [f"{model.formulation} in {line}" for model, line in zip(models, lines, strict=False)]
     moved = one.examined.closing

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from validate.ci.record import Record
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, axis, curve, marks
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
@@ -23,7 +24,7 @@ DASHES = ("solid", "dash")
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [*(_of_paper(run.paper) if run.paper else ()), *_by_scene(run)]
+    return [*(_of_paper(run.record.paper) if run.record.paper else ()), *_by_scene(run.record)]
 
 
 def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
@@ -70,15 +71,14 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
             yield Panel(f"{words}, {component}, over time", traces, layout)
 
 
-def _by_scene(run: Run) -> Iterator[Block]:
+def _by_scene(record: Record) -> Iterator[Block]:
     """What the formulas as printed get wrong."""
-    examined = () if run.record is None else run.record.examined
-    tried = [one.name for one in examined if one.printed is not None]
-    if run.record is not None and run.record.findings:
-        yield findings_table(run.record.findings)
+    tried = [one.name for one in record.examined if one.printed is not None]
+    if record.findings:
+        yield findings_table(record.findings)
     elif tried:
         yield Paragraph(f"The paper's printed formulas agree in {', '.join(tried)}.")
-    for one in examined:
+    for one in record.examined:
         if one.unprinted is not None:
             yield Paragraph(f"The formulas as printed cannot solve {one.name}: {one.unprinted.message}")
 

@@ -17,7 +17,7 @@ LINES = 150
 def _blocks(run: Run) -> Sequence[Block]:
     # What concerns the verdict goes first, and what several scenes have to say is said once.
     of = (disagreements, complaints, undecided, notes)
-    lines = [] if run.record is None else by_scene(run.record, *of)
+    lines = by_scene(run.record, *of)
     told = [Paragraph(line) for line in lines[:LINES]]
     if len(lines) > LINES:
         told.append(Paragraph(f"{len(lines) - LINES} more such lines are in the data beside this page."))
