@@ -27,7 +27,7 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from validate.ci.baseline import Move, Since
-from validate.ci.record import Record, explained, fault_of, why_undecided
+from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
@@ -112,14 +112,14 @@ def _element(name: str, properties: Mapping[str, str], cases: Sequence[_Case]) -
 
 def _compared(row: Comparison, outcome: Outcome) -> _Case:
     name = about(row.quantity, row.name)
-    if fault := fault_of(row, outcome):
-        return _Case(name, "error", UNUSABLE, f"{UNUSABLE}: {fault}")
+    if row.why in outcome.faults:
+        return _Case(name, "error", UNUSABLE, f"{UNUSABLE}: {row.why}")
     if row.verdict == "not given":
-        return _Case(name, "skipped", row.verdict, f"not given: {why_undecided(row, outcome)}")
+        return _Case(name, "skipped", row.verdict, f"not given: {row.why}")
     out = _numbers(row, "difference", "tolerance")
     out = (*out, f"the tolerance rests on: {row.rests_on} ({row.part:.0%} of it)")
     if row.verdict == "not tested":
-        return _Case(name, "skipped", row.verdict, f"not tested: {why_undecided(row, outcome)}", out)
+        return _Case(name, "skipped", row.verdict, f"not tested: {row.why}", out)
     if row.verdict == "agrees":
         return _Case(name, out=out)
     message = (
@@ -127,13 +127,13 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
         f"{_times(row.share)}{_held(outcome.factor)}"
     )
-    why = tuple(f"what would explain it: {words}" for words in explained(row, outcome))
+    why = tuple(f"what would explain it: {words}" for words in outcome.explained(row))
     return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
 
 def _unusable(outcome: Outcome) -> Iterator[_Case]:
     """What is given of no number that is asked for; and why nothing is said, where no case says it."""
-    told = {fault_of(row, outcome) for row in outcome.rows}
+    told = {row.why for row in outcome.rows}
     rest = [fault for fault in outcome.faults if fault not in told]
     yield from (_Case(f"what is given, {i}", "error", UNUSABLE, one) for i, one in enumerate(rest, 1))
     if outcome.why_no_verdict and not outcome.faults:

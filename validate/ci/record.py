@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pointcoord import Scene
-from pointcoord.effects.registry import QUANTITIES
 from validate.ci.baseline import Baseline, Since
 from validate.ci.moves import baseline_data
-from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.protocol import Accuracy, Solution
-from validate.output.report import about, examined_data, finding_data, paper_data
+from validate.output.report import examined_data, finding_data, paper_data
 from validate.paper.tables import PaperRow
 
 if TYPE_CHECKING:  # most runs compare no file
@@ -129,43 +128,3 @@ def ends_the_run(examined: Examined, since: Since | None) -> bool:
     """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
     disagrees = any(outcome.disagreements for outcome in examined.outcomes)
     return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))
-
-
-def explained(row: Comparison, outcome: Outcome) -> tuple[str, ...]:
-    """What would explain that a row disagrees, the best first."""
-    its = {row.quantity, f"{row.quantity}.{row.name}"}
-    return tuple(one.words for one in outcome.explanations if its & {*one.quantities})
-
-
-def fault_of(row: Comparison, outcome: Outcome) -> str:
-    """What is wrong with what was given of a row, if it cannot be used; else empty."""
-    about_it = f": {QUANTITIES[row.quantity].words} of {row.name} "
-    return next((fault for fault in outcome.faults if about_it in fault), "")
-
-
-def why_undecided(row: Comparison, outcome: Outcome) -> str:
-    """The reason of a row that says nothing: who does not give it, or what makes its tolerance too wide."""
-    if row.why:
-        return row.why
-    words = QUANTITIES[row.quantity].words
-    if fault := fault_of(row, outcome):
-        return fault
-    if row.verdict == "not given":
-        found = [line for line in outcome.missing if _is_about(line, words, row)]
-        where = f"{about(row.quantity, row.name)} is given at no instant of the scene"
-        return "; ".join(found or outcome.notes) or where
-    notes = [note for note in outcome.notes if f": {words} of {row.name}: its accuracy " in note]
-    if notes:
-        return "; ".join(notes)
-    return f"the tolerance rests on the error bound of {row.rests_on}, and is too wide to test the other one"
-
-
-def _is_about(line: str, words: str, row: Comparison) -> bool:
-    """Whether a line on what is missing names a row, or its whole quantity."""
-    for who in (row.first, row.second):
-        lacking, misspelt = f"{who} gives no {words}", f"{who} gives {words} of "
-        if line == lacking or (line.startswith(misspelt) and f"'{row.name}'" in line):
-            return True
-        if line.startswith(f"{lacking} of ") and row.name in line.removeprefix(f"{lacking} of ").split(", "):
-            return True
-    return False

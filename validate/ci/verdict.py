@@ -8,7 +8,7 @@ from itertools import islice
 from typing import get_args
 
 from validate.ci.moves import lost_lines
-from validate.ci.record import Record, why_undecided
+from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
@@ -197,9 +197,7 @@ def undecided(examined: Examined) -> Iterator[str]:
     for outcome in examined.outcomes:
         yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
         rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
-        reasons = gathered(
-            (f"{row.verdict}: {why_undecided(row, outcome)}", about(row.quantity, row.name)) for row in rows
-        )
+        reasons = gathered((f"{row.verdict}: {row.why}", about(row.quantity, row.name)) for row in rows)
         yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in reasons.items())
 
 

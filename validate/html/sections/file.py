@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validate.ci.record import explained, why_undecided
 from validate.comparison.compare import Comparison
 from validate.html.plot import OTHER, OURS, Panel, Plots, axis, curve, fewer, gaps, marks, plain
 from validate.html.run import Run
@@ -47,9 +46,7 @@ def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
 
 
 def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
-    why = "; ".join(explained(row, file.outcome)[:1])
-    if row.verdict == "not tested":
-        why = why_undecided(row, file.outcome)
+    why = row.why or "; ".join(file.outcome.explained(row)[:1])
     there = not math.isnan(row.difference)
     return (
         Cell(about(row.quantity, row.name), ", ".join(h.series.column for h in file.columns_of(row))),
