@@ -17,6 +17,7 @@ from validate.formulations.registry import NAMES
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.progress import progress
+from validate.output.report import counted_as
 from validate.plain_text import shown
 
 if TYPE_CHECKING:
@@ -248,7 +249,7 @@ def _worked_out(
         before = there = len(study.tasks) - len(missing)
 
         def held() -> str:
-            return f"{where} holds {there:,} of {study.counted(len(study.tasks))}"
+            return f"{where} holds {there:,} of {counted_as(len(study.tasks), study.noun)}"
 
         def found() -> Findings:
             return study.summary(store.rows(study.tasks))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Protocol
@@ -17,7 +17,7 @@ from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.wording import meant
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 
 Array = NDArray[np.float64]
 
@@ -136,10 +136,9 @@ def _inputs(scene: Scene) -> list[Number]:
     ]
 
 
-def _of_effect(effect: Effect, scene: Scene) -> list[Number]:
+def _of_effect(effect: Effect, scene: Scene) -> Iterator[Number]:
     topology = scene.mechanism.topology
     asked = effect in ALWAYS or effect.name in scene.effects
-    found = []
     for quantity in effect.quantities:
         bodies = topology.bodies if quantity.of == "body" else topology.points
         for name in effect.names or bodies:
@@ -149,10 +148,12 @@ def _of_effect(effect: Effect, scene: Scene) -> list[Number]:
             elif effect.reports_states:
                 missing = _unreported(scene, quantity, name)
             if quantity.of == "car":
-                found.append(_of_car(effect, quantity, name, missing))
+                angles = effect.angles if isinstance(effect, WheelAngles) else ()
+                words, sign = next(((a.words, a.sign) for a in angles if a.name == name), (name, ""))
+                path = (quantity.name, name)
+                yield Number(path, words, quantity.unit, sign, path, _reader(quantity, name), missing)
             else:
-                found += [_component(scene, quantity, name, i, missing) for i in range(3)]
-    return found
+                yield from (_component(scene, quantity, name, i, missing) for i in range(3))
 
 
 def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | None:
@@ -161,27 +162,22 @@ def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | No
     return NotComputed(f"{quantity.words} of {name}", "", f"add {name!r} to the scene's points")
 
 
-def _of_car(effect: Effect, quantity: Quantity, name: str, missing: NotComputed | None) -> Number:
-    angles = effect.angles if isinstance(effect, WheelAngles) else ()
-    words, sign = next(((a.words, a.sign) for a in angles if a.name == name), (name, ""))
-
+def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read:
     def read(_: Motion, samples: Given) -> Array:
-        return samples.numbers[quantity.name][name]
+        values = samples.numbers[quantity.name][name]
+        return values if component is None else values[..., component]
 
-    path = (quantity.name, name)
-    return Number(path, words, quantity.unit, sign, path, read, missing)
+    return read
 
 
 def _component(scene: Scene, quantity: Quantity, name: str, i: int, missing: NotComputed | None) -> Number:
-    def read(_: Motion, samples: Given) -> Array:
-        return samples.numbers[quantity.name][name][..., i]
-
     along = _along(scene, i)
     sign = f"about {along}" if along and quantity.of == "body" else along
     # Places lie far apart: on one axis nothing would be seen of how they change.
     panel = (quantity.name, COMPONENTS[i]) if quantity in ALWAYS[0].quantities else (quantity.name,)
     words = f"{quantity.words} of {name.replace('_', ' ')}, {COMPONENTS[i]}"
-    return Number((quantity.name, name, COMPONENTS[i]), words, quantity.unit, sign, panel, read, missing)
+    path, read = (quantity.name, name, COMPONENTS[i]), _reader(quantity, name, i)
+    return Number(path, words, quantity.unit, sign, panel, read, missing)
 
 
 def _along(scene: Scene, i: int) -> str:
@@ -229,16 +225,9 @@ def _in_order(parts: Sequence[str], path: Sequence[str]) -> bool:
 def _there(numbers: Sequence[Number]) -> str:
     """What can be asked for, in as few words as a line holds."""
     single = [n.short for n in numbers if len(n.path) < 3]
-    vectors: dict[str, dict[str, None]] = {}
-    for n in numbers:
-        if len(n.path) == 3:
-            vectors.setdefault(n.path[0], {})[n.path[1]] = None
-    groups: dict[tuple[str, ...], list[str]] = {}
-    for quantity, names in vectors.items():
-        groups.setdefault(tuple(names), []).append(quantity)
-    told = [
-        f"{' or '.join(q)} with a name and x, y or z, of {', '.join(names)}" for names, q in groups.items()
-    ]
+    vectors = gathered((n.path[0], n.path[1]) for n in numbers if n.path[2:] == ("x",))
+    groups = gathered((", ".join(names), quantity) for quantity, names in vectors.items())
+    told = [f"{' or '.join(q)} with a name and x, y or z, of {names}" for names, q in groups.items()]
     return f"there are: {'; '.join([', '.join(single), *told])}"
 
 

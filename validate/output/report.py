@@ -116,8 +116,8 @@ def held_to(factor: float) -> str:
 
 
 def counted_as(count: int, noun: str) -> str:
-    """A number of things: 1 instant, 2 instants."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+    """A number of things: 1 instant, 2,000 instants."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def agreeing(agreed: int, count: int) -> str:

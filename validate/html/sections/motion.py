@@ -155,21 +155,14 @@ def _rounded(places: Array) -> Any:
 
 def _closing(run: Run) -> Iterator[Block]:
     """How far the points of the drawings move until they close."""
-    told = [one for one in run.drawn if one.examined.closing is not None]
-    movements = {one.examined.name: _movements(one) for one in told}
-    points = list(dict.fromkeys(name for moved in movements.values() for name in moved))
-    rows = tuple(
-        (name, *(_size(moved[point]) if point in moved else "" for point in points))
-        for name, moved in movements.items()
-    )
+    closed = {
+        one.examined.name: one.examined.closing for one in run.drawn if one.examined.closing is not None
+    }
+    moved: dict[str, Mapping[str, float]] = {name: one.get("movements", {}) for name, one in closed.items()}
+    points = list(dict.fromkeys(point for movements in moved.values() for point in movements))
+    rows = tuple((name, *(_size(one[p]) if p in one else "" for p in points)) for name, one in moved.items())
     if points:
         yield Table(("scene", *points), rows, caption=CLOSING, folded=True)
-
-
-def _movements(one: Drawn) -> Mapping[str, float]:
-    closing = one.examined.closing or {}
-    movements: Mapping[str, float] = closing.get("movements", {})
-    return movements
 
 
 def _size(movement: float) -> str:
