@@ -190,8 +190,7 @@ def _since(since: Since, factor: float) -> Iterator[_Case]:
 
 
 def _moved(move: Move, factor: float, lost: bool) -> _Case:
-    row = move.row
-    name = f"{move.formulation}: {about(row.quantity, row.name)}"
+    row, name = move.row, f"{move.formulation}: {about(move.row.quantity, move.row.name)}"
     if move.verdict == "new":
         return _Case(name, "skipped", move.verdict, "new: the baseline has no such numbers")
     if move.verdict == "gone":
@@ -201,9 +200,8 @@ def _moved(move: Move, factor: float, lost: bool) -> _Case:
     if move.verdict == "agrees":
         return _Case(name, out=out)
     if move.verdict == "not tested":
-        return _Case(
-            name, "skipped", move.verdict, "not tested: one error bound is too wide to test the other", out
-        )
+        message = "not tested: one error bound is too wide to test the other"
+        return _Case(name, "skipped", move.verdict, message, out)
     message = (
         f"moved by {_told(row.difference, row.unit)} at {when(row)}, where both error bounds together "
         f"allow {_told(row.tolerance, row.unit)}; {_times(row.share)}{_held(factor)}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import get_args
@@ -19,6 +18,7 @@ from validate.output.report import (
     heading,
     held_to,
     pair_of,
+    severity,
     share_of,
     silent_lines,
     used,
@@ -31,6 +31,8 @@ from validate.plain_text import gathered, shown, some_of
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NOT_TESTED = "not tested"
+# The line of a scene tells of the last verdict that any of its numbers has.
+OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
 
 
 def named(names: Sequence[str]) -> str:
@@ -119,16 +121,13 @@ def _since(record: Record) -> Iterator[str]:
 def scene_line(examined: Examined, seconds: float, width: int) -> str:
     """A scene in one line: its verdict, how long it took, the largest share of a tolerance and where."""
     verdict, why = standing(examined)
-    shares = [(row.share, row, outcome) for outcome in examined.outcomes for row in outcome.rows]
-    finite = [one for one in shares if math.isfinite(one[0])]
-    # A number that is none disagrees however small the others are.
-    wrong = [one for one in shares if one[1].verdict == "disagrees" and one not in finite]
     told = why
     if verdict == NOT_TESTED and not why:
         told = silence(examined)
-    elif not why and (shares := wrong[:1] or finite):
-        share, row, outcome = max(shares, key=lambda one: one[0]) if not wrong else shares[0]
-        told = f"{share_of(share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
+    elif not why and examined.outcomes:
+        rows = ((row, outcome) for outcome in examined.outcomes for row in outcome.rows)
+        row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
+        told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
         if outcome is not examined.outcomes[0]:
             told += f", {outcome.solutions[0].formulation}"
     word = verdict.upper() if verdict == "disagrees" else verdict

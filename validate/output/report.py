@@ -99,12 +99,13 @@ def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN
     worst: dict[str, Comparison] = {}
     for row in rows:
         key = heading(row.quantity, row.name)
-        if key not in worst or _severity(row, order) > _severity(worst[key], order):
+        if key not in worst or severity(row, order) > severity(worst[key], order):
             worst[key] = row
     return worst
 
 
-def _severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:
+def severity(row: Comparison, order: Sequence[str] = OF_EVERYTHING) -> tuple[int, float]:
+    """By what the worst of rows is found: the place of its verdict in an order, then its share."""
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
 
