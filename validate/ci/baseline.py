@@ -17,15 +17,13 @@ or (N,), in the units of pointcoord's quantities, and of the `claims` about them
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-import shutil
-import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from typing import IO, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,8 +35,7 @@ from validate.comparison.given import given, usable
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
-from validate.output.files import unwritable, write_whole
-from validate.output.motion_tables import npz_member
+from validate.output.document import program_version
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -148,8 +145,6 @@ class Since:
 class SavedScene:
     """A scene as a baseline has it; see the file's description."""
 
-    scene: str
-    car: str
     mechanism: Mapping[str, Any]
     motion: str
     solutions: tuple[Solution, ...]
@@ -176,9 +171,7 @@ class Baseline:
         then = self.scenes.get(name)
         if then is None:
             return Since(name, "new", f"{name} is not in the baseline")
-        mechanism = _mechanism(scene)
-        if _digest(mechanism) != then.car:
-            other = ", ".join(_differing(then.mechanism, mechanism))
+        if other := ", ".join(_differing(then.mechanism, _mechanism(scene))):
             return Since(name, "another car", f"{name} is another car than in the baseline: {other}")
         if _digest(_motion(scene)) != then.motion:
             words = f"{name} has other inputs or another time than in the baseline"
@@ -258,28 +251,17 @@ def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]
 
 
 class Recorder:
-    """Gathers scenes for a baseline, on disk, so that a run of many takes no memory for it.
+    """Gathers scenes for a baseline; one of 100 instants takes half a megabyte."""
 
-    Raises:
-        OutputError: there is no room for that.
-    """
-
-    def __init__(self, program: str) -> None:
-        self._program = program
+    def __init__(self) -> None:
         self._scenes: dict[str, dict[str, Any]] = {}
-        self._count = 0
-        self._gathered = _gathering_place()
-        self._archive = zipfile.ZipFile(self._gathered, "w", zipfile.ZIP_DEFLATED)
+        self._arrays: list[Array] = []
 
     def __len__(self) -> int:
         return len(self._scenes)
 
     def add(self, name: str, scene: Scene, outcomes: Sequence[Outcome]) -> None:
-        """Take in a scene that was compared; one that was not has no numbers to keep.
-
-        Raises:
-            OutputError: there is no room for it.
-        """
+        """Take in a scene that was compared; one that was not has no numbers to keep."""
         if not outcomes or name in self._scenes:
             return
         mechanism = _mechanism(scene)
@@ -307,49 +289,17 @@ class Recorder:
         }
 
     def _put(self, array: Array) -> int:
-        with _room():
-            npz_member(self._archive, f"a{self._count}", array.shape, array.dtype.str, [array])
-        self._count += 1
-        return self._count - 1
+        self._arrays.append(array)
+        return len(self._arrays) - 1
 
-    def write(self, target: str) -> None:
-        """Write the baseline; nothing can be added after that.
-
-        Raises:
-            OutputError: it cannot be written; what was there is whole.
-        """
-        head = {"program": self._program, "scenes": list(self._scenes.values())}
-        with _room():
-            for name, content in (("format", FORMAT), ("version", VERSION), ("head", json.dumps(head))):
-                array = np.array([content])
-                npz_member(self._archive, name, (), array.dtype.str, [array])
-            self._archive.close()
-        self._gathered.seek(0)
-        write_whole(target, lambda stream: shutil.copyfileobj(self._gathered, stream))
-
-    def __enter__(self) -> Recorder:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Give the disk back."""
-        # A full one takes no end of what is thrown away.
-        for one in (self._archive, self._gathered):
-            with suppress(OSError):
-                one.close()
-
-
-@contextmanager
-def _room() -> Iterator[None]:
-    """A disk on which nothing can be gathered is the fault of where it is."""
-    try:
-        yield
-    except OSError as error:
-        raise unwritable(tempfile.gettempdir(), error) from None
-
-
-def _gathering_place() -> IO[bytes]:
-    with _room():
-        return tempfile.TemporaryFile()
+    def content(self) -> bytes:
+        """The file of a baseline."""
+        head = {"program": program_version(), "scenes": list(self._scenes.values())}
+        arrays: dict[str, Any] = {f"a{i}": array for i, array in enumerate(self._arrays)}
+        arrays |= {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
+        stream = io.BytesIO()
+        np.savez_compressed(stream, **arrays)
+        return stream.getvalue()
 
 
 def read_baseline(target: str) -> Baseline:
@@ -394,7 +344,7 @@ def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Saved
         given(solution, solution.times)
         if unknown := solution.numbers.keys() - QUANTITIES.keys():
             raise ValueError(f"{sorted(unknown)[0]} is no quantity")
-    return SavedScene(head["scene"], head["car"], head["mechanism"], head["motion"], solutions)
+    return SavedScene(head["mechanism"], head["motion"], solutions)
 
 
 def _taken(places: Places, arrays: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, Array]]:

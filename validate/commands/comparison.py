@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import replace
 
 from pointcoord import Scene, SceneError
 from validate.ci import verdict
-from validate.ci.baseline import Recorder, Since, read_baseline
+from validate.ci.baseline import Since, read_baseline
 from validate.ci.moves import since_parts
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
@@ -33,7 +33,7 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
 from validate.output.console import Console
-from validate.output.document import Head, Journal, program_version
+from validate.output.document import Head, Journal
 from validate.output.progress import progress
 from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
@@ -215,9 +215,8 @@ def compare_scenes(
 
     with (
         _solver(options) as own,
-        nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(record.data, lambda: record.examined, finished) as ending,
-        files.closing(record, recorder, console),
+        files.closing(record, console),
         progress(console, "scenes", total=len(names), lines=brief) as told,
     ):
         loaded = _loaded(names, console)
@@ -232,8 +231,7 @@ def compare_scenes(
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
                 examined = explained(scene, examine(name, scene, pairs, printed, record.factor, own))
-                if recorder is not None:
-                    recorder.add(examined.name, scene, examined.outcomes)
+                files.keep(examined.name, scene, examined.outcomes)
                 if baseline is not None:
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
             else:

@@ -72,7 +72,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
         journal.closing(
             record.data, lambda: record.examined, lambda: f"{len(record.examined)} of 1 scenes"
         ) as ending,
-        targets.closing(record, None, console),
+        targets.closing(record, console),
     ):
         scene = load_scene(given)
         with told_as(name):

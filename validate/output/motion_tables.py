@@ -106,8 +106,7 @@ def npz_member(
     archive: zipfile.ZipFile, name: str, shape: tuple[int, ...], kind: str, parts: Iterable[NDArray[Any]]
 ) -> None:
     """Write an array part after part, as `numpy.savez` would, which wants all arrays at once."""
-    # By its name, and so packed as the archive is; of no time, so that the same arrays give the same bytes.
-    with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+    with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
         header = {"descr": kind, "fortran_order": False, "shape": shape}
         np.lib.format.write_array_header_1_0(member, header)
         for part in parts:

@@ -29,10 +29,9 @@ OUTCOME = compare(SCENE, "pointcoord", "absolute", "steer")
 
 
 def saved(folder: Path) -> Baseline:
-    target = folder / "b.npz"
-    with Recorder("1.0") as recorder:
-        recorder.add("steer", SCENE, [OUTCOME])
-        recorder.write(str(target))
+    target, recorder = folder / "b.npz", Recorder()
+    recorder.add("steer", SCENE, [OUTCOME])
+    target.write_bytes(recorder.content())
     return read_baseline(str(target))
 
 
@@ -155,10 +154,9 @@ def test_a_formulation_in_the_place_of_another_is_no_verdict_and_one_that_is_not
         junit(Record(["steer"], since=[told], examined=[Examined(name="steer", outcomes=(other,))]))
     )
     assert [case.get("type") for case in root.iter("error")] == ["another formulation"]
-    with Recorder("1.0") as recorder:
-        third = replace(OUTCOME, solutions=(one, replace(two, formulation="third")))
-        recorder.add("steer", SCENE, [OUTCOME, third])
-        recorder.write(str(tmp_path / "three.npz"))
+    third, recorder = replace(OUTCOME, solutions=(one, replace(two, formulation="third"))), Recorder()
+    recorder.add("steer", SCENE, [OUTCOME, third])
+    (tmp_path / "three.npz").write_bytes(recorder.content())
     fewer = read_baseline(str(tmp_path / "three.npz")).since("steer", SCENE, [OUTCOME])
     assert {m.formulation for m in fewer.moves if m.verdict == "gone"} == {"third"}
     assert (fewer.status, fewer.words) == (ExitStatus.AGREE, "")
