@@ -8,7 +8,7 @@ from typing import get_args
 
 from validate.ci.moves import lost_lines
 from validate.ci.record import Record
-from validate.comparison.compare import Comparison, Outcome, Verdict
+from validate.comparison.compare import Comparison, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
@@ -35,26 +35,19 @@ NOT_TESTED = "not tested"
 OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
 
 
-def named(names: Sequence[str]) -> str:
-    """The first names of many."""
-    return some_of(names, NAMED)
+def word(status: ExitStatus) -> str:
+    """The verdict of a status on what was compared."""
+    return {ExitStatus.AGREE: "agrees", ExitStatus.DISAGREE: "disagrees"}.get(status, NOT_TESTED)
 
 
 def standing(examined: Examined) -> tuple[str, str]:
     """The verdict on a scene, and why there is none, in a word or two; empty where claims are too wide."""
     status = examined.status
-    if status in (ExitStatus.AGREE, ExitStatus.DISAGREE):
-        return ("agrees" if status is ExitStatus.AGREE else "disagrees"), ""
-    if not examined.complaint:
-        return NOT_TESTED, ""
+    if word(status) != NOT_TESTED or not examined.complaint:
+        return word(status), ""
     if status is ExitStatus.WRONG_INPUT:
         return NOT_TESTED, status.verdict
     return NOT_TESTED, "failed" if status is ExitStatus.NOT_FINISHED else "refused"
-
-
-def standing_of(outcome: Outcome) -> str:
-    """The verdict on one comparison."""
-    return "agrees" if outcome.passed else "disagrees" if outcome.disagreements else NOT_TESTED
 
 
 def sentence(record: Record) -> str:
@@ -75,7 +68,7 @@ def _of_files(record: Record) -> Iterator[str]:
 
 
 def _by_verdict(names: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    yield from (f"{verdict}: {named(some)}" for verdict, some in sorted(names.items()))
+    yield from (f"{verdict}: {some_of(some, NAMED)}" for verdict, some in sorted(names.items()))
 
 
 def _of_scenes(record: Record) -> Iterator[str]:
@@ -84,7 +77,7 @@ def _of_scenes(record: Record) -> Iterator[str]:
     yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
     yield from _by_verdict(by_verdict)
     if record.not_run:
-        yield f"not run ({record.stopped}): {named(record.not_run)}"
+        yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
     # How much of what is asked for was compared, of a solver that may give what it has.
     stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
@@ -107,7 +100,7 @@ def _since(record: Record) -> Iterator[str]:
         yield f"nothing could be compared with the baseline {target}"
     else:
         yield (
-            f"moved since the baseline {target}: {named(moved)}"
+            f"moved since the baseline {target}: {some_of(moved, NAMED)}"
             if moved
             else "nothing moved since the baseline"
         )
@@ -115,7 +108,7 @@ def _since(record: Record) -> Iterator[str]:
         yield f"given then and not now: {'; '.join(lost)}"
     yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
     if record.gone:
-        yield f"gone, in the baseline and not in this run: {named(record.gone)}"
+        yield f"gone, in the baseline and not in this run: {some_of(record.gone, NAMED)}"
 
 
 def scene_line(examined: Examined, seconds: float, width: int) -> str:
@@ -219,7 +212,7 @@ def by_scene(record: Record, *lines: Lines) -> list[str]:
     told = []
     for of in lines:
         scenes = gathered((line, one.name) for one in record.examined for line in of(one))
-        told += [f"{named([*dict.fromkeys(names)])}: {line}" for line, names in scenes.items()]
+        told += [f"{some_of([*dict.fromkeys(names)], NAMED)}: {line}" for line, names in scenes.items()]
     return told
 
 
@@ -253,7 +246,7 @@ def _rows(one: Examined) -> Iterator[tuple[str, str, Cell, dict[str, Cell]]]:
     if not one.outcomes:
         yield one.name, "", Cell(NOT_TESTED, why, NOT_TESTED), {}
     for outcome in one.outcomes:
-        verdict = standing_of(outcome)
+        verdict = word(outcome.status)
         if why and verdict == "agrees":
             verdict = standing(one)[0]  # one of the other formulations has no answer
         cells = {heading(row.quantity, row.name): _cell(row) for row in worst_rows(outcome)}

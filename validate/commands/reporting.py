@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from validate.errors import UsageError
+from validate.extras import needed
 from validate.output.console import Console
 from validate.plain_text import shown
 
@@ -82,13 +83,13 @@ class Page:
             OutputError: it cannot be written.
         """
         from validate.html.folder import require_folder
-        from validate.html.page import require_templates
 
         if not self.folder.strip():
             raise UsageError(
                 f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
             )
-        require_templates()
+        for package in ("jinja2", "plotly.offline"):
+            needed("report", package, "report")
         require_folder(self.folder)
 
     def write(self, run: Run, console: Console) -> Run:

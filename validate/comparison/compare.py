@@ -18,6 +18,7 @@ from pointcoord.wording import nearest, shown
 from validate.comparison.explanation import Explanation
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
+from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
@@ -108,6 +109,13 @@ class Outcome:
         if self.faults or not self.stated:
             return self.agreed and not self.faults
         return not self.disagreements and any(row.verdict == "agrees" and row.telling for row in self.rows)
+
+    @property
+    def status(self) -> ExitStatus:
+        """What it alone would end a run with."""
+        if self.passed:
+            return ExitStatus.AGREE
+        return ExitStatus.DISAGREE if self.disagreements else ExitStatus.NO_VERDICT
 
     @property
     def counts(self) -> dict[str, int]:

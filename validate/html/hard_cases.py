@@ -94,11 +94,6 @@ class HardCases(BaseModel):
         return cls.model_validate({**document, "document": document})
 
     @property
-    def results(self) -> Mapping[str, Any]:
-        """What was found, as plain data."""
-        return {name: self.document[name] for name in ("as_expected", "counts", "cases")}
-
-    @property
     def status(self) -> ExitStatus:
         """What the cases alone would end a run with."""
         return ExitStatus.AGREE if self.as_expected else ExitStatus.DISAGREE

@@ -23,16 +23,6 @@ POLICY = (
 )
 
 
-def require_templates() -> None:
-    """Find out that no page can be made before anything is solved.
-
-    Raises:
-        MissingPackage: a package of the extra is not there.
-    """
-    needed("report", "jinja2", "report")
-    needed("report", "plotly.offline", "report")
-
-
 def page(run: Run, files: Mapping[str, str]) -> str:
     """The page of a run.
 

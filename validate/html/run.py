@@ -153,16 +153,14 @@ class Run:
     @cached_property
     def document(self) -> Mapping[str, Any]:
         """The run as plain data, in the form of `--json` of the command that it is of."""
-        return self.head.document(self._results, self.status, complete=True)
-
-    @property
-    def _results(self) -> Mapping[str, Any]:
         if self.hard is not None and self.head.kind == "hard":
-            return self.hard.results
+            return self.hard.document
+        results = self.record.data()
         if self.cost is not None and self.head.kind == "cost":
-            return self.cost.data()
-        published = [
-            {"title": one.table.title, "source": one.table.source} | file_data(one.found)
-            for one in self.published
-        ]
-        return {**self.record.data(), **({"published_tables": published} if published else {})}
+            results = self.cost.data()
+        elif self.published:
+            results["published_tables"] = [
+                {"title": one.table.title, "source": one.table.source} | file_data(one.found)
+                for one in self.published
+            ]
+        return self.head.document(results, self.status, complete=True)
