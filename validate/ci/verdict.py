@@ -117,14 +117,13 @@ def scene_line(examined: Examined, seconds: float, width: int) -> str:
     told = why
     if verdict == NOT_TESTED and not why:
         told = silence(examined)
-    elif not why and examined.outcomes:
-        rows = ((row, outcome) for outcome in examined.outcomes for row in outcome.rows)
+    elif not why and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
         row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
         told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
         if outcome is not examined.outcomes[0]:
             told += f", {outcome.solutions[0].formulation}"
-    word = verdict.upper() if verdict == "disagrees" else verdict
-    return f"{examined.name.ljust(width)}  {word:<10}  {seconds:>5.1f} s  {told}".rstrip()
+    said = verdict.upper() if verdict == "disagrees" else verdict
+    return f"{examined.name.ljust(width)}  {said:<10}  {seconds:>5.1f} s  {told}".rstrip()
 
 
 def scene_head(width: int) -> str:

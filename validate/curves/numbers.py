@@ -22,7 +22,7 @@ from validate.plain_text import gathered, shown
 Array = NDArray[np.float64]
 
 
-class Given(Protocol):
+class Sampled(Protocol):
     """Numbers of a motion or of another solution at instants."""
 
     @property
@@ -36,7 +36,7 @@ class Given(Protocol):
         ...
 
 
-Read = Callable[[Motion, Given], Array]
+Read = Callable[[Motion, Sampled], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
@@ -76,7 +76,7 @@ class Number:
             return self.path[1]
         return ".".join(self.path[1:] if self.path[0] == ALWAYS[0].quantities[0].name else self.path)
 
-    def shown(self, motion: Motion, samples: Given, degrees: bool = True) -> Array:
+    def shown(self, motion: Motion, samples: Sampled, degrees: bool = True) -> Array:
         """Its values as a picture has them, (N,): an angle in degrees, or in radians."""
         values = self.read(motion, samples)
         return np.degrees(values) if degrees and self.unit == "rad" else values
@@ -104,14 +104,14 @@ def _travel(scene: Scene) -> Number:
     centre, place = wheel_centre(scene), ALWAYS[0].quantities[0]
     up = np.array(scene.mechanism.up)
 
-    def read(motion: Motion, samples: Given) -> Array:
+    def read(motion: Motion, samples: Sampled) -> Array:
         return np.asarray(movement(scene, motion, samples) @ up)
 
     missing = _unreported(scene, place, centre)
     return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", (TRAVEL,), read, missing)
 
 
-def movement(scene: Scene, motion: Motion, samples: Given) -> Array:
+def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
     """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
     centre = wheel_centre(scene)
     readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
@@ -163,7 +163,7 @@ def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | No
 
 
 def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read:
-    def read(_: Motion, samples: Given) -> Array:
+    def read(_: Motion, samples: Sampled) -> Array:
         values = samples.numbers[quantity.name][name]
         return values if component is None else values[..., component]
 

@@ -41,14 +41,15 @@ def _picture(drawn: Sequence[Examined]) -> Block:
     """A heat map; of several pairs of formulations the one that uses most."""
     cells = [worst_of(row for outcome in one.outcomes for row in outcome.rows) for one in drawn]
     quantities = list(dict.fromkeys(name for row in cells for name in row))
-    given = [[row.get(name) for name in quantities] for row in cells]
+    seen = [[_seen(row[name]) if name in row else (None, "", "") for name in quantities] for row in cells]
+    levels, texts, words = ([[one[i] for one in row] for row in seen] for i in range(3))
     trace = {
         "type": "heatmap",
         "x": [plain(name) for name in quantities],
         "y": [plain(one.name) for one in drawn],
-        "z": [[None if one is None else _level(one) for one in row] for row in given],
-        "text": [["" if one is None else _short(one) for one in row] for row in given],
-        "customdata": [["" if one is None else plain(_words(one)) for one in row] for row in given],
+        "z": levels,
+        "text": texts,
+        "customdata": words,
         "texttemplate": "%{text}",
         "hovertemplate": "%{y}<br>%{customdata}<extra></extra>",
         "colorscale": COLOURS,
@@ -67,19 +68,15 @@ def _picture(drawn: Sequence[Examined]) -> Block:
     return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)
 
 
-def _level(row: Comparison) -> float:
-    if row.verdict in ("not tested", "not given"):
-        return -1.0
-    return 2.0 if row.verdict == "disagrees" else float(f"{row.share:.2g}")
-
-
-def _short(row: Comparison) -> str:
-    return f"{100.0 * row.share:.0f}%" if row.verdict == "agrees" else row.verdict
-
-
-def _words(row: Comparison) -> str:
+def _seen(row: Comparison) -> tuple[float, str, str]:
+    """The place of a cell among the colours, what stands in it, and what the pointer brings."""
     told = f"{about(row.quantity, row.name)}: {row.verdict}"
-    return told if row.verdict == "not given" else f"{told}, {used(row.share)} at {when(row, 4)}"
+    if row.verdict == "not given":
+        return -1.0, row.verdict, plain(told)
+    words = plain(f"{told}, {used(row.share)} at {when(row, 4)}")
+    if row.verdict == "agrees":
+        return float(f"{row.share:.2g}"), f"{100.0 * row.share:.0f}%", words
+    return (2.0 if row.verdict == "disagrees" else -1.0), row.verdict, words
 
 
 SECTION = Section("agreement", "Agreement", 20, _blocks)
