@@ -31,7 +31,7 @@ from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
-from validate.output.report import about, held_to, when
+from validate.output.report import about, held_to, used, when
 from validate.plain_text import shown
 
 UNUSABLE = "cannot be used"
@@ -125,7 +125,7 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
     message = (
         f"{row.first} and {row.second} disagree: the largest difference is {_told(row.difference, row.unit)} "
         f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
-        f"{_times(row.share)}{_held(outcome.factor)}"
+        f"at most {used(row.share)}{_held(outcome.factor)}"
     )
     why = tuple(f"what would explain it: {words}" for words in outcome.explained(row))
     return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
@@ -151,10 +151,6 @@ def _numbers(row: Comparison, gap: str, bound: str) -> tuple[str, ...]:
 
 def _told(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}" if math.isfinite(value) else "not a number"
-
-
-def _times(share: float) -> str:
-    return f"up to {share:.6g} times what is allowed" if math.isfinite(share) else "which nothing allows"
 
 
 def _held(factor: float) -> str:
@@ -190,20 +186,17 @@ def _since(since: Since, factor: float) -> Iterator[_Case]:
 
 
 def _moved(move: Move, factor: float, lost: bool) -> _Case:
-    row, name = move.row, f"{move.formulation}: {about(move.row.quantity, move.row.name)}"
-    if move.verdict == "new":
-        return _Case(name, "skipped", move.verdict, "new: the baseline has no such numbers")
-    if move.verdict == "gone":
-        message = "gone: the baseline has such numbers, and this run has none"
-        return _Case(name, "failure" if lost else "skipped", move.verdict, message)
-    out = _numbers(row, "moved", "bound")
-    if move.verdict == "agrees":
-        return _Case(name, out=out)
-    if move.verdict == "not tested":
-        message = "not tested: one error bound is too wide to test the other"
-        return _Case(name, "skipped", move.verdict, message, out)
-    message = (
-        f"moved by {_told(row.difference, row.unit)} at {when(row)}, where both error bounds together "
-        f"allow {_told(row.tolerance, row.unit)}; {_times(row.share)}{_held(factor)}"
-    )
-    return _Case(name, "failure", move.verdict, message, out)
+    row = move.row
+    moved, allowed = _told(row.difference, row.unit), _told(row.tolerance, row.unit)
+    words = {
+        "agrees": "",
+        "new": "new: the baseline has no such numbers",
+        "gone": "gone: the baseline has such numbers, and this run has none",
+        "not tested": "not tested: one error bound is too wide to test the other",
+        "moved": f"moved by {moved} at {when(row)}, where both error bounds together allow {allowed}; "
+        f"at most {used(row.share)}{_held(factor)}",
+    }
+    kind = "failure" if lost or move.verdict == "moved" else "" if move.verdict == "agrees" else "skipped"
+    out = () if move.verdict in ("new", "gone") else _numbers(row, "moved", "bound")
+    name = f"{move.formulation}: {about(row.quantity, row.name)}"
+    return _Case(name, kind, move.verdict, words[move.verdict], out)
