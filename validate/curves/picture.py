@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 from textwrap import fill
 
 import numpy as np
@@ -108,8 +109,6 @@ def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
 
 def _common(texts: Sequence[str]) -> str:
     """The words that texts begin with alike."""
-    words = [text.split() for text in texts]
-    count = 0
-    while all(len(w) > count and w[count] == words[0][count] for w in words):
-        count += 1
-    return " ".join(words[0][:count]).removesuffix(" of").rstrip(",")
+    columns = zip(*(text.split() for text in texts), strict=False)
+    alike = takewhile(lambda words: len({*words}) == 1, columns)
+    return " ".join(words[0] for words in alike).removesuffix(" of").rstrip(",")
