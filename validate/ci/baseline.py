@@ -174,11 +174,6 @@ class Baseline:
         )
         return replace(found, words=words)
 
-    def gone(self, names: Iterable[str]) -> tuple[str, ...]:
-        """The scenes of the baseline that are none of these."""
-        there = set(names)
-        return tuple(name for name in self.scenes if name not in there)
-
 
 def _moves(
     name: str, scene: Scene, then: Sequence[Solution], outcomes: Sequence[Outcome], factor: float

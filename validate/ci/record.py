@@ -71,7 +71,8 @@ class Record:
     @property
     def gone(self) -> tuple[str, ...]:
         """The scenes of the baseline that are none of the run's."""
-        return () if self.baseline is None else self.baseline.gone(self.names)
+        known = {} if self.baseline is None else self.baseline.scenes
+        return tuple(name for name in known if name not in self.names)
 
     @property
     def outcomes(self) -> Iterator[Outcome]:

@@ -90,18 +90,13 @@ def numbers_of(scene: Scene) -> tuple[Number, ...]:
     """Time, travel of the wheel and inputs of a scene, and every number that it can ask for."""
     time = Number((TIME,), TIME, "s", "", (TIME,), lambda _, samples: samples.times)
     effects = (*ALWAYS, *EFFECTS.values())
-    travel = [_travel(scene)] if wheel_centre(scene) else []
+    travel = [_travel(scene)] if scene.mechanism.topology.wheel_centre else []
     return (time, *travel, *_inputs(scene), *(n for e in effects for n in _of_effect(e, scene)))
-
-
-def wheel_centre(scene: Scene) -> str:
-    """The point of the wheel's middle; empty if the mechanism has no one wheel."""
-    return scene.mechanism.topology.wheel_centre
 
 
 def _travel(scene: Scene) -> Number:
     """How far the wheel centre is above its place in the drawing as closed, against the chassis; mm."""
-    centre, place = wheel_centre(scene), ALWAYS[0].quantities[0]
+    centre, place = scene.mechanism.topology.wheel_centre, ALWAYS[0].quantities[0]
     up = np.array(scene.mechanism.up)
 
     def read(motion: Motion, samples: Sampled) -> Array:
@@ -113,7 +108,7 @@ def _travel(scene: Scene) -> Number:
 
 def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
     """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
-    centre = wheel_centre(scene)
+    centre = scene.mechanism.topology.wheel_centre
     readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
     local = samples.numbers[ALWAYS[0].quantities[0].name][centre] - readout.mechanism.origin
     return readout.chassis.taken_back(samples.times, local) - (drawn - readout.mechanism.origin)
@@ -256,7 +251,7 @@ def usual(scene: Scene, numbers: Sequence[Number], motion: Motion) -> Curves:
     angles = tuple(n for n in there if n.of_the_car)
     if not angles:
         points = [n for n in there if len(n.path) == 3]
-        name = wheel_centre(scene)
+        name = scene.mechanism.topology.wheel_centre
         place = [n for n in points if n.path[1] == name]
         place = place or [n for n in points if np.ptp(n.read(motion, motion)) > 0.0] or points
         place = [n for n in points if n.path[:2] == place[0].path[:2]]

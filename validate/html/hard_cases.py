@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -106,15 +106,12 @@ class HardCases(BaseModel):
             f"{counted_as(len(self.cases), 'hard case')} at {scenes} values compared with the many-digit "
             "reference: "
         )
-        unjudged = self._named(lambda one: any(a.outcome == "unjudged" for _, a in one.answers))
-        end = f"; some answers not judged: {unjudged}" if unjudged else ""
+        found = [one.name for one in self.cases if any(a.outcome == "unjudged" for _, a in one.answers)]
+        unjudged = f"; some answers not judged: {some_of(found, NAMED)}" if found else ""
         if self.as_expected:
-            return f"{told}all as expected{end}"
-        other = self._named(lambda one: bool(one.unexpected))
-        return f"{told}disagrees, not as expected{': ' if other else ''}{other}{end}"
-
-    def _named(self, those: Callable[[Case], bool]) -> str:
-        return some_of([one.name for one in self.cases if those(one)], NAMED)
+            return f"{told}all as expected{unjudged}"
+        other = some_of([one.name for one in self.cases if one.unexpected], NAMED)
+        return f"{told}disagrees, not as expected{': ' if other else ''}{other}{unjudged}"
 
 
 def read_hard_cases(file: str) -> HardCases:

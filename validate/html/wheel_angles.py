@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion
 from pointcoord.effects.registry import ALWAYS
-from validate.curves.numbers import TRAVEL, Number, numbers_of, usual, wheel_centre
+from validate.curves.numbers import TRAVEL, Number, numbers_of, usual
 from validate.formulations.protocol import Solution
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, axis, curve, fewer, marks, plain
 from validate.html.run import Drawn
@@ -25,7 +25,8 @@ def wheel_angles(one: Drawn, models: Sequence[Solution], points: int) -> tuple[P
     """The curves of a scene, and what there is to say of them, such as why there are none."""
     if one.scene is None or one.motion is None or not models:
         return None, "no curves: pointcoord solves no instant of it"
-    pairs, centre = usual(one.scene, numbers_of(one.scene), one.motion).pairs, wheel_centre(one.scene)
+    pairs = usual(one.scene, numbers_of(one.scene), one.motion).pairs
+    centre = one.scene.mechanism.topology.wheel_centre
     found = [_panel(pair, models, one.motion, centre, points) for pair in pairs]
     first, *rest = models
     dots = "".join(f"; dots: {other.formulation}" for other in rest)

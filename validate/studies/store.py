@@ -19,7 +19,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from validate.errors import UsageError
 from validate.extras import needed
@@ -73,9 +72,10 @@ class Store:
     def _read(self, columns: Sequence[str]) -> Iterator[Row]:
         # Two runs on a disk that knows no locks may have worked out the same task: it counts once.
         known: set[Task] = set()
+        parquet = needed("study", "pyarrow.parquet", "cluster")
         for file in self.files():
             try:
-                rows = _arrow().read_table(file, columns=list(columns), partitioning=None).to_pylist()
+                rows = parquet.read_table(file, columns=list(columns), partitioning=None).to_pylist()
                 here = {Task(row["part"], row["number"]) for row in rows}
             except (OSError, ValueError, KeyError) as error:
                 told = " ".join(str(error).split())
@@ -98,10 +98,10 @@ class Store:
         Raises:
             OutputError: it cannot be written.
         """
-        pa = _arrow("pyarrow")
+        pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
         schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in self.columns.items()])
         table = pa.Table.from_pylist(list(rows), schema=schema)
-        write_whole(str(file), lambda stream: _arrow().write_table(table, stream))
+        write_whole(str(file), lambda stream: parquet.write_table(table, stream))
 
 
 def look(folder: Path) -> Store:
@@ -125,7 +125,7 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
         UsageError: they are of something else, another run adds to them now, or there is no room.
         OutputError: the folder takes no files.
     """
-    _arrow()
+    needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
     new, there = not folder.exists(), _found(folder)
     # A run that ended before anything was recorded left nothing to be held to.
@@ -191,15 +191,6 @@ def _found(folder: Path) -> Store | None:
         raise _unusable(folder, f"{HEAD} cannot be read ({error.strerror}); {ANOTHER}") from None
     except (ValueError, TypeError):
         raise _unusable(folder, f"{HEAD} does not say what the records are of; {ANOTHER}") from None
-
-
-def _arrow(module: str = "pyarrow.parquet") -> Any:
-    """A module of pyarrow.
-
-    Raises:
-        MissingPackage: it is not there.
-    """
-    return needed("study", module, "cluster")
 
 
 def _unusable(folder: Path, problem: str) -> UsageError:
