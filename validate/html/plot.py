@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -62,21 +62,28 @@ class Plots:
     at_once: bool = False
 
 
-def axis(title: str, logarithmic: bool = False) -> Mapping[str, Any]:
-    """An axis of a panel."""
-    words: dict[str, Any] = {"title": {"text": title}, "automargin": True}
-    return words | ({"type": "log", "exponentformat": "power", "nticks": 6} if logarithmic else {})
+def panel(words: str, across: str, up: str, traces: Iterable[Trace], logarithmic: str = "") -> Panel:
+    """Traces over a pair of axes.
+
+    Args:
+        across, up: titles of the axes. logarithmic: which of them are, `y` or `xy`.
+    """
+    layout: dict[str, Any] = {"showlegend": True}
+    for name, title in (("x", across), ("y", up)):
+        scale = {"type": "log", "exponentformat": "power", "nticks": 6} if name in logarithmic else {}
+        layout[f"{name}axis"] = {"title": {"text": title}, "automargin": True, **scale}
+    return Panel(words, tuple(traces), layout)
 
 
 def curve(name: str, x: ArrayLike, y: ArrayLike, colour: str, **line: Any) -> Trace:
     """A line through points, (N,) each, of which plotly shows each where they are few."""
-    return {"x": numbers(x, 6), "y": numbers(y, 6), "name": name, "line": {"color": colour, **line}}
+    return {"x": numbers(x), "y": numbers(y), "name": name, "line": {"color": colour, **line}}
 
 
 def marks(name: str, x: ArrayLike, y: ArrayLike, colour: str, symbol: str = "x", size: int = 7) -> Trace:
     """Points, (N,) each, that no line joins; crosses if not said otherwise."""
     look = {"symbol": symbol, "color": colour, "size": size}
-    return {"x": numbers(x, 6), "y": numbers(y, 6), "name": name, "mode": "markers", "marker": look}
+    return {"x": numbers(x), "y": numbers(y), "name": name, "mode": "markers", "marker": look}
 
 
 def gaps(words: str, over: str, x: Array, difference: Array, tolerance: Array, unit: str) -> Panel:
@@ -85,14 +92,13 @@ def gaps(words: str, over: str, x: Array, difference: Array, tolerance: Array, u
     held, apart = (np.where(part > 0.0, part, np.nan) for part in (tolerance, difference))
     dots = {"mode": "lines+markers", "marker": {"size": 4}}
     traces = curve("tolerance", x, held, OTHER), curve("difference", x, apart, OURS, width=1) | dots
-    layout = {"xaxis": axis(over), "yaxis": axis(f"[{unit}]", logarithmic=True)}
-    return Panel(words, traces, layout)
+    return panel(words, over, f"[{unit}]", traces, logarithmic="y")
 
 
-def numbers(array: ArrayLike, digits: int) -> list[float | None]:
+def numbers(array: ArrayLike) -> list[float | None]:
     """Numbers in as many digits as a drawing needs; None where there is none."""
     values = np.asarray(array, dtype=float).tolist()
-    return [float(f"{value:.{digits}g}") if math.isfinite(value) else None for value in values]
+    return [float(f"{value:.6g}") if math.isfinite(value) else None for value in values]
 
 
 def fewer(weight: Array, most: int) -> Sequence[int]:

@@ -11,7 +11,7 @@ from pointcoord import Motion
 from pointcoord.effects.registry import ALWAYS
 from validate.curves.numbers import TRAVEL, Number, numbers_of, usual
 from validate.formulations.protocol import Solution
-from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, axis, curve, fewer, marks, plain
+from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
 from validate.html.run import Drawn
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ def wheel_angles(one: Drawn, models: Sequence[Solution], points: int) -> tuple[P
     found = [_panel(pair, models, one.motion, centre, points) for pair in pairs]
     first, *rest = models
     dots = "".join(f"; dots: {other.formulation}" for other in rest)
-    if panels := tuple(panel for panel in found if panel is not None):
+    if panels := tuple(one for one in found if one is not None):
         return Plots(f"line: {first.formulation}{dots}", panels), ""
     names = dict.fromkeys(n.words for pair in pairs for n in pair if len(n.path) > 1)
     return None, f"no curves: {first.formulation} gives no {' and no '.join(names)}"
@@ -59,8 +59,7 @@ def _panel(
             traces.append(marks(plain(model.formulation), x[some], y[some], OTHER, "circle-open", 5))
     across, up = pair
     whose = f" (wheel travel of {', '.join(lacking)} as pointcoord has it)" if lacking else ""
-    layout = {"xaxis": axis(_title(across)), "yaxis": axis(_title(up)), "showlegend": True}
-    return Panel(f"{up.words} over {across.words}{whose}", tuple(traces), layout)
+    return panel(f"{up.words} over {across.words}{whose}", _title(across), _title(up), traces)
 
 
 def _values(number: Number, model: Solution, motion: Motion) -> Array | None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from validate.cost.report import Report
-from validate.html.plot import Panel, Plots, Trace, axis, marks, plain
+from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Table
@@ -63,12 +63,10 @@ def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel
 
     drawn, nothing = heights(here.error)
     here = here.assign(error=drawn)
-    traces = tuple(_trace(way, ways[way], line) for way, line in here.groupby("way", sort=False))
-    layout = {
-        "xaxis": axis("time a pose [us]", logarithmic=True),
-        "yaxis": axis(f"largest error [{plain(unit_of(quantity))}]", logarithmic=True),
-    }
-    return Panel(f"{words_of(quantity)}: largest error over time{nothing}", traces, layout)
+    traces = (_trace(way, ways[way], line) for way, line in here.groupby("way", sort=False))
+    words = f"{words_of(quantity)}: largest error over time{nothing}"
+    up = f"largest error [{plain(unit_of(quantity))}]"
+    return panel(words, "time a pose [us]", up, traces, logarithmic="xy")
 
 
 def _trace(way: str, look: Look, line: pd.DataFrame) -> Trace:

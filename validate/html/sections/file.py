@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from validate.comparison.compare import Comparison
-from validate.html.plot import OTHER, OURS, Panel, Plots, axis, curve, fewer, gaps, marks, plain
+from validate.html.plot import OTHER, OURS, Panel, Plots, curve, fewer, gaps, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome
@@ -40,7 +40,7 @@ def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
     cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
     yield Table(HEAD, tuple(cells), caption=caption)
     worst = worst_rows(outcome)
-    if panels := tuple(panel for row in worst for panel in panels_of(file, row, run.points)):
+    if panels := tuple(one for row in worst for one in panels_of(file, row, run.points)):
         apart = any(row.verdict == "disagrees" for row in worst)
         yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
 
@@ -76,10 +76,10 @@ def panels_of(file: DataOutcome, row: Comparison, points: int) -> tuple[Panel, .
         curve("pointcoord", x, factor * held.ours[at], OURS),
         marks("file", x, factor * held.series.values[at], OTHER),
     )
-    layout = {"xaxis": axis(over), "yaxis": axis(f"[{unit}]"), "showlegend": True}
     gap, limit = factor * held.gap[at], factor * file.outcome.factor * held.tolerance[at]
     words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
-    return Panel(f"{told} over {over}: {row.verdict}", traces, layout), gaps(words, over, x, gap, limit, unit)
+    curves = panel(f"{told} over {over}: {row.verdict}", over, f"[{unit}]", traces)
+    return curves, gaps(words, over, x, gap, limit, unit)
 
 
 SECTION = Section("file", "The file beside the car", 15, _blocks)

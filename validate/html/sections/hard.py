@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from validate.html.hard_cases import Case, HardCases
-from validate.html.plot import Panel, Plots, Trace, axis, marks, plain
+from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Cell, Table
@@ -85,16 +85,13 @@ def _panel(case: Case) -> Panel:
     refusing = (name for name in case.formulations if name in refused)
     step = (max(errors, default=1e-16) / floor) ** -ROW
     rows = {name: floor * step**k for k, name in enumerate(refusing, 1)}
-    traces = tuple(
+    traces = (
         trace
         for i, name in enumerate(case.formulations)
         for trace in _traces(case, name, i, floor, rows.get(name, floor))
     )
-    layout = {
-        "xaxis": axis("distance", logarithmic=True),
-        "yaxis": axis(f"error [{plain(case.unit)}]", logarithmic=True),
-    }
-    return Panel(f"{case.name}, over {case.parameter}: {case.behaviour}", traces, layout)
+    words = f"{case.name}, over {case.parameter}: {case.behaviour}"
+    return panel(words, "distance", f"error [{plain(case.unit)}]", traces, logarithmic="xy")
 
 
 def _traces(case: Case, name: str, i: int, floor: float, row: float) -> Iterator[Trace]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from validate.ci.record import Record
-from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, axis, curve, marks
+from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, marks, panel
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.report import findings_table, paper_sentence, paper_tables
@@ -41,8 +41,8 @@ def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
 
 
 def _of_figure(figure: Figure) -> Panel:
-    layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{figure.unit}]")}
-    return Panel(f"Figure {figure.number}: {figure.words}, over time", tuple(_traces(figure)), layout)
+    words = f"Figure {figure.number}: {figure.words}, over time"
+    return panel(words, "time [s]", f"[{figure.unit}]", _traces(figure))
 
 
 def _traces(figure: Figure) -> Iterator[Trace]:
@@ -63,12 +63,9 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
     for words, unit, pairs in kinds:
         for i, component in enumerate("xyz"):
             printed, ours = np.array(pairs)[:, :, i].T
-            layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{unit}]")}
-            traces = (
-                marks("printed", times, printed, OTHER),
-                marks("computed", times, ours, OURS, "circle-open"),
-            )
-            yield Panel(f"{words}, {component}, over time", traces, layout)
+            crosses = marks("printed", times, printed, OTHER)
+            rings = marks("computed", times, ours, OURS, "circle-open")
+            yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
 
 
 def _by_scene(record: Record) -> Iterator[Block]:
