@@ -76,8 +76,10 @@ def panel(words: str, across: str, up: str, traces: Iterable[Trace], logarithmic
 
 
 def curve(name: str, x: ArrayLike, y: ArrayLike, colour: str, **line: Any) -> Trace:
-    """A line through points, (N,) each, of which plotly shows each where they are few."""
-    return {"x": numbers(x), "y": numbers(y), "name": name, "line": {"color": colour, **line}}
+    """A line through points, (N,) each; a single one is seen as such."""
+    mode = "lines" if np.size(x) > 1 else "markers"
+    look = {"mode": mode, "line": {"color": colour, **line}, "marker": {"color": colour}}
+    return {"x": numbers(x), "y": numbers(y), "name": name, **look}
 
 
 def marks(name: str, x: ArrayLike, y: ArrayLike, colour: str, symbol: str = "x", size: int = 7) -> Trace:
