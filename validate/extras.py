@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from typing import Any
+
 
 class MissingPackage(ImportError):
     """A part of the program needs a package that is not installed, or that does not load.
@@ -26,3 +29,15 @@ class MissingPackage(ImportError):
             f"try: pip install 'pointcoord[{extra}]'",
             name=error.name,
         )
+
+
+def needed(part: str, module: str, extra: str = "validate") -> Any:
+    """A module that needs packages that the solvers do without.
+
+    Raises:
+        MissingPackage: they are not there.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        raise MissingPackage(part, error, extra) from None

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
@@ -23,6 +24,7 @@ from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
+from validate.reference.exact import as_fraction
 from validate.reference.route import CLEAR
 
 Array = NDArray[np.float64]
@@ -153,6 +155,11 @@ def _largest(vectors: Mapping[str, Array]) -> float:
 
 def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
     return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
+
+
+def off_by(found: float, exact: Any) -> float:
+    """How far a double is from a number of the reference, rounded once."""
+    return float(abs(as_fraction(exact, "number") - Fraction(float(found))))
 
 
 def told_by(reference: Solution, scene: Scene) -> dict[str, tuple[str, ...]]:

@@ -17,15 +17,11 @@ or (N,), in the units of pointcoord's quantities, and of the `claims` about them
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-import math
-import tempfile
-import zipfile
-import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import IO, Any, BinaryIO, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,11 +29,11 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
-from validate.comparison.given import given
+from validate.comparison.given import given, usable
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Solution
-from validate.output.files import unwritable, write_whole
+from validate.formulations.protocol import Accuracy, Solution
+from validate.output.document import program_version
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -46,18 +42,7 @@ Places = Mapping[str, Mapping[str, int]]
 
 FORMAT, VERSION = "pointcoord baseline", 1
 ALLOWED = "a file that --save-baseline wrote"
-DAMAGED = (
-    ValueError,
-    EOFError,
-    AttributeError,
-    LookupError,
-    TypeError,
-    MemoryError,  # a size that was never written
-    RuntimeError,  # a way of packing that there is not, or a password
-    zipfile.BadZipFile,
-    zlib.error,
-)
-"""What reading other bytes than those of a baseline ends with."""
+NEVER = np.empty(0)  # the instants at which a run gives what it does not give
 
 Standing = Literal["compared", "new", "not solved now", "another car", "another motion"]
 MoveVerdict = Literal["agrees", "moved", "not tested", "new", "gone"]
@@ -68,21 +53,18 @@ class Move:
     """How far one quantity of one point, body or angle moved since the baseline.
 
     Attributes:
-        moved: largest movement of any component, in `unit`, and the `instant` (s) where it is.
-        bound: what both claims allow there.
-        share: largest moved / bound over all instants and components; it agrees up to 1.
-        verdict: `moved` beyond the bound; `new` is not in the baseline and `gone` no longer given: NaN then.
+        row: the formulation's numbers then compared with its numbers now: the difference is the movement, the
+            tolerance what both claims allow; NaN of what only one of the two runs has.
+        verdict: `moved` beyond that; `new` is not in the baseline and `gone` no longer given.
     """
 
-    formulation: str
-    quantity: str
-    name: str
-    unit: str
-    moved: float
-    bound: float
-    share: float
-    instant: float
+    row: Comparison
     verdict: MoveVerdict
+
+    @property
+    def formulation(self) -> str:
+        """Whose numbers they are."""
+        return self.row.first
 
 
 @dataclass(frozen=True)
@@ -149,8 +131,6 @@ class Since:
 class SavedScene:
     """A scene as a baseline has it; see the file's description."""
 
-    scene: str
-    car: str
     mechanism: Mapping[str, Any]
     motion: str
     solutions: tuple[Solution, ...]
@@ -177,9 +157,7 @@ class Baseline:
         then = self.scenes.get(name)
         if then is None:
             return Since(name, "new", f"{name} is not in the baseline")
-        mechanism = _mechanism(scene)
-        if _digest(mechanism) != then.car:
-            other = ", ".join(_differing(then.mechanism, mechanism))
+        if other := ", ".join(_differing(then.mechanism, _mechanism(scene))):
             return Since(name, "another car", f"{name} is another car than in the baseline: {other}")
         if _digest(_motion(scene)) != then.motion:
             words = f"{name} has other inputs or another time than in the baseline"
@@ -187,19 +165,14 @@ class Baseline:
         if not outcomes:
             return Since(name, "not solved now", f"{name} is in the baseline and has no comparison now")
         found = Since(name, "compared", "", tuple(_moves(name, scene, then.solutions, outcomes, factor)))
-        return found if found.replaced is None else replace(found, words=_another(name, *found.replaced))
-
-    def gone(self, names: Iterable[str]) -> tuple[str, ...]:
-        """The scenes of the baseline that are none of these."""
-        there = set(names)
-        return tuple(name for name in self.scenes if name not in there)
-
-
-def _another(name: str, lacking: Sequence[str], others: Sequence[str]) -> str:
-    return (
-        f"{name} has another formulation than in the baseline: {', '.join(others)} in the place of "
-        f"{', '.join(lacking)}, of which no number could be compared with it"
-    )
+        if found.replaced is None:
+            return found
+        lacking, others = map(", ".join, found.replaced)
+        words = (
+            f"{name} has another formulation than in the baseline: {others} in the place of {lacking}, of "
+            "which no number could be compared with it"
+        )
+        return replace(found, words=words)
 
 
 def _moves(
@@ -207,65 +180,29 @@ def _moves(
 ) -> Iterator[Move]:
     before, now = ({one.formulation: one for one in some} for some in (then, solutions_of(scene, outcomes)))
     for formulation in dict.fromkeys((*now, *before)):
-        if formulation not in now:
-            yield from _only(before[formulation], "gone")
-        elif formulation not in before:
-            yield from _only(now[formulation], "new")
-        else:
-            ends = before[formulation], now[formulation]
-            asked = {
-                quantity: tuple(dict.fromkeys(name for end in ends for name in end.numbers.get(quantity, ())))
-                for quantity in QUANTITIES
-            }
-            outcome = compare_solutions(scene, *ends, name, asked, factor)
-            yield from (_move(row, formulation, ends[0]) for row in outcome.rows)
+        # A run that has no such formulation has no number of it.
+        nothing = Solution(formulation, NEVER, {}, Accuracy(NEVER))
+        one, two = before.get(formulation, nothing), now.get(formulation, nothing)
+        asked = {
+            quantity: tuple({**one.numbers.get(quantity, {}), **two.numbers.get(quantity, {})})
+            for quantity in QUANTITIES
+        }
+        for row in compare_solutions(scene, one, two, name, asked, factor).rows:
+            yield Move(row, _verdict(row, one))
 
 
-def _only(solution: Solution, verdict: MoveVerdict) -> Iterator[Move]:
-    """What one of the two runs alone has."""
-    nan = math.nan
-    for quantity, numbers in solution.numbers.items():
-        unit = QUANTITIES[quantity].unit
-        yield from (
-            Move(solution.formulation, quantity, name, unit, nan, nan, nan, nan, verdict) for name in numbers
-        )
-
-
-def _move(row: Comparison, formulation: str, then: Solution) -> Move:
-    verdict: MoveVerdict
-    if row.verdict == "disagrees":
-        verdict = "moved"
-    elif row.verdict == "not given":
-        verdict = "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
-    else:
-        verdict = row.verdict
-    return Move(
-        formulation=formulation,
-        quantity=row.quantity,
-        name=row.name,
-        unit=row.unit,
-        moved=row.difference,
-        bound=row.tolerance,
-        share=row.share,
-        instant=row.instant,
-        verdict=verdict,
-    )
+def _verdict(row: Comparison, then: Solution) -> MoveVerdict:
+    if row.verdict == "not given":
+        return "gone" if row.name in then.numbers.get(row.quantity, ()) else "new"
+    return "moved" if row.verdict == "disagrees" else row.verdict
 
 
 def solutions_of(scene: Scene, outcomes: Iterable[Outcome]) -> tuple[Solution, ...]:
-    """Each formulation's solution once, as a comparison takes it: what is no number of the scene is out."""
+    """Each formulation's solution once, as a comparison takes it."""
     found: dict[str, Solution] = {}
     for solution in (solution for outcome in outcomes for solution in outcome.solutions):
         if solution.formulation not in found:
-            clean = given(solution, scene.instants)
-            numbers, claims = (
-                {quantity: part for quantity, part in arrays.items() if part}
-                for arrays in (clean.numbers, clean.claims)
-            )
-            accuracy = Accuracy(clean.condition, claims)
-            found[solution.formulation] = Solution(
-                solution.formulation, scene.instants[clean.found], numbers, accuracy
-            )
+            found[solution.formulation] = usable(solution, scene.instants)
     return tuple(found.values())
 
 
@@ -295,28 +232,17 @@ def _differing(then: Mapping[str, Any], now: Mapping[str, Any]) -> Iterator[str]
 
 
 class Recorder:
-    """Gathers scenes for a baseline, on disk, so that a run of many takes no memory for it.
+    """Gathers scenes for a baseline; one of 100 instants takes half a megabyte."""
 
-    Raises:
-        OutputError: there is no room for that.
-    """
-
-    def __init__(self, program: str) -> None:
-        self._program = program
+    def __init__(self) -> None:
         self._scenes: dict[str, dict[str, Any]] = {}
-        self._count = 0
-        self._gathered = _gathering_place()
-        self._archive = zipfile.ZipFile(self._gathered, "w", zipfile.ZIP_DEFLATED, allowZip64=True)
+        self._arrays: list[Array] = []
 
     def __len__(self) -> int:
         return len(self._scenes)
 
     def add(self, name: str, scene: Scene, outcomes: Sequence[Outcome]) -> None:
-        """Take in a scene that was compared; one that was not has no numbers to keep.
-
-        Raises:
-            OutputError: there is no room for it.
-        """
+        """Take in a scene that was compared; one that was not has no numbers to keep."""
         if not outcomes or name in self._scenes:
             return
         mechanism = _mechanism(scene)
@@ -344,58 +270,17 @@ class Recorder:
         }
 
     def _put(self, array: Array) -> int:
-        self._member(f"a{self._count}", array)
-        self._count += 1
-        return self._count - 1
+        self._arrays.append(array)
+        return len(self._arrays) - 1
 
-    def _member(self, name: str, array: NDArray[Any]) -> None:
-        # The same bytes whenever it is written: an entry made by hand has no time of its own.
-        entry = zipfile.ZipInfo(f"{name}.npy")
-        entry.compress_type = zipfile.ZIP_DEFLATED
-        try:
-            with self._archive.open(entry, "w", force_zip64=True) as member:
-                np.lib.format.write_array(member, np.asarray(array, order="C"), allow_pickle=False)
-        except OSError as error:
-            raise unwritable(tempfile.gettempdir(), error) from None
-
-    def write(self, target: str) -> None:
-        """Write the baseline; nothing can be added after that.
-
-        Raises:
-            OutputError: it cannot be written; what was there is whole.
-        """
-        head = {"program": self._program, "scenes": list(self._scenes.values())}
-        words = {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
-        for name, word in words.items():
-            self._member(name, np.array(word))
-        try:
-            self._archive.close()
-        except OSError as error:
-            raise unwritable(tempfile.gettempdir(), error) from None
-
-        def put(stream: BinaryIO) -> None:
-            self._gathered.seek(0)
-            while block := self._gathered.read(2**20):
-                stream.write(block)
-
-        write_whole(target, put)
-
-    def __enter__(self) -> Recorder:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        """Give the disk back."""
-        # A full one takes no end of what is thrown away.
-        for one in (self._archive, self._gathered):
-            with suppress(OSError):
-                one.close()
-
-
-def _gathering_place() -> IO[bytes]:
-    try:
-        return tempfile.TemporaryFile()
-    except OSError as error:
-        raise unwritable(tempfile.gettempdir(), error) from None
+    def content(self) -> bytes:
+        """The file of a baseline."""
+        head = {"program": program_version(), "scenes": list(self._scenes.values())}
+        arrays: dict[str, Any] = {f"a{i}": array for i, array in enumerate(self._arrays)}
+        arrays |= {"format": FORMAT, "version": VERSION, "head": json.dumps(head)}
+        stream = io.BytesIO()
+        np.savez_compressed(stream, **arrays)
+        return stream.getvalue()
 
 
 def read_baseline(target: str) -> Baseline:
@@ -409,7 +294,7 @@ def read_baseline(target: str) -> Baseline:
             found = {name: file[name] for name in file.files}
     except OSError as error:
         raise _unusable(target, f"cannot be read ({error.strerror or error})") from None
-    except DAMAGED:
+    except Exception:  # what other bytes than those of an npz file end with is of many kinds
         raise _unusable(target, "is no npz file, or a damaged one") from None
     if str(found.get("format", "")) != FORMAT:
         raise _unusable(target, "holds no baseline")
@@ -420,7 +305,7 @@ def read_baseline(target: str) -> Baseline:
         head = json.loads(str(found["head"]))
         scenes = {one["scene"]: _scene(one, found) for one in head["scenes"]}
         return Baseline(target, str(head["program"]), scenes)
-    except (*DAMAGED, AccuracyError, FormulationError) as error:
+    except Exception as error:  # likewise of a head that is not ours
         raise _unusable(target, f"does not hold a whole baseline ({shown(str(error))})") from None
 
 
@@ -440,7 +325,7 @@ def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> Saved
         given(solution, solution.times)
         if unknown := solution.numbers.keys() - QUANTITIES.keys():
             raise ValueError(f"{sorted(unknown)[0]} is no quantity")
-    return SavedScene(head["scene"], head["car"], head["mechanism"], head["motion"], solutions)
+    return SavedScene(head["mechanism"], head["motion"], solutions)
 
 
 def _taken(places: Places, arrays: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, Array]]:

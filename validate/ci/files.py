@@ -6,17 +6,20 @@ that one of a run that was interrupted does not take the place of a whole one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
 
+from pointcoord import Scene
 from validate.ci.baseline import Recorder
 from validate.ci.junit import junit
 from validate.ci.record import Record
 from validate.ci.summary import summary
+from validate.comparison.compare import Outcome
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.files import OutputError, require_writable, write_content
+from validate.output.document import Ending, at_the_end
+from validate.output.files import OutputError, require_writable
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,12 @@ class Files:
     junit: str | None = None
     summary: str | None = None
     baseline: str | None = None
+    recorder: Recorder = field(default_factory=Recorder)
+
+    def keep(self, name: str, scene: Scene, outcomes: Sequence[Outcome]) -> None:
+        """Take in a scene for the baseline, if there is to be one."""
+        if self.baseline is not None:
+            self.recorder.add(name, scene, outcomes)
 
     def require_writable(self) -> None:
         """Refuse what cannot be written, before anything is solved.
@@ -37,61 +46,42 @@ class Files:
             if target is not None and target != "-":
                 require_writable(target)
 
-    @contextmanager
-    def closing(self, record: Record, recorder: Recorder | None, console: Console) -> Iterator[None]:
-        """Write the files when the block ends, however it ends, if there is anything to write.
+    def closing(self, record: Record, console: Console) -> AbstractContextManager[Ending]:
+        """Write the files when a block ends, however it ends, if there is anything to write.
 
         Raises:
             OutputError: one of them cannot be written; the others are tried all the same. And whatever ends
                 the block.
         """
-        status = ExitStatus.INTERRUPTED
-        try:
-            yield
-            status = ExitStatus.NOT_FINISHED if record.ended is None else record.ended
-        except KeyboardInterrupt:
-            raise
-        except BaseException:
-            status = ExitStatus.NOT_FINISHED
-            raise
-        finally:
+
+        def write(ending: Ending) -> None:
             if record.examined:
-                self._write(record, recorder, status, console)
+                self._write(record, record.status if ending.complete else ending.status, console)
 
-    def _write(self, record: Record, recorder: Recorder | None, status: ExitStatus, console: Console) -> None:
+        return at_the_end(write)
+
+    def _write(self, record: Record, status: ExitStatus, console: Console) -> None:
         problem: OutputError | None = None
-        holds = f"holds {len(record.examined)} of {len(record.names)} scenes"
 
-        def attempt(target: str, write: Callable[[], object]) -> None:
+        def attempt(target: str, content: str | bytes) -> None:
             nonlocal problem
             try:
-                write()
-                console.written.append(f"{STANDARD_OUTPUT if target == '-' else target} {holds}")
+                console.put(target, content)
+                where = STANDARD_OUTPUT if target == "-" else target
+                console.written.append(f"{where} holds {len(record.examined)} of {len(record.names)} scenes")
             except OutputError as error:
                 problem = problem or error
 
-        if self.baseline is not None and recorder is not None:
-            target, keep = self.baseline, recorder
-            if record.ended is None:
-                console.complain(f"baseline {target}: not written, because the run did not come to its end")
-            elif not len(keep):
-                console.complain(f"baseline {target}: not written, because no scene was compared")
+        if self.baseline is not None:
+            why = "" if len(self.recorder) else "no scene was compared"
+            if why := why if record.ended else "the run did not come to its end":
+                console.complain(f"baseline {self.baseline}: not written, because {why}")
             else:
-                attempt(target, lambda: keep.write(target))
+                attempt(self.baseline, self.recorder.content())
         if self.junit is not None:
-            place, data = self.junit, junit(record)
-            attempt(place, lambda: _put(place, data, console))
+            attempt(self.junit, junit(record))
         if self.summary is not None:
             # It is the last one, so that it can say that another one is not there.
-            where, text = self.summary, summary(record, ExitStatus.NOT_FINISHED if problem else status)
-            attempt(where, lambda: _put(where, text.encode(), console))
+            attempt(self.summary, summary(record, ExitStatus.NOT_FINISHED if problem else status))
         if problem is not None:
             raise problem
-
-
-def _put(target: str, data: bytes, console: Console) -> None:
-    if target == "-":
-        console.write(data.decode())
-        console.flush()
-    else:
-        write_content(target, data)

@@ -21,19 +21,21 @@ asks for no time stamps and no times: the same run gives the same bytes.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from validate.ci.baseline import Move, Since
-from validate.ci.record import Record, explained, fault_of, why_undecided
+from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
-from validate.output.report import about, held_to, when
+from validate.output.report import about, held_to, used, when
 from validate.plain_text import shown
 
 UNUSABLE = "cannot be used"
+KINDS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 
 
 @dataclass(frozen=True)
@@ -47,24 +49,24 @@ class _Case:
     out: tuple[str, ...] = ()
 
 
+Suite = tuple[str, Mapping[str, str], Sequence[_Case]]
+
+
 def junit(record: Record) -> bytes:
     """The XML of a run."""
-    suites = [*_suites(record)]
-    counts = [_counts(cases) for _, _, cases in suites]
-    totals = {key: str(sum(one[key] for one in counts)) for key in ("tests", "failures", "errors")}
-    root = ElementTree.Element("testsuites", {"name": "pointcoord validate", **totals})
-    for (name, properties, cases), each in zip(suites, counts, strict=True):
-        _add_suite(root, shown(name), properties, cases, each)
+    root = ElementTree.Element("testsuites", {"name": "pointcoord validate"})
+    for suite in _suites(record):
+        root.append(_element(*suite))
+    for total in ("tests", "failures", "errors"):
+        root.set(total, str(sum(int(suite.attrib[total]) for suite in root)))
     ElementTree.indent(root, " ")
     text: bytes = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
     return text + b"\n"
 
 
-Suite = tuple[str, Mapping[str, str], Sequence[_Case]]
-
-
 def _suites(record: Record) -> Iterator[Suite]:
     factor = {"tolerance_factor": repr(record.factor)}
+    baseline = {"baseline": "" if record.baseline is None else record.baseline.target}
     for examined in record.examined:
         for outcome in examined.outcomes:
             first, second = (solution.formulation for solution in outcome.solutions)
@@ -81,34 +83,19 @@ def _suites(record: Record) -> Iterator[Suite]:
         if faults := [*_faults(examined)]:
             yield examined.name, {"scene": examined.name}, faults
     for since in record.since:
-        properties = {"scene": since.scene, "baseline": _target(record), **factor}
+        properties = {"scene": since.scene, **baseline, **factor}
         yield f"{since.scene}: since the baseline", properties, [*_since(since, record.factor)]
     for name in record.gone:
         case = _Case("in the run", "skipped", "gone", f"{name} is in the baseline and not in this run")
-        yield f"{name}: since the baseline", {"scene": name, "baseline": _target(record)}, [case]
+        yield f"{name}: since the baseline", {"scene": name, **baseline}, [case]
     for name in record.not_run:
         yield name, {"scene": name}, [_Case("run", "skipped", "not run", f"not run: {record.stopped}")]
 
 
-def _target(record: Record) -> str:
-    return "" if record.baseline is None else record.baseline.target
-
-
-def _counts(cases: Sequence[_Case]) -> dict[str, int]:
-    kinds = {"failures": "failure", "errors": "error", "skipped": "skipped"}
-    found = {name: sum(case.kind == kind for case in cases) for name, kind in kinds.items()}
-    return {"tests": len(cases), **found}
-
-
-def _add_suite(
-    root: ElementTree.Element,
-    name: str,
-    properties: Mapping[str, str],
-    cases: Sequence[_Case],
-    counts: Mapping[str, int],
-) -> None:
-    told = {key: str(count) for key, count in counts.items()}
-    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **told})
+def _element(name: str, properties: Mapping[str, str], cases: Sequence[_Case]) -> ElementTree.Element:
+    name, kinds = shown(name), Counter(case.kind for case in cases)
+    counts = {key: str(kinds[kind]) for key, kind in KINDS.items()}
+    suite = ElementTree.Element("testsuite", {"name": name, "tests": str(len(cases)), **counts})
     listed = ElementTree.SubElement(suite, "properties")
     for key, value in properties.items():
         ElementTree.SubElement(listed, "property", {"name": key, "value": shown(value)})
@@ -120,55 +107,50 @@ def _add_suite(
             ElementTree.SubElement(element, case.kind, ends).text = lines or shown(case.message)
         if lines:
             ElementTree.SubElement(element, "system-out").text = lines
+    return suite
 
 
 def _compared(row: Comparison, outcome: Outcome) -> _Case:
     name = about(row.quantity, row.name)
-    if fault := fault_of(row, outcome):
-        return _Case(name, "error", UNUSABLE, f"{UNUSABLE}: {fault}")
+    if row.why in outcome.faults:
+        return _Case(name, "error", UNUSABLE, f"{UNUSABLE}: {row.why}")
     if row.verdict == "not given":
-        return _Case(name, "skipped", row.verdict, f"not given: {why_undecided(row, outcome)}")
-    out = _numbers("difference", row.difference, "tolerance", row.tolerance, row.unit, when(row), row.share)
+        return _Case(name, "skipped", row.verdict, f"not given: {row.why}")
+    out = _numbers(row, "difference", "tolerance")
     out = (*out, f"the tolerance rests on: {row.rests_on} ({row.part:.0%} of it)")
     if row.verdict == "not tested":
-        return _Case(name, "skipped", row.verdict, f"not tested: {why_undecided(row, outcome)}", out)
+        return _Case(name, "skipped", row.verdict, f"not tested: {row.why}", out)
     if row.verdict == "agrees":
         return _Case(name, out=out)
     message = (
         f"{row.first} and {row.second} disagree: the largest difference is {_told(row.difference, row.unit)} "
         f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
-        f"{_times(row.share)}{_held(outcome.factor)}"
+        f"at most {used(row.share)}{_held(outcome.factor)}"
     )
-    why = tuple(f"what would explain it: {words}" for words in explained(row, outcome))
+    why = tuple(f"what would explain it: {words}" for words in outcome.explained(row))
     return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
 
 def _unusable(outcome: Outcome) -> Iterator[_Case]:
     """What is given of no number that is asked for; and why nothing is said, where no case says it."""
-    told = {fault_of(row, outcome) for row in outcome.rows}
+    told = {row.why for row in outcome.rows}
     rest = [fault for fault in outcome.faults if fault not in told]
     yield from (_Case(f"what is given, {i}", "error", UNUSABLE, one) for i, one in enumerate(rest, 1))
     if outcome.why_no_verdict and not outcome.faults:
         yield _Case("verdict", "error", "no verdict", f"no verdict: {outcome.why_no_verdict}")
 
 
-def _numbers(
-    gap: str, difference: float, bound: str, tolerance: float, unit: str, instant: str, share: float
-) -> tuple[str, ...]:
+def _numbers(row: Comparison, gap: str, bound: str) -> tuple[str, ...]:
     return (
-        f"{gap}: {_told(difference, unit)}",
-        f"{bound}: {_told(tolerance, unit)}",
-        f"instant: {instant}",
-        f"{gap} / {bound}: {share:.6g}" if math.isfinite(share) else f"{gap} / {bound}: none",
+        f"{gap}: {_told(row.difference, row.unit)}",
+        f"{bound}: {_told(row.tolerance, row.unit)}",
+        f"instant: {when(row)}",
+        f"{gap} / {bound}: {row.share:.6g}" if math.isfinite(row.share) else f"{gap} / {bound}: none",
     )
 
 
 def _told(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}" if math.isfinite(value) else "not a number"
-
-
-def _times(share: float) -> str:
-    return f"up to {share:.6g} times what is allowed" if math.isfinite(share) else "which nothing allows"
 
 
 def _held(factor: float) -> str:
@@ -188,15 +170,9 @@ def _faults(examined: Examined) -> Iterator[_Case]:
 
 def _about(refusal: Refusal) -> Iterator[str]:
     yield f"reason: {refusal.reason}"
-    if refusal.instant is not None:
-        yield f"instant: {refusal.instant:.9g} s"
-    if refusal.input is not None:
-        yield f"input: {refusal.input}"
-    yield from (
-        f"{key}: {value}"
-        for key, value in (("value", refusal.value), ("limit", refusal.limit))
-        if value is not None
-    )
+    instant = None if refusal.instant is None else f"{refusal.instant:.9g} s"
+    told = {"instant": instant, "input": refusal.input, "value": refusal.value, "limit": refusal.limit}
+    yield from (f"{name}: {value}" for name, value in told.items() if value is not None)
 
 
 def _since(since: Since, factor: float) -> Iterator[_Case]:
@@ -210,21 +186,17 @@ def _since(since: Since, factor: float) -> Iterator[_Case]:
 
 
 def _moved(move: Move, factor: float, lost: bool) -> _Case:
-    name = f"{move.formulation}: {about(move.quantity, move.name)}"
-    if move.verdict == "new":
-        return _Case(name, "skipped", move.verdict, "new: the baseline has no such numbers")
-    if move.verdict == "gone":
-        message = "gone: the baseline has such numbers, and this run has none"
-        return _Case(name, "failure" if lost else "skipped", move.verdict, message)
-    out = _numbers("moved", move.moved, "bound", move.bound, move.unit, f"{move.instant:.9g} s", move.share)
-    if move.verdict == "agrees":
-        return _Case(name, out=out)
-    if move.verdict == "not tested":
-        return _Case(
-            name, "skipped", move.verdict, "not tested: one error bound is too wide to test the other", out
-        )
-    message = (
-        f"moved by {_told(move.moved, move.unit)} at {move.instant:.9g} s, where both error bounds together "
-        f"allow {_told(move.bound, move.unit)}; {_times(move.share)}{_held(factor)}"
-    )
-    return _Case(name, "failure", move.verdict, message, out)
+    row = move.row
+    moved, allowed = _told(row.difference, row.unit), _told(row.tolerance, row.unit)
+    words = {
+        "agrees": "",
+        "new": "new: the baseline has no such numbers",
+        "gone": "gone: the baseline has such numbers, and this run has none",
+        "not tested": "not tested: one error bound is too wide to test the other",
+        "moved": f"moved by {moved} at {when(row)}, where both error bounds together allow {allowed}; "
+        f"at most {used(row.share)}{_held(factor)}",
+    }
+    kind = "failure" if lost or move.verdict == "moved" else "" if move.verdict == "agrees" else "skipped"
+    out = () if move.verdict in ("new", "gone") else _numbers(row, "moved", "bound")
+    name = f"{move.formulation}: {about(row.quantity, row.name)}"
+    return _Case(name, kind, move.verdict, words[move.verdict], out)

@@ -2,34 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict
 from typing import Any
 
 from validate.ci.baseline import Baseline, Move, Since
-from validate.output.report import about, heading, with_unit
+from validate.output.report import about, when, with_unit, worst_of
 from validate.output.table import Cell, Part, Table
+from validate.plain_text import gathered, some_of
 
 NAMED = 8  # numbers in a sentence: the table's notes have them all
-ORDER = ("agrees", "not tested", "moved")
 ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
-
-
-def worst_moves(since: Since) -> list[Move]:
-    """For each formulation and quantity the move that uses most of its bound, or exceeds it the most."""
-    worst: dict[tuple[str, str], Move] = {}
-    for move in since.moves:
-        if move.verdict in ALONE:
-            continue
-        key = (move.formulation, heading(move.quantity, move.name))
-        if key not in worst or _severity(move) > _severity(worst[key]):
-            worst[key] = move
-    return list(worst.values())
-
-
-def _severity(move: Move) -> tuple[int, float]:
-    return ORDER.index(move.verdict), 0.0 if math.isnan(move.share) else move.share
+HEAD = ("scene", "solved by", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
 
 
 def since_parts(since: Since) -> tuple[Part, ...]:
@@ -44,47 +27,46 @@ def since_parts(since: Since) -> tuple[Part, ...]:
 
 def moves_table(found: Sequence[Since], most: int | None = None) -> Table:
     """What moved by how much: of each scene, formulation and quantity the worst."""
-    rows = [_row(since.scene, move) for since in found for move in worst_moves(since)]
-    head = ("scene", "solved by", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
-    return Table(head, tuple(rows[:most]))
+    return Table(HEAD, tuple(row for since in found for row in _rows(since))[:most])
 
 
-def _row(scene: str, move: Move) -> tuple[str | Cell, ...]:
-    return (
-        scene,
-        move.formulation,
-        heading(move.quantity, move.name),
-        move.name,
-        with_unit(move.moved, move.unit),
-        with_unit(move.bound, move.unit),
-        f"{move.instant:.4g} s",
-        with_unit(move.share, ""),
-        Cell("MOVED", verdict="moved") if move.verdict == "moved" else move.verdict,
-    )
+def _rows(since: Since) -> Iterator[tuple[str | Cell, ...]]:
+    """A row for each formulation and quantity: what uses most of its bound, or exceeds it the most."""
+    compared = [move.row for move in since.moves if move.verdict not in ALONE]
+    for formulation in dict.fromkeys(row.first for row in compared):
+        for quantity, row in worst_of(row for row in compared if row.first == formulation).items():
+            yield (
+                since.scene,
+                formulation,
+                quantity,
+                row.name,
+                with_unit(row.difference, row.unit),
+                with_unit(row.tolerance, row.unit),
+                when(row, 4),
+                with_unit(row.share, ""),
+                Cell("MOVED", verdict="moved") if row.verdict == "disagrees" else row.verdict,
+            )
+
+
+def _by_formulation(moves: Iterable[Move]) -> dict[str, list[str]]:
+    """What the numbers of each formulation are, in words."""
+    return gathered((move.formulation, about(move.row.quantity, move.row.name)) for move in moves)
 
 
 def _alone(since: Since) -> Iterator[str]:
     """Which numbers only the baseline or only this run has."""
     shared = {move.formulation for move in since.moves if move.verdict not in ALONE}
     for verdict, words in ALONE.items():
-        by_formulation: dict[str, list[str]] = {}
-        for move in since.moves:
-            if move.verdict == verdict:
-                what = about(move.quantity, move.name)
-                by_formulation.setdefault(move.formulation, []).append(what)
-        for formulation, whats in by_formulation.items():
+        found = _by_formulation(move for move in since.moves if move.verdict == verdict)
+        for formulation, whats in found.items():
             what = ", ".join(whats) if formulation in shared else "every number"
             yield f"{verdict}, {words}: {what} by {formulation}"
 
 
 def lost_lines(since: Since) -> Iterator[str]:
     """What of a scene was given then and is not now, a line for each formulation."""
-    by_formulation: dict[str, list[str]] = {}
-    for move in since.lost:
-        by_formulation.setdefault(move.formulation, []).append(about(move.quantity, move.name))
-    for formulation, whats in by_formulation.items():
-        more = f" and {len(whats) - NAMED} more" if len(whats) > NAMED else ""
-        yield f"{since.scene}: {', '.join(whats[:NAMED])}{more} by {formulation}"
+    for formulation, whats in _by_formulation(since.lost).items():
+        yield f"{since.scene}: {some_of(whats, NAMED)} by {formulation}"
 
 
 def told_apart(found: Iterable[Since], gone: Sequence[str]) -> Iterator[str]:
@@ -107,9 +89,24 @@ def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[str
                 "standing": since.standing,
                 "words": since.words,
                 "exit_status": since.status.value,
-                "moves": [asdict(move) for move in since.moves],
+                "moves": [*map(_move_data, since.moves)],
             }
             for since in found
         ],
         "gone": list(gone),
+    }
+
+
+def _move_data(move: Move) -> dict[str, Any]:
+    row = move.row
+    return {
+        "formulation": move.formulation,
+        "quantity": row.quantity,
+        "name": row.name,
+        "unit": row.unit,
+        "moved": row.difference,
+        "bound": row.tolerance,
+        "share": row.share,
+        "instant": row.instant,
+        "verdict": move.verdict,
     }

@@ -8,21 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord import Scene
 from validate.ci.baseline import Baseline, Since
 from validate.ci.moves import baseline_data
-from validate.comparison.compare import Comparison, Outcome
+from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding, findings
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.protocol import Accuracy, Solution
-from validate.output.report import about, examined_data, finding_data, paper_data
+from validate.output.report import examined_data, finding_data, paper_data
 from validate.paper.tables import PaperRow
 
 if TYPE_CHECKING:  # most runs compare no file
     from validate.measured.comparing import DataOutcome
 
-Case = tuple[Examined, Outcome]
+CUT_OFF = "the run did not come to its end"
 
 
 @dataclass
@@ -34,9 +34,10 @@ class Record:
         factor: how many times the derived tolerance differences are held to.
         baseline: that the scenes are held to, if there is one.
         examined: what came of each scene, in order. since: each against the baseline.
+        scenes: those of them that could be read, by name.
         files: of results, by the name of the scene whose car they are held to.
         paper: the paper's printed tables beside ours.
-        stopped: why the rest was not run. ended: the status of a run that came to its end.
+        stopped: why the rest was not run.
     """
 
     names: Sequence[str]
@@ -44,16 +45,23 @@ class Record:
     baseline: Baseline | None = None
     examined: list[Examined] = field(default_factory=list)
     since: list[Since] = field(default_factory=list)
+    scenes: dict[str, Scene] = field(default_factory=dict)
     files: dict[str, DataOutcome] = field(default_factory=dict)
     paper: Sequence[PaperRow] = ()
-    stopped: str = "the run did not come to its end"
-    ended: ExitStatus | None = None
+    stopped: str = CUT_OFF
 
-    def add(self, examined: Examined, since: Since | None = None) -> None:
+    def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Take in a scene; the numbers themselves are let go."""
-        self.examined.append(without_numbers(examined))
+        self.examined.append(_without_numbers(examined))
+        if scene is not None:
+            self.scenes[examined.name] = scene
         if since is not None:
             self.since.append(since)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run came to its end, be it before its last scene."""
+        return not self.not_run or self.stopped != CUT_OFF
 
     @property
     def not_run(self) -> tuple[str, ...]:
@@ -63,13 +71,13 @@ class Record:
     @property
     def gone(self) -> tuple[str, ...]:
         """The scenes of the baseline that are none of the run's."""
-        return () if self.baseline is None else self.baseline.gone(self.names)
+        known = {} if self.baseline is None else self.baseline.scenes
+        return tuple(name for name in known if name not in self.names)
 
     @property
-    def outcomes(self) -> Iterator[Case]:
+    def outcomes(self) -> Iterator[Outcome]:
         """Every comparison of every scene."""
-        for examined in self.examined:
-            yield from ((examined, outcome) for outcome in examined.outcomes)
+        return (outcome for examined in self.examined for outcome in examined.outcomes)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -97,66 +105,27 @@ class Record:
         }
 
 
-def without_numbers(examined: Examined) -> Examined:
+def _without_numbers(examined: Examined) -> Examined:
     """What came of a scene, and no more the numbers that it came from."""
-    printed = None if examined.printed is None else _told(examined.printed)
-    return replace(examined, outcomes=tuple(map(_told, examined.outcomes)), printed=printed)
+    printed = None if examined.printed is None else _emptied(examined.printed)
+    return replace(examined, outcomes=tuple(map(_emptied, examined.outcomes)), printed=printed)
 
 
-def _told(outcome: Outcome) -> Outcome:
+def _emptied(outcome: Outcome) -> Outcome:
     one, two = (
-        Solution(solution.formulation, solution.times, {}, _without_claims(solution.accuracy))
+        # What is left of an accuracy says whether it was stated, which decides what passes.
+        Solution(
+            solution.formulation,
+            solution.times,
+            {},
+            Accuracy(np.ones(0), blind=solution.accuracy.blind, stated=solution.accuracy.stated),
+        )
         for solution in outcome.solutions
     )
     return replace(outcome, solutions=(one, two))
-
-
-def _without_claims(accuracy: Accuracy) -> Accuracy:
-    """What is left says whether the accuracy was stated, which decides what passes."""
-    return Accuracy(np.ones(0), blind=accuracy.blind, stated=accuracy.stated)
 
 
 def ends_the_run(examined: Examined, since: Since | None) -> bool:
     """Whether a scene ends a run that ends at the first fault: it disagrees, has moved, or is refused."""
     disagrees = any(outcome.disagreements for outcome in examined.outcomes)
     return disagrees or bool(examined.complaint) or (since is not None and bool(since.moved or since.lost))
-
-
-def explained(row: Comparison, outcome: Outcome) -> tuple[str, ...]:
-    """What would explain that a row disagrees, the best first."""
-    its = {row.quantity, f"{row.quantity}.{row.name}"}
-    return tuple(one.words for one in outcome.explanations if its & {*one.quantities})
-
-
-def fault_of(row: Comparison, outcome: Outcome) -> str:
-    """What is wrong with what was given of a row, if it cannot be used; else empty."""
-    about_it = f": {QUANTITIES[row.quantity].words} of {row.name} "
-    return next((fault for fault in outcome.faults if about_it in fault), "")
-
-
-def why_undecided(row: Comparison, outcome: Outcome) -> str:
-    """The reason of a row that says nothing: who does not give it, or what makes its tolerance too wide."""
-    if row.why:
-        return row.why
-    words = QUANTITIES[row.quantity].words
-    if fault := fault_of(row, outcome):
-        return fault
-    if row.verdict == "not given":
-        found = [line for line in outcome.missing if _is_about(line, words, row)]
-        where = f"{about(row.quantity, row.name)} is given at no instant of the scene"
-        return "; ".join(found or outcome.notes) or where
-    notes = [note for note in outcome.notes if f": {words} of {row.name}: its accuracy " in note]
-    if notes:
-        return "; ".join(notes)
-    return f"the tolerance rests on the error bound of {row.rests_on}, and is too wide to test the other one"
-
-
-def _is_about(line: str, words: str, row: Comparison) -> bool:
-    """Whether a line on what is missing names a row, or its whole quantity."""
-    for who in (row.first, row.second):
-        lacking, misspelt = f"{who} gives no {words}", f"{who} gives {words} of "
-        if line == lacking or (line.startswith(misspelt) and f"'{row.name}'" in line):
-            return True
-        if line.startswith(f"{lacking} of ") and row.name in line.removeprefix(f"{lacking} of ").split(", "):
-            return True
-    return False

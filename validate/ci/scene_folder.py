@@ -22,14 +22,10 @@ def scenes_below(folder: str) -> tuple[str, ...]:
         raise _unusable(folder, f"cannot be read{where} ({error.strerror or error})") from None
 
     try:
-        found = [
-            Path(place, name)
-            for place, _, names in os.walk(folder, onerror=stop)
-            for name in names
-            if name.endswith(".toml")
-        ]
+        places = [(place, names) for place, _, names in os.walk(folder, onerror=stop)]
     except ValueError as error:  # a zero byte in the name
         raise _unusable(folder, f"names no folder ({error})") from None
+    found = [Path(place, name) for place, names in places for name in names if name.endswith(".toml")]
     if not found:
         raise _unusable(folder, "holds no scene")
     return tuple(str(path) for path in sorted(found, key=lambda path: path.parts))

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import get_args
 
 from validate.ci.moves import lost_lines
-from validate.ci.record import Record, why_undecided
-from validate.comparison.compare import Comparison, Outcome, Verdict
+from validate.ci.record import Record
+from validate.comparison.compare import Comparison, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
@@ -19,6 +18,7 @@ from validate.output.report import (
     heading,
     held_to,
     pair_of,
+    severity,
     share_of,
     silent_lines,
     used,
@@ -27,33 +27,27 @@ from validate.output.report import (
     worst_rows,
 )
 from validate.output.table import Cell, Table
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown, some_of
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NOT_TESTED = "not tested"
+# The line of a scene tells of the last verdict that any of its numbers has.
+OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
 
 
-def named(names: Sequence[str]) -> str:
-    """The first names of many."""
-    rest = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    return ", ".join(names[:NAMED]) + rest
+def word(status: ExitStatus) -> str:
+    """The verdict of a status on what was compared."""
+    return {ExitStatus.AGREE: "agrees", ExitStatus.DISAGREE: "disagrees"}.get(status, NOT_TESTED)
 
 
 def standing(examined: Examined) -> tuple[str, str]:
     """The verdict on a scene, and why there is none, in a word or two; empty where claims are too wide."""
     status = examined.status
-    if status in (ExitStatus.AGREE, ExitStatus.DISAGREE):
-        return ("agrees" if status is ExitStatus.AGREE else "disagrees"), ""
-    if not examined.complaint:
-        return NOT_TESTED, ""
+    if word(status) != NOT_TESTED or not examined.complaint:
+        return word(status), ""
     if status is ExitStatus.WRONG_INPUT:
         return NOT_TESTED, status.verdict
     return NOT_TESTED, "failed" if status is ExitStatus.NOT_FINISHED else "refused"
-
-
-def standing_of(outcome: Outcome) -> str:
-    """The verdict on one comparison."""
-    return "agrees" if outcome.passed else "disagrees" if outcome.disagreements else NOT_TESTED
 
 
 def sentence(record: Record) -> str:
@@ -66,25 +60,26 @@ def sentence(record: Record) -> str:
 
 def _of_files(record: Record) -> Iterator[str]:
     for name, file in record.files.items():
-        by_verdict: dict[str, list[str]] = {}
-        for row in file.outcome.rows:
-            by_verdict.setdefault(row.verdict, []).append(about(row.quantity, row.name))
-        agree, source = len(by_verdict.pop("agrees", ())), file.outcome.solutions[0].formulation
-        yield f"{source} and the car of {name}: {agree} of {len(file.outcome.rows)} agree"
-        yield from (f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))
+        rows, source = file.outcome.rows, file.outcome.solutions[0].formulation
+        by_verdict = gathered((row.verdict, about(row.quantity, row.name)) for row in rows)
+        agree = len(by_verdict.pop("agrees", ()))
+        yield f"{source} and the car of {name}: {agree} of {len(rows)} agree"
+        yield from _by_verdict(by_verdict)
+
+
+def _by_verdict(names: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    yield from (f"{verdict}: {some_of(some, NAMED)}" for verdict, some in sorted(names.items()))
 
 
 def _of_scenes(record: Record) -> Iterator[str]:
-    by_verdict: dict[str, list[str]] = {}
-    for one in record.examined:
-        verdict, why = standing(one)
-        by_verdict.setdefault(f"{verdict} ({why})" if why else verdict, []).append(one.name)
+    verdicts = ((*standing(one), one.name) for one in record.examined)
+    by_verdict = gathered((f"{verdict} ({why})" if why else verdict, name) for verdict, why, name in verdicts)
     yield agreeing(len(by_verdict.pop("agrees", ())), len(record.names))
-    yield from (f"{verdict}: {named(names)}" for verdict, names in sorted(by_verdict.items()))
+    yield from _by_verdict(by_verdict)
     if record.not_run:
-        yield f"not run ({record.stopped}): {named(record.not_run)}"
+        yield f"not run ({record.stopped}): {some_of(record.not_run, NAMED)}"
     # How much of what is asked for was compared, of a solver that may give what it has.
-    stated = [outcome.counts for _, outcome in record.outcomes if outcome.stated]
+    stated = [outcome.counts for outcome in record.outcomes if outcome.stated]
     counts = {key: sum(one[key] for one in stated) for key in (*get_args(Verdict), "given back")}
     if count := sum(counts[verdict] for verdict in get_args(Verdict)):
         rest = "".join(f", {counts[v]} {v}" for v in ("not given", NOT_TESTED) if counts[v])
@@ -105,7 +100,7 @@ def _since(record: Record) -> Iterator[str]:
         yield f"nothing could be compared with the baseline {target}"
     else:
         yield (
-            f"moved since the baseline {target}: {named(moved)}"
+            f"moved since the baseline {target}: {some_of(moved, NAMED)}"
             if moved
             else "nothing moved since the baseline"
         )
@@ -113,26 +108,22 @@ def _since(record: Record) -> Iterator[str]:
         yield f"given then and not now: {'; '.join(lost)}"
     yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
     if record.gone:
-        yield f"gone, in the baseline and not in this run: {named(record.gone)}"
+        yield f"gone, in the baseline and not in this run: {some_of(record.gone, NAMED)}"
 
 
 def scene_line(examined: Examined, seconds: float, width: int) -> str:
     """A scene in one line: its verdict, how long it took, the largest share of a tolerance and where."""
     verdict, why = standing(examined)
-    shares = [(row.share, row, outcome) for outcome in examined.outcomes for row in outcome.rows]
-    finite = [one for one in shares if math.isfinite(one[0])]
-    # A number that is none disagrees however small the others are.
-    wrong = [one for one in shares if one[1].verdict == "disagrees" and one not in finite]
     told = why
     if verdict == NOT_TESTED and not why:
         told = silence(examined)
-    elif not why and (shares := wrong[:1] or finite):
-        share, row, outcome = max(shares, key=lambda one: one[0]) if not wrong else shares[0]
-        told = f"{share_of(share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
+    elif not why and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
+        row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
+        told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
         if outcome is not examined.outcomes[0]:
             told += f", {outcome.solutions[0].formulation}"
-    word = verdict.upper() if verdict == "disagrees" else verdict
-    return f"{examined.name.ljust(width)}  {word:<10}  {seconds:>5.1f} s  {told}".rstrip()
+    said = verdict.upper() if verdict == "disagrees" else verdict
+    return f"{examined.name.ljust(width)}  {said:<10}  {seconds:>5.1f} s  {told}".rstrip()
 
 
 def scene_head(width: int) -> str:
@@ -196,11 +187,9 @@ def undecided(examined: Examined) -> Iterator[str]:
     """Of what nothing can be said, and why; what has one reason together."""
     for outcome in examined.outcomes:
         yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
-        found: dict[str, list[str]] = {}
-        for row in sorted(outcome.undecided, key=lambda row: row.verdict == "not given"):
-            reason = f"{row.verdict}: {why_undecided(row, outcome)}"
-            found.setdefault(reason, []).append(about(row.quantity, row.name))
-        yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in found.items())
+        rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
+        reasons = gathered((f"{row.verdict}: {row.why}", about(row.quantity, row.name)) for row in rows)
+        yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in reasons.items())
 
 
 def silence(examined: Examined) -> str:
@@ -221,11 +210,8 @@ def by_scene(record: Record, *lines: Lines) -> list[str]:
     """Lines of all scenes, each once, with the scenes that it is about."""
     told = []
     for of in lines:
-        scenes: dict[str, dict[str, None]] = {}
-        for one in record.examined:
-            for line in of(one):
-                scenes.setdefault(line, {})[one.name] = None
-        told += [f"{named(list(names))}: {line}" for line, names in scenes.items()]
+        scenes = gathered((line, one.name) for one in record.examined for line in of(one))
+        told += [f"{some_of([*dict.fromkeys(names)], NAMED)}: {line}" for line, names in scenes.items()]
     return told
 
 
@@ -259,7 +245,7 @@ def _rows(one: Examined) -> Iterator[tuple[str, str, Cell, dict[str, Cell]]]:
     if not one.outcomes:
         yield one.name, "", Cell(NOT_TESTED, why, NOT_TESTED), {}
     for outcome in one.outcomes:
-        verdict = standing_of(outcome)
+        verdict = word(outcome.status)
         if why and verdict == "agrees":
             verdict = standing(one)[0]  # one of the other formulations has no answer
         cells = {heading(row.quantity, row.name): _cell(row) for row in worst_rows(outcome)}

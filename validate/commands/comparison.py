@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import replace
 
 from pointcoord import Scene, SceneError
 from validate.ci import verdict
-from validate.ci.baseline import Recorder, Since, read_baseline
+from validate.ci.baseline import Since, read_baseline
 from validate.ci.moves import since_parts
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
@@ -33,7 +33,7 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
 from validate.output.console import Console
-from validate.output.document import Head, Journal, program_version
+from validate.output.document import Head, Journal
 from validate.output.progress import progress
 from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
@@ -206,7 +206,7 @@ def compare_scenes(
     files.require_writable()
     if page is not None:
         page.require()
-    telling = None if page is None else page.telling(len(names))
+    drawings = None if page is None else page.drawings(len(names))
     head = Head.of("validate", options.command, options.timings)
     journal = Journal(options.json, head, console)
 
@@ -215,9 +215,8 @@ def compare_scenes(
 
     with (
         _solver(options) as own,
-        nullcontext() if files.baseline is None else Recorder(program_version()) as recorder,
         journal.closing(record.data, lambda: record.examined, finished) as ending,
-        files.closing(record, recorder, console),
+        files.closing(record, console),
         progress(console, "scenes", total=len(names), lines=brief) as told,
     ):
         loaded = _loaded(names, console)
@@ -232,13 +231,13 @@ def compare_scenes(
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
                 examined = explained(scene, examine(name, scene, pairs, printed, record.factor, own))
-                if recorder is not None:
-                    recorder.add(examined.name, scene, examined.outcomes)
+                files.keep(examined.name, scene, examined.outcomes)
                 if baseline is not None:
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
             else:
                 examined = scene
-            record.add(examined, since)
+            read = scene if isinstance(scene, Scene) else None
+            record.add(examined, since, read)
             _say(
                 examined,
                 since,
@@ -247,8 +246,8 @@ def compare_scenes(
                 console,
                 max(map(len, shown_names)),
             )
-            if telling is not None:
-                telling.add(examined, scene if isinstance(scene, Scene) else None)
+            if drawings is not None:
+                drawings.add(examined, read)
             journal.keep(record.data, finished())
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
@@ -256,10 +255,13 @@ def compare_scenes(
         if all_of_ours and not own and not record.not_run:
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
-        ending.status = record.ended = record.status
-        if page is not None and telling is not None:
+        ending.status = record.status
+        if page is not None and drawings is not None:
+            # Most runs make no page.
+            from validate.html.run import Run
+
             told("the page", len(names))
-            whole = page.write(telling.run(head, record), console)
+            whole = page.write(Run(head, record, drawings.kept), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute

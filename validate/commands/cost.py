@@ -20,7 +20,6 @@ from validate.commands.usage import (
     leave_output_to,
     load_scene,
     name_of,
-    needed,
     require_target,
     told_as,
     write_result,
@@ -29,6 +28,7 @@ from validate.cost.report import Report
 from validate.cost.table import PARTS, Part, Row, Store, StoreError, latest, measured_here
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.files import require_writable, write_content

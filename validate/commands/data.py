@@ -72,7 +72,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
         journal.closing(
             record.data, lambda: record.examined, lambda: f"{len(record.examined)} of 1 scenes"
         ) as ending,
-        targets.closing(record, None, console),
+        targets.closing(record, console),
     ):
         scene = load_scene(given)
         with told_as(name):
@@ -80,17 +80,18 @@ def run(options: argparse.Namespace, console: Console, page: Page | None, brief:
             found = compare_results(measured, scene, name, options.accuracy, options.tolerance_factor)
         examined = _examined(found, scene, name)
         record.files[name] = found
-        record.add(examined)
+        record.add(examined, scene=scene)
         for warning in examined.warnings:
             console.warn(f"{name}: {warning}")
         console.show(report.file_parts(found))
         if step := next_step(record):
             console.say(step)
-        ending.status = record.ended = examined.status
+        ending.status = examined.status
         if page is not None:
-            telling = page.telling(1)
-            telling.add(examined, scene, found)
-            whole = page.write(telling.run(head, record), console)
+            # Most files make no page.
+            from validate.html.run import Run
+
+            whole = page.write(Run(head, record), console)
             ending.status = whole.status
             if brief:
                 console.mute = mute

@@ -14,7 +14,6 @@ from validate.commands.usage import (
     add_scene,
     load_scene,
     name_of,
-    needed,
     place_of_result,
     told_as,
     write_result,
@@ -22,6 +21,7 @@ from validate.commands.usage import (
 from validate.curves.numbers import TIME, TRAVEL, Curves, Number, found, numbers_of, usual
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.output.console import Console
 from validate.output.progress import progress
 

@@ -107,7 +107,7 @@ def _with_more(
     """A run with the rest of a report; what is not computed is named, with the command that does."""
     left_out: list[tuple[str, str]] = []
     # The paper's tables are compared in a run of all that is built in, and of nothing else.
-    whole = bool(run.paper)
+    whole = bool(run.record.paper)
     if hard is None and whole:
         hard = _some_hard_cases(run.head, console)
     if cost is None and whole:

@@ -9,12 +9,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from validate.errors import UsageError
+from validate.extras import needed
 from validate.output.console import Console
 from validate.plain_text import shown
 
 # What a page is made of is imported where one is made: most runs make none.
 if TYPE_CHECKING:
-    from validate.html.run import Run, Telling
+    from validate.html.run import Drawings, Run
 
 
 def add_report(parser: argparse.ArgumentParser) -> None:
@@ -39,9 +40,11 @@ OF_OTHERS = ("other programs' tables", "pointcoord report DIR")
 def _nothing_more(run: Run) -> Run:
     """The run as it is, which names what else pages hold."""
     # Of a file's scene no motion is solved and no other model.
-    kind = "" if run.files else run.head.kind
+    kind = "" if run.record.files else run.head.kind
     rows = [row for name, row in OF_A_KIND.items() if name != kind]
-    rows += [row for row, there in ((OF_THE_PAPER, run.paper), (OF_OTHERS, run.published)) if not there]
+    rows += [
+        row for row, there in ((OF_THE_PAPER, run.record.paper), (OF_OTHERS, run.published)) if not there
+    ]
     return replace(run, left_out=tuple(rows))
 
 
@@ -65,11 +68,11 @@ class Page:
 
         return shown(os.path.join(self.folder, PAGE))
 
-    def telling(self, count: int) -> Telling:
-        """What takes in so many scenes for the page."""
-        from validate.html.run import Telling
+    def drawings(self, count: int) -> Drawings:
+        """What keeps those of so many scenes that the page draws."""
+        from validate.html.run import Drawings
 
-        return Telling(count)
+        return Drawings(count)
 
     def require(self) -> None:
         """Find out that there can be no page, before anything is solved.
@@ -80,13 +83,13 @@ class Page:
             OutputError: it cannot be written.
         """
         from validate.html.folder import require_folder
-        from validate.html.page import require_templates
 
         if not self.folder.strip():
             raise UsageError(
                 f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
             )
-        require_templates()
+        for package in ("jinja2", "plotly.offline"):
+            needed("report", package, "report")
         require_folder(self.folder)
 
     def write(self, run: Run, console: Console) -> Run:

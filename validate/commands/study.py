@@ -9,13 +9,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import add_json, add_quiet, leave_output_to, needed, require_target
+from validate.commands.usage import add_json, add_quiet, leave_output_to, require_target
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.extras import needed
 from validate.formulations.registry import NAMES
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.progress import progress
+from validate.output.report import counted_as
 from validate.plain_text import shown
 
 if TYPE_CHECKING:
@@ -247,7 +249,7 @@ def _worked_out(
         before = there = len(study.tasks) - len(missing)
 
         def held() -> str:
-            return f"{where} holds {there:,} of {study.counted(len(study.tasks))}"
+            return f"{where} holds {there:,} of {counted_as(len(study.tasks), study.noun)}"
 
         def found() -> Findings:
             return study.summary(store.rows(study.tasks))

@@ -9,16 +9,13 @@ import stat
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from pointcoord import Scene, SceneError
 from validate.ci.files import Files
 from validate.errors import UsageError
-from validate.extras import MissingPackage
 from validate.output.console import Console
-from validate.output.files import require_known_ending, require_writable, write_content
+from validate.output.files import require_known_ending, require_writable
 from validate.plain_text import shown
 
 STANDARD_INPUT = "-"
@@ -79,24 +76,9 @@ def write_result(target: str | None, content: str | bytes, holds: str, console: 
     Raises:
         OutputError: it cannot be written.
     """
-    if target in (None, "-"):
-        console.write(content if isinstance(content, str) else content.decode())
-        console.flush()
-        return
-    write_content(target, content)
-    console.written.append(f"{target} holds {holds}")
-
-
-def needed(part: str, module: str, extra: str = "validate") -> Any:
-    """A module that needs packages that the solvers do without.
-
-    Raises:
-        MissingPackage: they are not there.
-    """
-    try:
-        return import_module(module)
-    except ImportError as error:
-        raise MissingPackage(part, error, extra) from None
+    console.put(target or "-", content)
+    if target not in (None, "-"):
+        console.written.append(f"{target} holds {holds}")
 
 
 def positive(what: str) -> Callable[[str], float]:

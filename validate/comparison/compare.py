@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.wording import meant, shown
+from pointcoord.wording import nearest, shown
 from validate.comparison.explanation import Explanation
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
+from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
@@ -44,7 +45,7 @@ class Comparison:
         rests_on: the formulation whose claim makes the larger part of the widest tolerance, and `part` of it.
         place: where that is in a file of results, whose instants may be travels; empty of a scene's instants.
         telling: whether it would disagree if a solver gave back what it was given, where that is decided.
-        why: it is not tested, of a file of results; empty where the tolerance says it.
+        why: it is not tested or not given; empty of a row that says something.
     """
 
     scene: str
@@ -110,6 +111,13 @@ class Outcome:
         return not self.disagreements and any(row.verdict == "agrees" and row.telling for row in self.rows)
 
     @property
+    def status(self) -> ExitStatus:
+        """What it alone would end a run with."""
+        if self.passed:
+            return ExitStatus.AGREE
+        return ExitStatus.DISAGREE if self.disagreements else ExitStatus.NO_VERDICT
+
+    @property
     def counts(self) -> dict[str, int]:
         """How many rows have each verdict, and how many of those that agree tell nothing."""
         found = {verdict: sum(row.verdict == verdict for row in self.rows) for verdict in get_args(Verdict)}
@@ -127,6 +135,11 @@ class Outcome:
         if any(row.verdict == "agrees" for row in self.rows):
             return f"whatever agrees is what the solver was given: {GIVEN_BACK}"
         return "no number that is given is tested"
+
+    def explained(self, row: Comparison) -> tuple[str, ...]:
+        """What would explain that a row disagrees, the best first."""
+        its = {row.quantity, f"{row.quantity}.{row.name}"}
+        return tuple(one.words for one in self.explanations if its & {*one.quantities})
 
     @property
     def disagreements(self) -> tuple[Comparison, ...]:
@@ -218,11 +231,14 @@ def compare_solutions(
     missing: list[str] = []
     for quantity, names in (asked_numbers(scene) if asked is None else asked).items():
         parts = _parts(quantity, names, first, second)
-        missing += _missing(quantity, parts, first, second)
+        lacking = dict(_missing(quantity, parts, first, second))
+        missing += lacking
         sides = (_Side.of(first, quantity), _Side.of(second, quantity))
         some = _rows(name, quantity, parts, sides, instants[both], factor)
-        # Decided only where one of them may give what it has: else every row has to agree.
-        rows += [_judged(row, scene, sides, factor) for row in some]
+        for row in some:
+            told = _reasoned(row, lacking, notes, faults)
+            # Decided only where one of them may give what it has: else every row has to agree.
+            rows.append(_judged(told, scene, sides, factor))
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
@@ -232,18 +248,48 @@ def _parts(quantity: str, asked: Sequence[str], one: Given, two: Given) -> list[
     return list(dict.fromkeys((*asked, *both)))
 
 
-def _missing(quantity: str, parts: Sequence[str], one: Given, two: Given) -> Iterator[str]:
+def _missing(
+    quantity: str, parts: Sequence[str], one: Given, two: Given
+) -> Iterator[tuple[str, Sequence[str]]]:
+    """Lines on what one of them does not give, each with the names that it is about."""
     words = QUANTITIES[quantity].words
     for side in (one, two):
         lacking = [part for part in parts if part not in side.numbers[quantity]]
         if lacking and not side.numbers[quantity]:
-            yield f"{side.formulation} gives no {words}"
+            yield f"{side.formulation} gives no {words}", lacking
         elif lacking:
-            yield f"{side.formulation} gives no {words} of {', '.join(lacking)}"
+            yield f"{side.formulation} gives no {words} of {', '.join(lacking)}", lacking
         for name in side.numbers[quantity]:
-            hint = "" if name in parts else meant(name, lacking)
-            if hint:
-                yield f"{side.formulation} gives {words} of {shown(name)}, which is left out{hint}"
+            near = "" if name in parts else nearest(name, lacking)
+            if near:
+                line = f"{side.formulation} gives {words} of {shown(name)}, which is left out"
+                yield f"{line} (did you mean {near!r}?)", [near]
+
+
+def _reasoned(
+    row: Comparison, lacking: Mapping[str, Sequence[str]], notes: Sequence[str], faults: Sequence[str]
+) -> Comparison:
+    """A row that says nothing, with the reason.
+
+    Args:
+        lacking: lines on what is not given, with the names that each is about. notes, faults: of the outcome.
+    """
+    about = f": {QUANTITIES[row.quantity].words} of {row.name}"
+    if row.verdict == "not given":
+        found = (
+            [fault for fault in faults if f"{about} " in fault][:1]
+            or [line for line, names in lacking.items() if row.name in names]
+            or notes
+            or ["it is given at no instant of the scene"]
+        )
+    elif row.verdict == "not tested":
+        wide = (
+            f"the tolerance rests on the error bound of {row.rests_on}, and is too wide to test the other one"
+        )
+        found = [note for note in notes if f"{about}: its accuracy " in note] or [wide]
+    else:
+        return row
+    return replace(row, why="; ".join(found))
 
 
 @dataclass(frozen=True)

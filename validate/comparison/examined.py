@@ -70,7 +70,7 @@ class Examined:
     @property
     def status(self) -> ExitStatus:
         """What the scene alone would end the run with."""
-        found = [_status_of(outcome) for outcome in self.outcomes] or [ExitStatus.NO_VERDICT]
+        found = [outcome.status for outcome in self.outcomes] or [ExitStatus.NO_VERDICT]
         found += [ExitStatus.NOT_FINISHED for _ in self.failures]
         if self.problem is not None:
             found.append(ExitStatus.WRONG_INPUT)
@@ -98,12 +98,6 @@ class Examined:
         if parts and self.solved:
             parts.append(f"solved by {_listed(self.solved)}")
         return "; ".join(parts)
-
-
-def _status_of(outcome: Outcome) -> ExitStatus:
-    if outcome.passed:
-        return ExitStatus.AGREE
-    return ExitStatus.DISAGREE if outcome.disagreements else ExitStatus.NO_VERDICT
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -112,6 +112,20 @@ def given(solution: Solution, instants: Array) -> Given:
     return Given(who, found, numbers, claims, condition[places], tuple(notes), blind, tuple(faults))
 
 
+def usable(solution: Solution, instants: Array) -> Solution:
+    """A solution as a comparison takes it: at those of the instants that it gives, without what is no number.
+
+    Raises:
+        FormulationError: see `given`.
+    """
+    side = given(solution, instants)
+    numbers, claims = (
+        {quantity: part for quantity, part in arrays.items() if part}
+        for arrays in (side.numbers, side.claims)
+    )
+    return Solution(side.formulation, instants[side.found], numbers, Accuracy(side.condition, claims))
+
+
 def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:
     """Which instants are among the times, and the place of each of these there."""
     if np.array_equal(times, instants) and (times[1:] > times[:-1]).all():

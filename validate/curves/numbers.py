@@ -2,23 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from itertools import product
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, NotComputed, Samples, Scene
+from pointcoord import Motion, NotComputed, Scene
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.registry import ALWAYS, EFFECTS, NUMBERS_OF_THE_CAR
+from pointcoord.wording import meant
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 
 Array = NDArray[np.float64]
-Read = Callable[[Motion, Samples], Array]
+
+
+class Sampled(Protocol):
+    """Numbers of a motion or of another solution at instants."""
+
+    @property
+    def times(self) -> Array:
+        """Shape (N,), s."""
+        ...
+
+    @property
+    def numbers(self) -> Mapping[str, Mapping[str, Array]]:
+        """By quantity and name, (N, 3) or (N,)."""
+        ...
+
+
+Read = Callable[[Motion, Sampled], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
@@ -34,7 +51,7 @@ class Number:
         unit: of what `read` gives.
         sign: where it is positive, in words; empty if that goes without saying.
         panel: numbers of the same are drawn over the same axis.
-        read: its values at the instants of samples of a motion, (N,).
+        read: its values at the instants of samples of a motion, (N,); KeyError where they do not have it.
         missing: why it is not there; None if the scene asks for it.
     """
 
@@ -58,35 +75,44 @@ class Number:
             return self.path[1]
         return ".".join(self.path[1:] if self.path[0] == ALWAYS[0].quantities[0].name else self.path)
 
+    def shown(self, motion: Motion, samples: Sampled, degrees: bool = True) -> Array:
+        """Its values as a picture has them, (N,): an angle in degrees, or in radians."""
+        values = self.read(motion, samples)
+        return np.degrees(values) if degrees and self.unit.startswith("rad") else values
+
+    def unit_shown(self, degrees: bool = True) -> str:
+        """The unit of these."""
+        return self.unit.replace("rad", "deg", 1) if degrees else self.unit
+
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
     """Time, travel of the wheel and inputs of a scene, and every number that it can ask for."""
     time = Number((TIME,), TIME, "s", "", (TIME,), lambda _, samples: samples.times)
     effects = (*ALWAYS, *EFFECTS.values())
-    travel = [_travel(scene)] if wheel_centre(scene) else []
-    return (time, *travel, *_inputs(scene), *(n for e in effects for n in _of_effect(e, scene)))
-
-
-def wheel_centre(scene: Scene) -> str:
-    """The point of the wheel's middle; empty if the mechanism has no one wheel."""
-    return scene.mechanism.topology.wheel_centre
+    travel = [_travel(scene)] if scene.mechanism.topology.wheel_centre else []
+    found: dict[tuple[str, ...], Number] = {}
+    for number in (n for effect in effects for n in _of_effect(effect, scene)):
+        # Two effects may give a number: it is there where one of them is asked for.
+        if number.path not in found or found[number.path].missing:
+            found[number.path] = number
+    return (time, *travel, *_inputs(scene), *found.values())
 
 
 def _travel(scene: Scene) -> Number:
     """How far the wheel centre is above its place in the drawing as closed, against the chassis; mm."""
-    centre, place = wheel_centre(scene), ALWAYS[0].quantities[0]
+    centre, place = scene.mechanism.topology.wheel_centre, ALWAYS[0].quantities[0]
     up = np.array(scene.mechanism.up)
 
-    def read(motion: Motion, samples: Samples) -> Array:
+    def read(motion: Motion, samples: Sampled) -> Array:
         return np.asarray(movement(scene, motion, samples) @ up)
 
     missing = _unreported(scene, place, centre)
     return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", (TRAVEL,), read, missing)
 
 
-def movement(scene: Scene, motion: Motion, samples: Samples) -> Array:
+def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
     """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
-    centre = wheel_centre(scene)
+    centre = scene.mechanism.topology.wheel_centre
     readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
     local = samples.numbers[ALWAYS[0].quantities[0].name][centre] - readout.mechanism.origin
     return readout.chassis.taken_back(samples.times, local) - (drawn - readout.mechanism.origin)
@@ -109,10 +135,9 @@ def _inputs(scene: Scene) -> list[Number]:
     ]
 
 
-def _of_effect(effect: Effect, scene: Scene) -> list[Number]:
+def _of_effect(effect: Effect, scene: Scene) -> Iterator[Number]:
     topology = scene.mechanism.topology
     asked = effect in ALWAYS or effect.name in scene.effects
-    found = []
     for quantity in effect.quantities:
         bodies = topology.bodies if quantity.of == "body" else topology.points
         for name in effect.names or bodies:
@@ -122,10 +147,12 @@ def _of_effect(effect: Effect, scene: Scene) -> list[Number]:
             elif effect.reports_states:
                 missing = _unreported(scene, quantity, name)
             if quantity.of == "car":
-                found.append(_of_car(effect, quantity, name, missing))
+                known = NUMBERS_OF_THE_CAR.get(name)
+                words, sign = (known.words, known.sign) if known else (name, "")
+                path = (quantity.name, name)
+                yield Number(path, words, quantity.unit, sign, path, _reader(quantity, name), missing)
             else:
-                found += [_component(scene, quantity, name, i, missing) for i in range(3)]
-    return found
+                yield from (_component(scene, quantity, name, i, missing) for i in range(3))
 
 
 def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | None:
@@ -134,27 +161,22 @@ def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | No
     return NotComputed(f"{quantity.words} of {name}", "", f"add {name!r} to the scene's points")
 
 
-def _of_car(effect: Effect, quantity: Quantity, name: str, missing: NotComputed | None) -> Number:
-    known = NUMBERS_OF_THE_CAR.get(name)
-    words, sign = (known.words, known.sign) if known else (name, "")
+def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read:
+    def read(_: Motion, samples: Sampled) -> Array:
+        values = samples.numbers[quantity.name][name]
+        return values if component is None else values[..., component]
 
-    def read(_: Motion, samples: Samples) -> Array:
-        return samples.numbers[quantity.name][name]
-
-    path = (quantity.name, name)
-    return Number(path, words, quantity.unit, sign, path, read, missing)
+    return read
 
 
 def _component(scene: Scene, quantity: Quantity, name: str, i: int, missing: NotComputed | None) -> Number:
-    def read(_: Motion, samples: Samples) -> Array:
-        return samples.numbers[quantity.name][name][..., i]
-
     along = _along(scene, i)
     sign = f"about {along}" if along and quantity.of == "body" else along
     # Places lie far apart: on one axis nothing would be seen of how they change.
     panel = (quantity.name, COMPONENTS[i]) if quantity in ALWAYS[0].quantities else (quantity.name,)
     words = f"{quantity.words} of {name.replace('_', ' ')}, {COMPONENTS[i]}"
-    return Number((quantity.name, name, COMPONENTS[i]), words, quantity.unit, sign, panel, read, missing)
+    path, read = (quantity.name, name, COMPONENTS[i]), _reader(quantity, name, i)
+    return Number(path, words, quantity.unit, sign, panel, read, missing)
 
 
 def _along(scene: Scene, i: int) -> str:
@@ -181,8 +203,9 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     fitting = [n for n in numbers if _in_order(parts, n.path)]
     fitting = [n for n in fitting if n.path[0] == fitting[0].path[0]]
     if not fitting:
+        known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
         raise UsageError(
-            f"{shown(words)!r} is no number of this scene{_meant(words, numbers)}; {_there(numbers)}"
+            f"{shown(words)!r} is no number of this scene{meant(words, known)}; {_there(numbers)}"
         )
     if len({n.path[:2] for n in fitting}) > 1:
         some = ", ".join(dict.fromkeys(".".join(n.path[:2]) for n in fitting))
@@ -198,25 +221,12 @@ def _in_order(parts: Sequence[str], path: Sequence[str]) -> bool:
     return all(part in rest for part in parts)
 
 
-def _meant(words: str, numbers: Sequence[Number]) -> str:
-    known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
-    near = get_close_matches(words, known, n=1)
-    return f" (did you mean {near[0]!r}?)" if near else ""
-
-
 def _there(numbers: Sequence[Number]) -> str:
     """What can be asked for, in as few words as a line holds."""
     single = [n.short for n in numbers if len(n.path) < 3]
-    vectors: dict[str, dict[str, None]] = {}
-    for n in numbers:
-        if len(n.path) == 3:
-            vectors.setdefault(n.path[0], {})[n.path[1]] = None
-    groups: dict[tuple[str, ...], list[str]] = {}
-    for quantity, names in vectors.items():
-        groups.setdefault(tuple(names), []).append(quantity)
-    told = [
-        f"{' or '.join(q)} with a name and x, y or z, of {', '.join(names)}" for names, q in groups.items()
-    ]
+    vectors = gathered((n.path[0], n.path[1]) for n in numbers if n.path[2:] == ("x",))
+    groups = gathered((", ".join(names), quantity) for quantity, names in vectors.items())
+    told = [f"{' or '.join(q)} with a name and x, y or z, of {names}" for names, q in groups.items()]
     return f"there are: {'; '.join([', '.join(single), *told])}"
 
 
@@ -245,7 +255,7 @@ def usual(scene: Scene, numbers: Sequence[Number], motion: Motion) -> Curves:
     angles = tuple(n for n in there if n.of_the_car)
     if not angles:
         points = [n for n in there if len(n.path) == 3]
-        name = wheel_centre(scene)
+        name = scene.mechanism.topology.wheel_centre
         place = [n for n in points if n.path[1] == name]
         place = place or [n for n in points if np.ptp(n.read(motion, motion)) > 0.0] or points
         place = [n for n in points if n.path[:2] == place[0].path[:2]]

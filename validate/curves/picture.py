@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 from textwrap import fill
 
 import numpy as np
@@ -25,8 +26,9 @@ Array = NDArray[np.float64]
 
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
 STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond their number
-# Inches: of a panel side by side with others and above others, of its labels, of the picture's edges.
-WIDE, HIGH, WIDER, LOWER, LABEL, EDGE = 2.1, 3.6, 5.2, 2.2, 1.2, 0.35
+# Inches: how wide and high panels are, one alone or several that stand side by side or above each other, and
+# what the labels and the title take.
+ALONE, BESIDE, ABOVE, LABELS = (4.4, 3.6), (2.3, 3.6), (5.5, 2.3), (0.9, 1.1)
 TITLE, LETTER = 0.08, 0.066  # inches, of letters of a title and of a label, on average
 # Digits below which numbers that do not change differ by rounding.
 STILL = 1e-9
@@ -36,33 +38,18 @@ def figure(curves: Curves, motion: Motion, samples: Samples, title: str, degrees
     """Draw curves of a motion at the instants of samples."""
     upright = len(_panels(curves.across)) > 1 or curves.up[0].path[0] == TRAVEL
     several = _panels(curves.across if upright else curves.up)
-    size = (WIDE if len(several) > 1 else 1.7 * WIDE, HIGH) if upright else (WIDER, LOWER)
-    if len(several) == 1 and not upright:
-        size = (WIDER, HIGH)
-    columns, rows = (len(several), 1) if upright else (1, len(several))
-    wide = columns * (size[0] + 0.3) + LABEL + EDGE
-    heading = fill(shown(title), max(int(wide / TITLE), 20))
-    top = EDGE + 0.16 * len(heading.splitlines())
-    between = 0.15 if rows > 1 else 0.0
-    high = rows * (size[1] + between) + LABEL + top
+    rows, columns = (1, len(several)) if upright else (len(several), 1)
+    size = ALONE if len(several) == 1 else BESIDE if upright else ABOVE
+    wide, high = columns * size[0] + LABELS[0], rows * size[1] + LABELS[1]
     with mpl.rc_context(SETTINGS):
-        page = Figure(figsize=(wide, high))
-        first: Axes | None = None
-        for i, panel in enumerate(several):
-            left = (LABEL + i * (size[0] + 0.3 if upright else 0.0)) / wide
-            below = (LABEL + (0.0 if upright else (rows - 1 - i) * (size[1] + between))) / high
-            place = (left, below, size[0] / wide, size[1] / high)
-            axes = page.add_axes(place, sharex=None if upright else first, sharey=first if upright else None)
-            first = first or axes
+        page = Figure(figsize=(wide, high), layout="constrained")
+        heading = fill(shown(title), int(wide / TITLE))
+        page.suptitle(heading, x=0.02, ha="left", fontsize=9.0, parse_math=False)
+        grid = page.subplots(rows, columns, sharex=not upright, sharey=upright, squeeze=False)
+        for axes, panel in zip(grid.flat, several, strict=True):
             across, up = (panel, curves.up) if upright else (curves.across, panel)
             _draw(axes, Curves(tuple(across), tuple(up)), motion, samples, degrees, size)
-            if upright and i:
-                axes.set_ylabel("")
-                axes.tick_params(labelleft=False)
-            if not upright and i < rows - 1:
-                axes.set_xlabel("")
-                axes.tick_params(labelbottom=False)
-        page.text(EDGE / wide, 1.0 - 0.5 * EDGE / high, heading, va="top", fontsize=9.0, parse_math=False)
+            axes.label_outer()
     return page
 
 
@@ -79,7 +66,7 @@ def _draw(
 ) -> None:
     plain(axes)
     for set_limits, numbers in ((axes.set_xlim, curves.across), (axes.set_ylim, curves.up)):
-        values = np.concatenate([_values(n, motion, samples, degrees) for n in numbers])
+        values = np.concatenate([n.shown(motion, samples, degrees) for n in numbers])
         known = values[np.isfinite(values)]
         if known.size and np.ptp(known) <= STILL * max(float(np.abs(known).max()), 1.0):
             middle = float(np.median(known))
@@ -88,8 +75,8 @@ def _draw(
     several = len(curves.across) > 1 or len(curves.up) > 1
     for i, (across, up) in enumerate(curves.pairs):
         axes.plot(
-            _values(across, motion, samples, degrees),
-            _values(up, motion, samples, degrees),
+            across.shown(motion, samples, degrees),
+            up.shown(motion, samples, degrees),
             color=COLOURS[i % len(COLOURS)],
             linestyle=STYLES[i % len(STYLES)] if several else "-",
             linewidth=1.4,
@@ -107,15 +94,9 @@ def _draw(
         axes.legend(fontsize=7.0, framealpha=0.8, edgecolor=FAINT)
 
 
-def _values(number: Number, motion: Motion, samples: Samples, degrees: bool) -> Array:
-    values = number.read(motion, samples)
-    return np.degrees(values) if degrees and number.unit == "rad" else values
-
-
 def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
     """What an axis shows, with its unit and its sign; of several numbers what they have in common."""
     first = numbers[0]
-    unit = "deg" if degrees and first.unit == "rad" else first.unit
     words = first.words if len(numbers) == 1 else _common([n.words for n in numbers])
     signs = {n.sign for n in numbers}
     sign = f"\n{fill(f'+ {first.sign}', letters)}" if len(signs) == 1 and first.sign else ""
@@ -123,13 +104,11 @@ def _label(numbers: Sequence[Number], degrees: bool, letters: int) -> str:
         sign = "\n" + fill(
             "; ".join(dict.fromkeys(f"+{n.path[-1]} {n.sign}" for n in numbers if n.sign)), letters
         )
-    return f"{fill(f'{words} [{unit}]', letters)}{sign}"
+    return f"{fill(f'{words} [{first.unit_shown(degrees)}]', letters)}{sign}"
 
 
 def _common(texts: Sequence[str]) -> str:
     """The words that texts begin with alike."""
-    words = [text.split() for text in texts]
-    count = 0
-    while all(len(w) > count and w[count] == words[0][count] for w in words):
-        count += 1
-    return " ".join(words[0][:count]).removesuffix(" of").rstrip(",")
+    columns = zip(*(text.split() for text in texts), strict=False)
+    alike = takewhile(lambda words: len({*words}) == 1, columns)
+    return " ".join(words[0] for words in alike).removesuffix(" of").rstrip(",")

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
 
 from validate.errors import UsageError
 from validate.html.data import OF_COST, WORDS, data_files
 from validate.html.page import GENERATOR, page
 from validate.html.run import Run
-from validate.output.files import require_writable, unwritable, write_whole
+from validate.output.files import require_writable, unwritable, write_content
 
 PAGE = "index.html"
 # The mark of our pages is near their beginning.
@@ -68,11 +66,9 @@ def make_folder(folder: str) -> None:
         raise unwritable(folder, error) from None
 
 
-def write_report(folder: str, run: Run) -> tuple[str, ...]:
+def write_report(folder: str, run: Run) -> None:
     """Write the page and its data; the page is last, so that where it is, its data are.
 
-    Returns:
-        The files that were written.
     Raises:
         MissingPackage: a package of the extra is not there.
         OutputError: one cannot be written.
@@ -80,15 +76,5 @@ def write_report(folder: str, run: Run) -> tuple[str, ...]:
     make_folder(folder)
     data = data_files(run)
     links = OF_COST if run.head.kind == "cost" else {name: WORDS[name] for name in data}
-    contents = {**data, PAGE: page(run, links)}
-    for name, text in contents.items():
-        write_whole(os.path.join(folder, name), _writer(text))
-    return tuple(os.path.join(folder, name) for name in contents)
-
-
-def _writer(text: str) -> Callable[[BinaryIO], None]:
-    def write(stream: BinaryIO) -> None:
-        # A file's name may hold bytes that are no text.
-        stream.write(text.encode("utf-8", "backslashreplace"))
-
-    return write
+    for name, text in {**data, PAGE: page(run, links)}.items():
+        write_content(os.path.join(folder, name), text)

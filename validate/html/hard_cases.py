@@ -1,48 +1,51 @@
-"""Hard cases as a report has them: tried in the same run, or kept in a file by an earlier one."""
+"""Hard cases as a report has them: the document of a run, just made, or kept in a file by an earlier one."""
 
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from pydantic import BaseModel, ValidationError
+
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.hard.answer import Answer
 from validate.output.document import SCHEMA_VERSION
-from validate.plain_text import shown
+from validate.output.report import counted_as
+from validate.plain_text import shown, some_of
 
 ALLOWED = "a file that `pointcoord hard --json FILE` wrote"
-# What reading other data than those of hard cases ends with.
-DAMAGED = (LookupError, TypeError, ValueError, AttributeError, RecursionError)
+NAMED = 10  # cases that a sentence names
 
 
-@dataclass(frozen=True)
-class Answer:
-    """What a formulation made of one value of a case's parameter; error and bound are NaN without numbers."""
+class Trial(BaseModel):
+    """What formulations made of one value of a case's parameter."""
+
+    value: float
+    answers: tuple[Answer, ...]
+
+
+class Unexpected(BaseModel):
+    """An answer that its case does not allow."""
 
     value: float
     formulation: str
     outcome: str
     reason: str
-    error: float
-    bound: float
 
     @property
-    def refused(self) -> bool:
-        """Whether there is no answer, with a reason."""
-        return self.outcome == "refused"
+    def words(self) -> str:
+        """For people."""
+        return f"{self.formulation} is {self.outcome} at {self.value:g}: {self.reason}"
 
 
-@dataclass(frozen=True)
-class Case:
-    """A hard case, tried.
+class Case(BaseModel):
+    """A hard case, tried; its texts are those of `validate.hard.case.Case`.
 
     Attributes:
-        parameter: what tends to the singular place, with its unit. unit: of error and bound.
-        unexpected: answers that it does not allow, in words.
+        unexpected: answers that it does not allow.
     """
 
     name: str
@@ -51,26 +54,32 @@ class Case:
     parameter: str
     unit: str
     behaviour: str
-    answers: tuple[Answer, ...]
-    unexpected: tuple[str, ...]
+    trials: tuple[Trial, ...]
+    unexpected: tuple[Unexpected, ...]
+
+    @property
+    def answers(self) -> Iterator[tuple[float, Answer]]:
+        """Every answer, with the value of the parameter."""
+        return ((trial.value, answer) for trial in self.trials for answer in trial.answers)
 
     @property
     def formulations(self) -> tuple[str, ...]:
         """That were tried, in their order."""
-        return tuple(dict.fromkeys(answer.formulation for answer in self.answers))
+        return tuple(dict.fromkeys(answer.formulation for _, answer in self.answers))
 
 
-@dataclass(frozen=True)
-class HardCases:
-    """All cases of a run.
+class HardCases(BaseModel):
+    """All cases of a run, in the form of `pointcoord hard --json`.
 
     Attributes:
-        document: the run, in the form of `pointcoord hard --json`. cases: its cases.
+        document: all of it, as it was written. started: UTC, if the run noted it.
         counts: how often each formulation came to each outcome. as_expected: whether every case allows what
             came of it.
     """
 
     document: Mapping[str, Any]
+    command_line: str
+    started: str | None
     cases: tuple[Case, ...]
     counts: Mapping[str, Mapping[str, int]]
     as_expected: bool
@@ -80,17 +89,9 @@ class HardCases:
         """The cases of a document.
 
         Raises:
-            LookupError, TypeError, ValueError, AttributeError: it is none of hard cases.
+            ValidationError: it is none of hard cases.
         """
-        counts = {
-            str(name): {str(o): int(n) for o, n in of.items()} for name, of in document["counts"].items()
-        }
-        return cls(document, tuple(map(_case, document["cases"])), counts, document["as_expected"] is True)
-
-    @property
-    def results(self) -> Mapping[str, Any]:
-        """What was found, as plain data."""
-        return {name: self.document[name] for name in ("as_expected", "counts", "cases")}
+        return cls.model_validate({**document, "document": document})
 
     @property
     def status(self) -> ExitStatus:
@@ -100,41 +101,17 @@ class HardCases:
     @property
     def sentence(self) -> str:
         """What came of them in a few words."""
-        count, scenes = len(self.cases), sum(len({a.value for a in one.answers}) for one in self.cases)
-        noun = "case" if count == 1 else "cases"
-        told = f"{count} hard {noun} at {scenes} values compared with the many-digit reference: "
-        unjudged = [one.name for one in self.cases if any(a.outcome == "unjudged" for a in one.answers)]
-        end = f"; some answers not judged: {', '.join(unjudged[:10])}" if unjudged else ""
-        if self.status is ExitStatus.AGREE:
-            return f"{told}all as expected{end}"
-        other = [one.name for one in self.cases if one.unexpected]
-        return f"{told}disagrees, not as expected{': ' if other else ''}{', '.join(other[:10])}{end}"
-
-
-def _case(data: Mapping[str, Any]) -> Case:
-    answers = tuple(
-        _answer(trial["value"], answer) for trial in data["trials"] for answer in trial["answers"]
-    )
-    return Case(
-        name=str(data["name"]),
-        group=str(data["group"]),
-        why=str(data["why"]),
-        parameter=str(data["parameter"]),
-        unit=str(data["unit"]),
-        behaviour=str(data["behaviour"]),
-        answers=answers,
-        unexpected=tuple(map(_other, data["unexpected"])),
-    )
-
-
-def _answer(value: float, data: Mapping[str, Any]) -> Answer:
-    error, bound = (math.nan if data[key] is None else float(data[key]) for key in ("error", "bound"))
-    formulation, outcome, reason = (str(data[key]) for key in ("formulation", "outcome", "reason"))
-    return Answer(float(value), formulation, outcome, reason, error, bound)
-
-
-def _other(data: Mapping[str, Any]) -> str:
-    return f"{data['formulation']} is {data['outcome']} at {data['value']:g}: {data['reason']}"
+        scenes = sum(len({value for value, _ in one.answers}) for one in self.cases)
+        told = (
+            f"{counted_as(len(self.cases), 'hard case')} at {scenes} values compared with the many-digit "
+            "reference: "
+        )
+        found = [one.name for one in self.cases if any(a.outcome == "unjudged" for _, a in one.answers)]
+        unjudged = f"; some answers not judged: {some_of(found, NAMED)}" if found else ""
+        if self.as_expected:
+            return f"{told}all as expected{unjudged}"
+        other = some_of([one.name for one in self.cases if one.unexpected], NAMED)
+        return f"{told}disagrees, not as expected{': ' if other else ''}{other}{unjudged}"
 
 
 def read_hard_cases(file: str) -> HardCases:
@@ -158,8 +135,9 @@ def read_hard_cases(file: str) -> HardCases:
         raise _unusable(file, "is of a run that did not come to its end")
     try:
         return HardCases.of(document)
-    except DAMAGED as error:
-        raise _unusable(file, f"is damaged ({type(error).__name__}: {shown(str(error))})") from None
+    except ValidationError as error:
+        place = ".".join(map(str, error.errors()[0]["loc"]))
+        raise _unusable(file, f"is damaged ({shown(place)}: {error.errors()[0]['msg']})") from None
 
 
 def _unusable(file: str, problem: str) -> UsageError:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Mapping
 from hashlib import sha256
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
-from validate.extras import MissingPackage
+from validate.extras import needed
 from validate.html.run import Run
 from validate.html.section import PLOTLY
 from validate.html.sections import sections
@@ -17,31 +15,12 @@ from validate.html.sections import sections
 TEMPLATES = Path(__file__).with_name("templates")
 # What marks a page as ours, so that no other page is written over.
 GENERATOR = "pointcoord report"
-EXTRA = "report"
 # Nothing is loaded from anywhere: styles are in the page itself, pictures are what plotly makes of its own
 # plots, and the only scripts that run are those with these hashes.
 POLICY = (
     "default-src 'none'; style-src 'unsafe-inline'; img-src data: blob:; base-uri 'none'; "
     "form-action 'none'; script-src {}"
 )
-
-
-def require_templates() -> None:
-    """Find out that no page can be made before anything is solved.
-
-    Raises:
-        MissingPackage: a package of the extra is not there.
-    """
-    _package("jinja2")
-    _package("plotly.offline")
-
-
-def _package(name: str) -> Any:
-    # By its name: the extra is optional, and so are its types.
-    try:
-        return import_module(name)
-    except ImportError as error:
-        raise MissingPackage("report", error, EXTRA) from None
 
 
 def page(run: Run, files: Mapping[str, str]) -> str:
@@ -52,19 +31,20 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     Raises:
         MissingPackage: a package of the extra is not there.
     """
-    jinja2 = _package("jinja2")
+    jinja2 = needed("report", "jinja2", "report")
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, undefined=jinja2.StrictUndefined
     )
     # Our own text and plotly's, in which no user has a say: all that goes into the page as it is.
     as_it_is = jinja2.utils.markupsafe.Markup
     made = [(section, blocks) for section in sections() if (blocks := section.blocks(run))]
-    needed = dict.fromkeys(name for _, blocks in made for block in blocks for name in block.scripts)
-    scripts = [_plotly() if name == PLOTLY else _own(name) for name in needed]
+    names = dict.fromkeys(name for _, blocks in made for block in blocks for name in block.scripts)
+    scripts = [_script(name) for name in names]
+    hashes = (b64encode(sha256(script.encode()).digest()).decode() for script in scripts)
     text = environment.get_template("page.html").render(
         run=run,
         parts=made,
-        policy=POLICY.format(" ".join(map(_hash, scripts)) or "'none'"),
+        policy=POLICY.format(" ".join(f"'sha256-{one}'" for one in hashes) or "'none'"),
         generator=GENERATOR,
         style=as_it_is(_own("page.css")),
         scripts=[as_it_is(script) for script in scripts],
@@ -73,14 +53,9 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     return str(text)
 
 
-def _plotly() -> str:
-    return str(_package("plotly.offline").get_plotlyjs())
+def _script(name: str) -> str:
+    return str(needed("report", "plotly.offline", "report").get_plotlyjs()) if name == PLOTLY else _own(name)
 
 
 def _own(name: str) -> str:
     return (TEMPLATES / name).read_text(encoding="utf-8")
-
-
-def _hash(script: str) -> str:
-    """What a policy calls a script of the page, by its content."""
-    return f"'sha256-{b64encode(sha256(script.encode('utf-8')).digest()).decode('ascii')}'"

@@ -7,17 +7,20 @@ scene's own words stand around a plot and not in it.
 from __future__ import annotations
 
 import json
+import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from validate.html.section import PLOTLY
 
 Array = NDArray[np.float64]
+Trace = dict[str, Any]
+"""What plotly draws in one colour, as it has it."""
 
 # Blue and vermilion, which colour-blind eyes tell apart, in tones that stand out of white and of black.
 OURS, OTHER = "#2f86c9", "#d9641c"
@@ -34,7 +37,7 @@ class Panel:
     """
 
     words: str
-    traces: tuple[Mapping[str, Any], ...]
+    traces: tuple[Trace, ...]
     layout: Mapping[str, Any]
     rem: float = 0.0
 
@@ -59,15 +62,45 @@ class Plots:
     at_once: bool = False
 
 
-def axis(title: str, logarithmic: bool = False) -> Mapping[str, Any]:
-    """An axis of a panel."""
-    words: dict[str, Any] = {"title": {"text": title}, "automargin": True}
-    return words | ({"type": "log", "exponentformat": "power", "nticks": 6} if logarithmic else {})
+def panel(words: str, across: str, up: str, traces: Iterable[Trace], logarithmic: str = "") -> Panel:
+    """Traces over a pair of axes.
+
+    Args:
+        across, up: titles of the axes. logarithmic: which of them are, `y` or `xy`.
+    """
+    layout: dict[str, Any] = {"showlegend": True}
+    for name, title in (("x", across), ("y", up)):
+        scale = {"type": "log", "exponentformat": "power", "nticks": 6} if name in logarithmic else {}
+        layout[f"{name}axis"] = {"title": {"text": title}, "automargin": True, **scale}
+    return Panel(words, tuple(traces), layout)
 
 
-def numbers(array: Array, digits: int) -> list[float | None]:
+def curve(name: str, x: ArrayLike, y: ArrayLike, colour: str, **line: Any) -> Trace:
+    """A line through points, (N,) each; a single one is seen as such."""
+    mode = "lines" if np.size(x) > 1 else "markers"
+    look = {"mode": mode, "line": {"color": colour, **line}, "marker": {"color": colour}}
+    return {"x": numbers(x), "y": numbers(y), "name": name, **look}
+
+
+def marks(name: str, x: ArrayLike, y: ArrayLike, colour: str, symbol: str = "x", size: int = 7) -> Trace:
+    """Points, (N,) each, that no line joins; crosses if not said otherwise."""
+    look = {"symbol": symbol, "color": colour, "size": size}
+    return {"x": numbers(x), "y": numbers(y), "name": name, "mode": "markers", "marker": look}
+
+
+def gaps(words: str, over: str, x: Array, difference: Array, tolerance: Array, unit: str) -> Panel:
+    """Differences and what each is held to, (N,) each."""
+    # A logarithm has no place for a difference or a tolerance of nothing.
+    held, apart = (np.where(part > 0.0, part, np.nan) for part in (tolerance, difference))
+    dots = {"mode": "lines+markers", "marker": {"size": 4}}
+    traces = curve("tolerance", x, held, OTHER), curve("difference", x, apart, OURS, width=1) | dots
+    return panel(words, over, f"[{unit}]", traces, logarithmic="y")
+
+
+def numbers(array: ArrayLike) -> list[float | None]:
     """Numbers in as many digits as a drawing needs; None where there is none."""
-    return [float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in array.tolist()]
+    values = np.asarray(array, dtype=float).tolist()
+    return [float(f"{value:.6g}") if math.isfinite(value) else None for value in values]
 
 
 def fewer(weight: Array, most: int) -> Sequence[int]:

@@ -59,8 +59,8 @@ class Section:
 
 def which(run: Run) -> list[Block]:
     """Which scenes are drawn, where these are not all."""
-    drawn, all_of_them = len(run.drawn), len(run.told)
-    if drawn == all_of_them or run.files:
+    drawn, all_of_them = len(run.drawn), len(run.record.examined)
+    if drawn == all_of_them or run.record.files:
         # Of a file's scene no motion is solved, which the page says in a place of its own.
         return []
     return [

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene
+from pointcoord import Motion
 from pointcoord.effects.registry import ALWAYS
-from validate.curves.numbers import TRAVEL, Number, numbers_of, usual, wheel_centre
-from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers, plain
-from validate.html.run import Told
-from validate.html.sides import Side, sides
+from validate.curves.numbers import TRAVEL, Number, numbers_of, usual
+from validate.formulations.protocol import Solution
+from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, fewer, marks, panel, plain
+from validate.html.run import Drawn
 
 Array = NDArray[np.float64]
 
@@ -22,90 +21,60 @@ MARKS = 25
 PLACE = ALWAYS[0].quantities[0].name
 
 
-def wheel_angles(one: Told, points: int) -> tuple[Plots | None, str]:
+def wheel_angles(one: Drawn, models: Sequence[Solution], points: int) -> tuple[Plots | None, str]:
     """The curves of a scene, and what there is to say of them, such as why there are none."""
-    both = sides(one)
-    if one.scene is None or one.motion is None or not both:
+    if one.scene is None or one.motion is None or not models:
         return None, "no curves: pointcoord solves no instant of it"
-    first, rest = both[0], both[1:]
-    curves = usual(one.scene, numbers_of(one.scene), one.motion)
-    centre = wheel_centre(one.scene)
-    panels = tuple(
-        panel
-        for across, up in curves.pairs
-        if (panel := _panel((across, up), both, one.motion, one.scene, centre, points)) is not None
-    )
-    dots = "".join(f"; dots: {side.name}" for side in rest)
-    if panels:
-        return Plots(f"line: {first.name}{dots}", panels), ""
-    names = dict.fromkeys(n.words for pair in curves.pairs for n in pair if len(n.path) > 1)
-    return None, f"no curves: {first.name} gives no {' and no '.join(names)}"
+    pairs = usual(one.scene, numbers_of(one.scene), one.motion).pairs
+    centre = one.scene.mechanism.topology.wheel_centre
+    found = [_panel(pair, models, one.motion, centre, points) for pair in pairs]
+    first, *rest = models
+    dots = "".join(f"; dots: {other.formulation}" for other in rest)
+    if panels := tuple(one for one in found if one is not None):
+        return Plots(f"line: {first.formulation}{dots}", panels), ""
+    names = dict.fromkeys(n.words for pair in pairs for n in pair if len(n.path) > 1)
+    return None, f"no curves: {first.formulation} gives no {' and no '.join(names)}"
 
 
 def _panel(
-    pair: tuple[Number, Number], both: Sequence[Side], motion: Motion, scene: Scene, centre: str, points: int
+    pair: tuple[Number, Number], models: Sequence[Solution], motion: Motion, centre: str, points: int
 ) -> Panel | None:
-    """The line of the first side and the dots of the second; None where the first does not give the curve."""
-    traces: list[Mapping[str, Any]] = []
-    for i, side in enumerate(both):
-        values = [_of_side(number, side, motion, scene, centre) for number in pair]
-        if any(array is None for array in values):
-            if i == 0:
+    """The line of the first model and the dots of the second; None where the first does not give it."""
+    traces: list[Trace] = []
+    lacking: list[str] = []
+    for model in models:
+        x, y = (_values(number, model, motion) for number in pair)
+        if x is None or y is None:
+            if model is models[0]:
                 return None
             continue
-        x, y = (np.asarray(array) for array in values)
-        if i == 0:
+        if TRAVEL in (pair[0].path[0], pair[1].path[0]) and centre not in model.numbers.get(PLACE, {}):
+            lacking.append(model.formulation)
+        if model is models[0]:
             # Of a stretch of a curve the place farthest out is kept.
             at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), points) if np.isfinite(x).any() else range(0)
-            traces.append(_trace(x[at], y[at], "lines", OURS, side.name))
+            traces.append(curve(plain(model.formulation), x[at], y[at], OURS))
         else:
             some = slice(None, None, max(len(x) // MARKS, 1))
-            traces.append(_trace(x[some], y[some], "markers", OTHER, side.name))
+            traces.append(marks(plain(model.formulation), x[some], y[some], OTHER, "circle-open", 5))
     across, up = pair
-    lacking = [
-        side.name for side in both if TRAVEL in (across.path[0], up.path[0]) and not _has(side, centre)
-    ]
     whose = f" (wheel travel of {', '.join(lacking)} as pointcoord has it)" if lacking else ""
-    layout = {"xaxis": axis(_title(across)), "yaxis": axis(_title(up)), "showlegend": True}
-    return Panel(f"{up.words} over {across.words}{whose}", tuple(traces), layout)
+    return panel(f"{up.words} over {across.words}{whose}", _title(across), _title(up), traces)
 
 
-def _trace(x: Array, y: Array, mode: str, colour: str, name: str) -> Mapping[str, Any]:
-    return {
-        "x": numbers(x, 6),
-        "y": numbers(y, 6),
-        "name": plain(name),
-        "mode": mode,
-        "line": {"color": colour},
-        "marker": {"size": 5, "symbol": "circle-open", "color": colour},
-    }
+def _values(number: Number, model: Solution, motion: Motion) -> Array | None:
+    """A model's own numbers at its instants; None where it has none.
 
-
-def _has(side: Side, point: str) -> bool:
-    return point in side.numbers.get(PLACE, {})
-
-
-def _of_side(number: Number, side: Side, motion: Motion, scene: Scene, centre: str) -> Array | None:
-    """A side's own numbers at its instants; None where it has none.
-
-    What is no number of a model, such as time or an input, is the scene's. The travel is that of the side's
-    own wheel centre; of a side that gives none it is pointcoord's, and the panel says so.
+    The travel is that of the model's own wheel centre; of a model that gives none it is pointcoord's, and the
+    panel says so.
     """
-    if len(number.path) == 1:
-        if side.at.size and side.at[-1] >= len(motion.times):
-            return None
-        values = number.read(motion, motion)[side.at]
-        if number.path[0] == TRAVEL and _has(side, centre):
-            apart = side.numbers[PLACE][centre] - motion.numbers[PLACE][centre][side.at]
-            values = values + apart @ np.array(scene.mechanism.up)
-    else:
-        given = side.numbers.get(number.path[0], {}).get(number.path[1])
-        if given is None or not len(given):
-            return None
-        values = given if number.of_the_car else given[:, "xyz".index(number.path[2])]
-    return np.degrees(values) if number.unit == "rad" else np.asarray(values)
+    try:
+        return number.shown(motion, model)
+    except KeyError:
+        there = np.isin(motion.times, model.times)
+        known = number.path[0] == TRAVEL and there.sum() == len(model.times)
+        return number.shown(motion, motion)[there] if known else None
 
 
 def _title(number: Number) -> str:
-    unit = "deg" if number.unit == "rad" else number.unit
-    return f"{number.words} [{unit}]" + (f", + {number.sign}" if number.sign else "")
+    return f"{number.words} [{number.unit_shown()}]" + (f", + {number.sign}" if number.sign else "")

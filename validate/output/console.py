@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 
-from validate.output.files import OutputError, unwritable
+from validate.output.files import OutputError, unwritable, write_content
 from validate.output.progress import Line, Lines
 from validate.output.table import Part, is_terminal, laid_out, text_of
 from validate.plain_text import one_line
@@ -84,6 +84,18 @@ class Console:
             except (OSError, ValueError, AttributeError) as error:
                 raise self._lost(error) from None
         return len(text)
+
+    def put(self, target: str, content: str | bytes) -> None:
+        """Write a result whole to its file, or to standard output for `-`.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        if target == "-":
+            self.write(content if isinstance(content, str) else content.decode())
+            self.flush()
+        else:
+            write_content(target, content)
 
     def flush(self) -> None:
         """Bring what was written to its reader.

@@ -10,16 +10,16 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.files import require_writable, write_whole
+from validate.output.files import require_writable
 
 # Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
 SCHEMA_VERSION = 2
@@ -150,29 +150,38 @@ def _plain(data: Any) -> Any:
     return data
 
 
-def write_json(target: str, data: Any, console: Console) -> None:
-    """Write JSON to a file, or to standard output for `-`.
-
-    Raises:
-        OutputError: it cannot be written.
-    """
-    text = json_text(data)
-    if target == "-":
-        console.write(text)
-        console.flush()
-        return
-
-    def put(stream: BinaryIO) -> None:
-        stream.write(text.encode("ascii"))
-
-    write_whole(target, put)
-
-
 @dataclass
 class Ending:
-    """What a run that comes to its end ends with."""
+    """How a block ends.
+
+    Attributes:
+        status: what the run ends with, as the block sets it if it comes to its end.
+        complete: whether it does.
+    """
 
     status: ExitStatus = ExitStatus.AGREE
+    complete: bool = False
+
+
+@contextmanager
+def at_the_end(write: Callable[[Ending], None]) -> Iterator[Ending]:
+    """Write what there is when the block ends, however it ends.
+
+    Raises:
+        BaseException: what `write` raises; else whatever ends the block.
+    """
+    ending = Ending()
+    try:
+        yield ending
+        ending.complete = True
+    except KeyboardInterrupt:
+        ending.status = ExitStatus.INTERRUPTED
+        raise
+    except BaseException:
+        ending.status = ExitStatus.NOT_FINISHED
+        raise
+    finally:
+        write(ending)
 
 
 class Journal:
@@ -217,11 +226,10 @@ class Journal:
         if self.target is not None:
             self._write(self.target, results(), status, complete, what)
 
-    @contextmanager
     def closing(
         self, results: Callable[[], Mapping[str, Any]], begun: Callable[[], object], what: Callable[[], str]
-    ) -> Iterator[Ending]:
-        """Close the journal when the block ends, however it ends.
+    ) -> AbstractContextManager[Ending]:
+        """Close the journal when a block ends, however it ends.
 
         Args:
             begun: whether there is anything worth writing of a run that does not come to its end.
@@ -229,23 +237,17 @@ class Journal:
         Raises:
             OutputError: it cannot be written; and whatever ends the block.
         """
-        ending, complete, status = Ending(), False, ExitStatus.INTERRUPTED
-        try:
-            yield ending
-            complete, status = True, ending.status
-        except KeyboardInterrupt:
-            raise
-        except BaseException:
-            status = ExitStatus.NOT_FINISHED
-            raise
-        finally:
-            if complete or begun():
-                self.close(results, status, complete, what())
+
+        def write(ending: Ending) -> None:
+            if ending.complete or begun():
+                self.close(results, ending.status, ending.complete, what())
+
+        return at_the_end(write)
 
     def _write(
         self, target: str, results: Mapping[str, Any], status: ExitStatus | None, complete: bool, what: str
     ) -> None:
-        write_json(target, self._head.document(results, status, complete), self._console)
+        self._console.put(target, json_text(self._head.document(results, status, complete)))
         where = STANDARD_OUTPUT if target == "-" else target
         before = (line for line in self._console.written if not line.startswith(f"{where} holds "))
         self._console.written = [*before, f"{where} holds {what}"]

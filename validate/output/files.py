@@ -61,7 +61,7 @@ def require_writable(target: str) -> None:
         raise unwritable(target, error) from None
 
 
-def write_whole(target: str, write: Callable[[BinaryIO], None]) -> None:
+def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
     """Write a file beside its place, bring it to the disk, and rename it into its place.
 
     A pipe or a device has no place to rename into and is written as it is.
@@ -85,15 +85,12 @@ def write_content(target: str, content: str | bytes) -> None:
     Raises:
         OutputError: it cannot be written; what was there is whole.
     """
-    data = content.encode() if isinstance(content, str) else content
-
-    def write(stream: BinaryIO) -> None:
-        stream.write(data)
-
-    write_whole(target, write)
+    # The name of a file may hold bytes that are no text.
+    data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
+    write_whole(target, lambda stream: stream.write(data))
 
 
-def _write_beside(target: str, write: Callable[[BinaryIO], None]) -> None:
+def _write_beside(target: str, write: Callable[[BinaryIO], object]) -> None:
     descriptor, beside = _open_beside(target)
     try:
         with open(descriptor, "wb") as stream:

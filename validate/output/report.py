@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -36,11 +36,15 @@ def with_unit(value: float, unit: str, digits: int = 1) -> str:
 
 def in_degrees(value: float, unit: str) -> str:
     """The same with angles in degrees, as users read them; a dash where there is no number."""
-    if math.isnan(value):
-        return "-"
+    factor, unit = degrees_of(unit)
+    return "-" if math.isnan(value) else f"{factor * value:.1e} {unit}"
+
+
+def degrees_of(unit: str) -> tuple[float, str]:
+    """By what a number is multiplied to be read in degrees, and the unit that it has then: deg/s of rad/s."""
     if unit.startswith("rad"):
-        value, unit = math.degrees(value), unit.replace("rad", "deg", 1)
-    return f"{value:.1e} {unit}"
+        return math.degrees(1.0), unit.replace("rad", "deg", 1)
+    return 1.0, unit
 
 
 def used(share: float) -> str:
@@ -85,17 +89,23 @@ def pair_of(outcome: Outcome) -> str:
 
 def worst_rows(outcome: Outcome) -> list[Comparison]:
     """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
-    worst: dict[str, Comparison] = {}
     # A solver that states an accuracy need not give everything.
     order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
-    for row in outcome.rows:
+    return list(worst_of(outcome.rows, order).values())
+
+
+def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN) -> dict[str, Comparison]:
+    """By heading the row whose verdict is the last one in an order, of several the largest share."""
+    worst: dict[str, Comparison] = {}
+    for row in rows:
         key = heading(row.quantity, row.name)
-        if key not in worst or _severity(row, order) > _severity(worst[key], order):
+        if key not in worst or severity(row, order) > severity(worst[key], order):
             worst[key] = row
-    return list(worst.values())
+    return worst
 
 
-def _severity(row: Comparison, order: Sequence[str]) -> tuple[int, float]:
+def severity(row: Comparison, order: Sequence[str] = OF_EVERYTHING) -> tuple[int, float]:
+    """By what the worst of rows is found: the place of its verdict in an order, then its share."""
     return order.index(row.verdict), 0.0 if math.isnan(row.share) else row.share
 
 
@@ -107,8 +117,8 @@ def held_to(factor: float) -> str:
 
 
 def counted_as(count: int, noun: str) -> str:
-    """A number of things: 1 instant, 2 instants."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+    """A number of things: 1 instant, 2,000 instants."""
+    return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
 
 
 def agreeing(agreed: int, count: int) -> str:

@@ -23,7 +23,6 @@ import math
 from collections import Counter
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
 
@@ -33,14 +32,13 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.numerics.rounding import EPS
-from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.adjudication.reference_solution import inputs_at, off_by, reference_instant
 from validate.cars.base_cars import variants
 from validate.cars.near_singular import NearPose, near_pose
 from validate.cars.scene_content import content_of
 from validate.exit_status import ExitStatus
 from validate.output.table import Part, Table
 from validate.reference import InfeasibleError, Instant, NoReferenceError
-from validate.reference.exact import as_fraction
 from validate.studies.study import Findings, Row, Study, Task
 
 Array = NDArray[np.float64]
@@ -132,11 +130,14 @@ def _check(pose: NearPose, scene: Scene, instant: float, motion: Motion | str) -
         return {"distance": distance, "refusal": "pointcoord: no finite bound"}
 
     def error(names: set[str]) -> float | None:
+        """The largest component of the distance of any of these points from the true one, mm."""
         if not names:
             return None
         # Where the reference has no such assembly, nothing bounds the error.
-        exact = reference if isinstance(reference, Instant) else None
-        return max(math.inf if exact is None else _error(exact, n, samples.position[n][0]) for n in names)
+        if not isinstance(reference, Instant):
+            return math.inf
+        pairs = ((samples.position[name][0], reference.position[name]) for name in names)
+        return max(off_by(ours, exact) for pair in pairs for ours, exact in zip(*pair, strict=True))
 
     names = set(scene.mechanism.topology.carried)
     return {
@@ -170,12 +171,6 @@ def _answer(ask: Callable[[], Answer]) -> Answer | str:
         return ask()
     except (PointcoordError, NoReferenceError) as error:
         return type(error).__name__
-
-
-def _error(reference: Instant, name: str, place: Array) -> float:
-    """Largest component of the distance of a computed point from the true one, mm."""
-    pairs = zip(reference.position[name], place, strict=True)
-    return max(float(abs(as_fraction(exact, name) - Fraction(float(found)))) for exact, found in pairs)
 
 
 def measured(rows: Sequence[Row]) -> pd.DataFrame:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -18,7 +17,7 @@ import numpy as np
 
 from pointcoord import SceneError
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import DUST, as_solution, reference_motion, scales
+from validate.adjudication.reference_solution import DUST, as_solution, off_by, reference_motion, scales
 from validate.cars.base_cars import variants
 from validate.cars.random_scenes import SEED, RandomScene, random_scene
 from validate.exit_status import ExitStatus
@@ -27,7 +26,6 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 from validate.output.table import Table
 from validate.reference import Instant, NoReferenceError
-from validate.reference.exact import as_fraction
 from validate.studies.study import Findings, Row, Study, Task
 
 LEVELS = (0.5, 0.9, 0.99)
@@ -70,7 +68,7 @@ def _held(car: RandomScene, formulation_name: str) -> list[Row]:
             numbers = solution.numbers[quantity][name].reshape(len(instants), -1)
             claimed = solution.accuracy.claims[quantity][name].reshape(len(instants), -1)
             for row, claim, instant in zip(numbers, claimed, instants, strict=True):
-                errors = (_distance(a, b) for a, b in zip(row, _exact(instant, quantity, name), strict=True))
+                errors = (off_by(a, b) for a, b in zip(row, _exact(instant, quantity, name), strict=True))
                 rows += [
                     {"quantity": quantity, "error": e if e > dust else 0.0, "claim": float(c)}
                     for e, c in zip(errors, claim, strict=True)
@@ -81,10 +79,6 @@ def _held(car: RandomScene, formulation_name: str) -> list[Row]:
 def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
     of_the_car = QUANTITIES[quantity].of == "car"
     return [instant.effects[name]] if of_the_car else list(getattr(instant, quantity)[name])
-
-
-def _distance(found: float, exact: Any) -> float:
-    return float(abs(as_fraction(exact, "number") - Fraction(float(found))))
 
 
 def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:

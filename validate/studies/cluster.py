@@ -17,7 +17,7 @@ from typing import Any
 
 from validate.comparison.examined import told_failure
 from validate.errors import UsageError
-from validate.extras import MissingPackage
+from validate.extras import needed
 from validate.plain_text import one_line, shown
 from validate.studies.store import Store
 from validate.studies.study import (
@@ -183,11 +183,8 @@ def quiet_dask() -> Any:
     Raises:
         MissingPackage: it is not there.
     """
-    try:
-        import_module("dask").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
-        distributed = import_module("distributed")
-    except ImportError as error:
-        raise MissingPackage("study", error, "cluster") from None
+    needed("study", "dask", "cluster").config.set({"logging": dict.fromkeys(LOGGERS, "critical")})
+    distributed = needed("study", "distributed", "cluster")
     for name in LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     return distributed

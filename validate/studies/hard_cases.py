@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 from validate.exit_status import ExitStatus
 from validate.hard.answer import Answer
@@ -41,7 +41,7 @@ def answers(task: Task) -> list[Row]:
     (case,) = chosen([task.part])
     trial = tried(case, task.number)
     every = {"value": trial.value, "facts": json.dumps(dict(trial.facts))}
-    return [{**every, **{name: getattr(answer, name) for name in ANSWER}} for answer in trial.answers]
+    return [{**every, **asdict(answer)} for answer in trial.answers]
 
 
 def found(rows: Sequence[Row]) -> Findings:
@@ -62,12 +62,7 @@ def found(rows: Sequence[Row]) -> Findings:
 def _examined(case: Case, rows: dict[int, list[Row]]) -> Examined:
     """A case with the values that were tried."""
     values = tuple(case.values[i] for i in rows)
-    trials = [
-        Trial(
-            value,
-            tuple(Answer(**{name: row[name] for name in ANSWER}) for row in of),
-            json.loads(of[0]["facts"]),
-        )
-        for value, of in zip(values, rows.values(), strict=True)
-    ]
+    answers = ([Answer(**{name: row[name] for name in ANSWER}) for row in of] for of in rows.values())
+    facts = (json.loads(of[0]["facts"]) for of in rows.values())
+    trials = [Trial(value, tuple(of), also) for value, of, also in zip(values, answers, facts, strict=True)]
     return examined(replace(case, values=values), trials, sum(of[0]["seconds"] for of in rows.values()))

@@ -32,6 +32,7 @@ from validate.exit_status import ExitStatus
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.refusals import same_reason, why_refused
 from validate.formulations.registry import formulation
+from validate.output.report import counted_as
 from validate.output.table import Part, Table
 from validate.studies.study import Findings, Row, Study, Task
 
@@ -202,11 +203,10 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
         lines = ((o["quantity"].replace("_", " "), f"{o['share']:.3g}", str(o["scene"])) for o in shares)
         head = ("quantity", "largest share of tolerance", "scene")
         parts += ["", "Where both agreed:", Table(head, tuple(lines))]
-    recorded = (
-        f"{len(table):,} scene{'' if len(table) == 1 else 's'} recorded, {len(kept):,} of them as a whole"
+    last = (
+        f"{counted_as(len(table), 'scene')} recorded, {len(kept):,} of them as a whole scene, to be looked "
+        f"into; {table['seconds'].sum():.0f} s of work, of all runs and processes."
     )
-    seconds = table["seconds"].sum()
-    last = f"{recorded} scene, to be looked into; {seconds:.0f} s of work, of all runs and processes."
     status = ExitStatus.DISAGREE if table["outcome"].map(_is_faulty).any() else ExitStatus.AGREE
     return Findings((*parts, "", last), data, status)
 

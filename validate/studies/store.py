@@ -18,12 +18,10 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 from validate.errors import UsageError
-from validate.extras import MissingPackage
+from validate.extras import needed
 from validate.output.files import unwritable, write_content, write_whole
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
@@ -74,11 +72,10 @@ class Store:
     def _read(self, columns: Sequence[str]) -> Iterator[Row]:
         # Two runs on a disk that knows no locks may have worked out the same task: it counts once.
         known: set[Task] = set()
+        parquet = needed("study", "pyarrow.parquet", "cluster")
         for file in self.files():
             try:
-                rows = (
-                    _arrow("parquet").read_table(file, columns=list(columns), partitioning=None).to_pylist()
-                )
+                rows = parquet.read_table(file, columns=list(columns), partitioning=None).to_pylist()
                 here = {Task(row["part"], row["number"]) for row in rows}
             except (OSError, ValueError, KeyError) as error:
                 told = " ".join(str(error).split())
@@ -101,10 +98,10 @@ class Store:
         Raises:
             OutputError: it cannot be written.
         """
-        pa = _arrow()
+        pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
         schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in self.columns.items()])
         table = pa.Table.from_pylist(list(rows), schema=schema)
-        write_whole(str(file), lambda stream: _arrow("parquet").write_table(table, stream))
+        write_whole(str(file), lambda stream: parquet.write_table(table, stream))
 
 
 def look(folder: Path) -> Store:
@@ -128,7 +125,7 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
         UsageError: they are of something else, another run adds to them now, or there is no room.
         OutputError: the folder takes no files.
     """
-    _arrow("parquet")
+    needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
     new, there = not folder.exists(), _found(folder)
     # A run that ended before anything was recorded left nothing to be held to.
@@ -194,18 +191,6 @@ def _found(folder: Path) -> Store | None:
         raise _unusable(folder, f"{HEAD} cannot be read ({error.strerror}); {ANOTHER}") from None
     except (ValueError, TypeError):
         raise _unusable(folder, f"{HEAD} does not say what the records are of; {ANOTHER}") from None
-
-
-def _arrow(module: str = "") -> Any:
-    """pyarrow, or a module of it.
-
-    Raises:
-        MissingPackage: it is not there.
-    """
-    try:
-        return import_module(f"pyarrow.{module}" if module else "pyarrow")
-    except ImportError as error:
-        raise MissingPackage("study", error, "cluster") from None
 
 
 def _unusable(folder: Path, problem: str) -> UsageError:

@@ -67,10 +67,6 @@ class Study:
     summary: Callable[[Sequence[Row]], Findings]
     chunk: int = 1
 
-    def counted(self, count: int) -> str:
-        """So many of them, in words: 1 scene, 2,000 scenes."""
-        return f"{count:,} {self.noun}{'' if count == 1 else 's'}"
-
 
 @cache
 def made_by() -> Mapping[str, str]:

@@ -14,7 +14,7 @@ from program import PAST_ITS_END, short_scene
 from pointcoord import Scene
 from validate import Outcome, Solution, compare
 from validate.ci import baseline as module
-from validate.ci.baseline import Baseline, Recorder, read_baseline
+from validate.ci.baseline import Baseline, Move, Recorder, Since, read_baseline
 from validate.ci.junit import junit
 from validate.ci.record import Record
 from validate.cli import main
@@ -29,10 +29,9 @@ OUTCOME = compare(SCENE, "pointcoord", "absolute", "steer")
 
 
 def saved(folder: Path) -> Baseline:
-    target = folder / "b.npz"
-    with Recorder("1.0") as recorder:
-        recorder.add("steer", SCENE, [OUTCOME])
-        recorder.write(str(target))
+    target, recorder = folder / "b.npz", Recorder()
+    recorder.add("steer", SCENE, [OUTCOME])
+    target.write_bytes(recorder.content())
     return read_baseline(str(target))
 
 
@@ -42,6 +41,10 @@ def moved(error: float) -> Outcome:
     numbers = {name: array.copy() for name, array in two.numbers["position"].items()}
     numbers["wheel_centre"][17, 1] += error
     return compare_solutions(SCENE, one, two.with_numbers({"position": numbers}), "steer")
+
+
+def by_number(since: Since) -> dict[tuple[str, str, str], Move]:
+    return {(move.formulation, move.row.quantity, move.row.name): move for move in since.moves}
 
 
 def test_a_baseline_gives_back_every_number_and_claim_bit_by_bit(tmp_path: Path) -> None:
@@ -61,7 +64,7 @@ def test_a_baseline_gives_back_every_number_and_claim_bit_by_bit(tmp_path: Path)
 def test_a_run_that_is_the_same_has_moved_by_nothing(tmp_path: Path) -> None:
     since = saved(tmp_path).since("steer", SCENE, [OUTCOME])
     assert (since.standing, since.status) == ("compared", ExitStatus.AGREE)
-    assert {move.moved for move in since.moves} == {0.0}
+    assert {move.row.difference for move in since.moves} == {0.0}
     assert {move.verdict for move in since.moves} == {"agrees"}
     assert len(since.moves) == 2 * len(OUTCOME.rows)
 
@@ -79,12 +82,12 @@ def test_a_number_has_moved_beyond_twice_its_claim_and_not_below(
         - OUTCOME.solutions[1].numbers["position"]["wheel_centre"]
     ).max()
     since = saved(tmp_path).since("steer", SCENE, [outcome])
-    found = {(move.formulation, move.quantity, move.name): move for move in since.moves}
+    found = by_number(since)
     move = found.pop(("absolute", "position", "wheel_centre"))
     assert move.verdict == verdict
-    assert move.moved == added
-    assert move.share == pytest.approx(added / (2.0 * claim), rel=1e-9)
-    assert move.instant == SCENE.instants[17]
+    assert move.row.difference == added
+    assert move.row.share == pytest.approx(added / (2.0 * claim), rel=1e-9)
+    assert move.row.instant == SCENE.instants[17]
     assert {other.verdict for other in found.values()} == {"agrees"}
     assert since.status is (ExitStatus.DISAGREE if verdict == "moved" else ExitStatus.AGREE)
 
@@ -121,7 +124,9 @@ def test_numbers_that_are_new_or_gone_are_named(tmp_path: Path) -> None:
     more = {"position": {**two.numbers["position"], "brake": two.numbers["position"]["wheel_centre"]}}
     changed = replace(OUTCOME, solutions=(replace(one, numbers=less), two.with_numbers(more)))
     since = saved(tmp_path).since("steer", SCENE, [changed])
-    odd = {(m.formulation, m.quantity, m.name): m.verdict for m in since.moves if m.verdict != "agrees"}
+    odd = {
+        (m.formulation, m.row.quantity, m.row.name): m.verdict for m in since.moves if m.verdict != "agrees"
+    }
     assert odd.pop(("absolute", "position", "brake")) == "new"
     assert {(who, what) for who, what, _ in odd} == {("pointcoord", "velocity")}
     assert set(odd.values()) == {"gone"}
@@ -149,10 +154,9 @@ def test_a_formulation_in_the_place_of_another_is_no_verdict_and_one_that_is_not
         junit(Record(["steer"], since=[told], examined=[Examined(name="steer", outcomes=(other,))]))
     )
     assert [case.get("type") for case in root.iter("error")] == ["another formulation"]
-    with Recorder("1.0") as recorder:
-        third = replace(OUTCOME, solutions=(one, replace(two, formulation="third")))
-        recorder.add("steer", SCENE, [OUTCOME, third])
-        recorder.write(str(tmp_path / "three.npz"))
+    third, recorder = replace(OUTCOME, solutions=(one, replace(two, formulation="third"))), Recorder()
+    recorder.add("steer", SCENE, [OUTCOME, third])
+    (tmp_path / "three.npz").write_bytes(recorder.content())
     fewer = read_baseline(str(tmp_path / "three.npz")).since("steer", SCENE, [OUTCOME])
     assert {m.formulation for m in fewer.moves if m.verdict == "gone"} == {"third"}
     assert (fewer.status, fewer.words) == (ExitStatus.AGREE, "")

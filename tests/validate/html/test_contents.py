@@ -4,7 +4,6 @@ import csv
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ import jsonschema
 import made_rows
 import numpy as np
 import pytest
+from page_read import Read
 from page_runs import run_of
 
 import validate.html
@@ -28,7 +28,7 @@ from validate.html.folder import PAGE
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.plot import Plots
-from validate.html.run import FIRST, FURTHER, Run, Telling
+from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
 from validate.html.section import Paragraph
 from validate.html.sections.motion import Spatial
 from validate.output.console import Console
@@ -39,62 +39,6 @@ from validate.published.tables import compare_published
 
 SCENES = Path(__file__).parents[3] / "pointcoord" / "scenes"
 NASTY = "<script>alert('x')</script><b onload=alert(1)>"
-
-
-class Read(HTMLParser):
-    """Cells of tables, plots and attributes of a page."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.rows: list[list[tuple[str, str]]] = []
-        self.verdict = ("", "")
-        self.text = ""
-        self._into = ""
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = dict(attrs)
-        self.tags.append((tag, given))
-        if tag == "tr":
-            self.rows.append([])
-        elif tag in ("th", "td"):
-            self.rows[-1].append((given.get("class") or "", ""))
-            self._into = "cell"
-        elif tag == "p" and given.get("role") == "status":
-            self.verdict = (given.get("class") or "", "")
-            self._into = "verdict"
-        elif tag == "small" and self._into == "verdict":
-            self._into = "small print"
-        elif tag in ("script", "style"):
-            self._into = "code"
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag in ("th", "td", "p", "script", "style"):
-            self._into = ""
-
-    def handle_data(self, data: str) -> None:
-        if self._into == "cell":
-            kind, text = self.rows[-1][-1]
-            self.rows[-1][-1] = (kind, text + data)
-        elif self._into == "verdict":
-            self.verdict = (self.verdict[0], self.verdict[1] + data)
-        if self._into != "code":
-            self.text += data
-
-    @property
-    def plots(self) -> dict[str, dict[str, Any]]:
-        """By what a screen reader says of them."""
-        return {
-            given["aria-label"] or "": json.loads(given["data-plot"] or "")
-            for _, given in self.tags
-            if "data-plot" in given
-        }
-
-    def of(self, name: str) -> list[list[tuple[str, str]]]:
-        """The rows of tables that begin with a name."""
-        return [row for row in self.rows if row and row[0][1].startswith(name)]
 
 
 def head(kind: str = "validate") -> Head:
@@ -126,25 +70,25 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
     content = Scene.load("double-wishbone").model_dump(exclude_none=True)
     content["time"] = content["time"] | {"samples": 301}
     scene, count = Scene.from_mapping(content), 400
-    telling = Telling(count)
-    for i in range(count):
-        name = f"a folder of mine/with a long name of a scene {i:03d}.toml"
-        if i % 50 == 20:
-            telling.add(Examined(name=name, problem=f"{name}: is broken at line {i}"), None)
-        else:
-            telling.add(replace(spoiled(wide) if i % 20 == 13 else wide, name=name), scene)
-    run = run_of(*telling.told)
+    names = [f"a folder of mine/with a long name of a scene {i:03d}.toml" for i in range(count)]
+    record, drawings = Record(names), Drawings(count)
+    for i, name in enumerate(names):
+        examined = replace(spoiled(wide) if i % 20 == 13 else wide, name=name)
+        if broken := i % 50 == 20:
+            examined = Examined(name=name, problem=f"{name}: is broken at line {i}")
+        there = None if broken else scene
+        record.add(examined, scene=there)
+        drawings.add(examined, there)
+    run = Run(head(), record, drawings.kept)
     text = page(run, {})
     assert len(text.encode()) < 8e6
     drawn = [int(one.examined.name[-8:-5]) for one in run.drawn]
     assert drawn == [*range(FIRST), *range(13, 13 + 20 * FURTHER, 20)]
     # The numbers of the others are let go: hundreds of scenes fit into memory.
-    outcomes = [outcome for one in run.told if not one.drawn for outcome in one.examined.outcomes]
-    assert outcomes
-    assert not any(solution.numbers for outcome in outcomes for solution in outcome.solutions)
+    assert not any(solution.numbers for outcome in record.outcomes for solution in outcome.solutions)
     shown = Read(text)
     assert f"Drawn are {FIRST + FURTHER} of {count} scenes" in shown.text
-    assert len([given for _, given in shown.tags if "data-motion" in given]) == FIRST + FURTHER
+    assert len(shown.motions) == FIRST + FURTHER
     # What does not agree has its row and its reason, however far down it stands.
     for i in (13, 393):
         rows = shown.of(f"a folder of mine/with a long name of a scene {i:03d}.toml")
@@ -192,7 +136,7 @@ def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(
     (row,) = shown.of("steer")[:1]
     assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in row]
     assert "position of tie_rod_inner: 1.00e-03 mm apart" in shown.text
-    assert [words for words in shown.plots if words.startswith("position of tie_rod_inner: disagrees")]
+    assert [words for words, _ in shown.plots if words.startswith("position of tie_rod_inner: disagrees")]
 
 
 def test_a_scene_that_is_refused_has_its_reason_beside_it(tmp_path: Path) -> None:
@@ -256,7 +200,7 @@ def test_hard_cases_are_drawn_as_errors_over_the_distance_and_a_wrong_one_is_tol
     assert any(
         "disagrees" in kind and "wrong at 1e-07" in text for _, _, (kind, text), _ in shown.of("near-a-fold")
     )
-    ((_, plot),) = shown.plots.items()
+    ((_, plot),) = shown.by_words.items()
     right, crosses, rings = plot["data"]
     assert dict(zip(right["x"], right["y"], strict=True)) == {1e-1: 1e-11, 1e-3: 1e-9, 1e-5: 1e-7}
     assert (crosses["x"], rings["x"], rings["y"]) == ([1e-9], [1e-7], [0.5])
@@ -272,7 +216,7 @@ def test_formulations_that_refuse_at_one_place_have_crosses_of_their_own_below_e
     refused = [answer("refused", None, 1e-9) | {"formulation": name} for name in names]
     right = [answer("right", 1e-12 / value, value) for value in (1e-1, 1e-3, 1e-5)]
     shown = read(Run(head("hard"), hard=HardCases.of(hard_document(*right, *refused))))
-    ((_, plot),) = shown.plots.items()
+    ((_, plot),) = shown.by_words.items()
     crosses = {one["name"]: one["y"][0] for one in plot["data"] if one["name"].endswith("refuses")}
     assert list(crosses) == [f"{name} refuses" for name in names]
     heights = np.log10(sorted([*crosses.values(), 1e-11]))
@@ -328,7 +272,7 @@ def test_accuracy_against_time_has_a_point_for_each_setting_of_each_way() -> Non
     )
     report = Report("rows", "pointcoord cost", False, rows)
     shown = read(Run(head("cost"), cost=report))
-    ((_, plot),) = shown.plots.items()
+    ((_, plot),) = shown.by_words.items()
     series, mine = plot["data"]
     # In us.
     assert series["x"] == pytest.approx([10.0, 50.0])
@@ -347,7 +291,7 @@ def test_every_way_of_a_page_is_told_from_every_other_by_its_line_and_by_its_mar
         for k, way in enumerate(WAYS)
         for row in made_rows.measured("bounce", way.name, "a", {"position": 10.0**-k}, 1e-5, dense=way.dense)
     )
-    ((_, plot),) = read(Run(head("cost"), cost=Report("rows", "", False, rows))).plots.items()
+    ((_, plot),) = read(Run(head("cost"), cost=Report("rows", "", False, rows))).by_words.items()
     assert len(plot["data"]) == len(WAYS) > 12
     lines = {(one["line"]["color"], one["line"].get("dash")) for one in plot["data"]}
     symbols = {one["marker"]["symbol"].removesuffix("-open") for one in plot["data"]}
@@ -391,7 +335,7 @@ def spoiled_outcome(outcome: Any) -> Any:
 
 def test_the_figures_have_the_printed_rows_and_the_errata_their_numbers() -> None:
     shown = read(Run(head(), record=Record([], paper=compare_with_paper())))
-    by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots.items()}
+    by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots}
     for number, table in ((6, TABLE_2), (8, TABLE_3)):
         curve, crosses = by_number[f"Figure {number}"]
         assert list(zip(crosses["x"], crosses["y"], strict=True)) == [
@@ -528,22 +472,21 @@ def test_the_line_of_a_curve_is_the_solver_that_was_given_and_the_dots_are_whom_
     solver: Path,
 ) -> None:
     shown = shown_of("--in-process", "--solver", "made_solver:tilted", str(solver), "steer", out=solver)
-    line, dots = shown.plots["camber over rack"]["data"]
+    line, dots = shown.by_words["camber over rack"]["data"]
     assert (line["name"], dots["name"]) == ("made_solver:tilted", "pointcoord")
-    assert shown.plots["camber over rack"]["layout"]["showlegend"]
+    assert shown.by_words["camber over rack"]["layout"]["showlegend"]
     at = dict(zip(line["x"], line["y"], strict=True))
     apart = [at[x] - y for x, y in zip(dots["x"], dots["y"], strict=True)]
     assert apart == pytest.approx([np.degrees(0.5)] * len(apart), abs=1e-3)
     # Of the other angle it gives nothing, and pointcoord's is no line in its place.
-    assert "kingpin angle over rack" not in shown.plots
+    assert "kingpin angle over rack" not in shown.by_words
 
 
 def test_what_a_solver_does_not_give_is_no_curve_of_it_and_does_not_empty_the_drawing(solver: Path) -> None:
     shown = shown_of("--in-process", "--solver", "made_solver:rack_only", str(solver), "steer", out=solver)
-    assert "camber over rack" not in shown.plots
+    assert "camber over rack" not in shown.by_words
     assert "no curves: made_solver:rack_only gives no camber and no kingpin angle" in shown.text
-    ((_, given),) = [(tag, one) for tag, one in shown.tags if "data-motion" in one]
-    motion = json.loads(given["data-motion"] or "")
+    (motion,) = shown.motions
     points = list(Scene.load("steer").mechanism.topology.points)
     assert motion["points"] == points
     assert all(len(place) == 3 for place in motion["drawn"])
@@ -564,12 +507,12 @@ def test_a_refused_scene_is_drawn_as_far_as_it_goes_and_says_why_no_farther(
     shown = Read((out / "index.html").read_text(encoding="utf-8"))
     assert "Stopped: the motion cannot pass a singular pose" in shown.text
     assert "Stopped: the motion cannot pass a singular pose" in shown.text
-    (line,) = shown.plots["camber over rack"]["data"]
+    (line,) = shown.by_words["camber over rack"]["data"]
     assert line["name"] == "pointcoord"
     # The rack cannot pass 130.10 mm.
     assert 100.0 < max(line["x"]) < 130.2
-    ((_, given),) = [(tag, one) for tag, one in shown.tags if "data-motion" in one]
-    assert 0.05 < max(json.loads(given["data-motion"] or "")["times"]) < 0.0867
+    (motion,) = shown.motions
+    assert 0.05 < max(motion["times"]) < 0.0867
 
 
 def test_options_may_stand_between_the_folder_and_the_scenes(solver: Path) -> None:
@@ -627,8 +570,6 @@ def test_a_drawing_that_closes_to_rounding_is_told_so_and_no_number_of_rounding_
 ) -> None:
     assert wide.closing is not None
     assert 0.0 < wide.closing["largest"] < 1e-6
-    telling = Telling(1)
-    telling.add(wide, Scene.load("double-wishbone"))
-    text = read(run_of(*telling.told)).text
+    text = read(run_of(Drawn(wide, Scene.load("double-wishbone")))).text
     assert "it closes, no point moves by more than rounding" in text
     assert "closing it moves" not in text

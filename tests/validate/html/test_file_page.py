@@ -2,13 +2,13 @@
 
 import csv
 import json
-from html.parser import HTMLParser
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
 from lotus_front import BUMP, ROLLING_RADIUS
+from page_read import Read
 
 from pointcoord import Scene, simulate
 from validate.cli import main
@@ -22,40 +22,6 @@ columns.bump = {{ is = "travel.contact", printed = 0 }}
 columns.camber.is = "wheel.camber"
 """
 WRONG = 0.01  # degrees
-
-
-class Read(HTMLParser):
-    """The elements of a page with their attributes, its tables without small print, scripts and verdict."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.opened: list[tuple[str, dict[str, str | None]]] = []
-        self.cells: list[list[str]] = []
-        self.scripts: list[str] = []
-        self.verdict = ""
-        self._into = ""
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.opened.append((tag, dict(attrs)))
-        if tag == "tr":
-            self.cells.append([])
-        if tag in ("td", "th"):
-            self.cells[-1].append("")
-        status = tag == "p" and dict(attrs).get("role") == "status"
-        self._into = "verdict" if status else "cell" if tag in ("td", "th") else tag
-
-    def handle_endtag(self, tag: str) -> None:
-        self._into = ""
-
-    def handle_data(self, data: str) -> None:
-        if self._into == "cell":
-            self.cells[-1][-1] += data
-        elif self._into == "script":
-            self.scripts.append(data)
-        elif self._into == "verdict":
-            self.verdict += data
 
 
 @pytest.fixture(scope="module")
@@ -78,22 +44,22 @@ def test_the_verdicts_of_the_page_are_those_of_the_json(folder: Path) -> None:
     jsonschema.validate(document, json.loads(schema_text()))
     assert json.loads((folder / "page" / "results.json").read_text()) == document
     read = Read((folder / "page" / "index.html").read_text(encoding="utf-8"))
-    assert read.verdict.endswith(
+    assert read.verdict[1].endswith(
         "<b>bump.csv and the car of double-wishbone: 1 of 2 agree; disagrees: camber."
     )
     (comparison,) = document["scenes"][0]["comparisons"]
-    shown = {row[0]: row for row in read.cells if len(row) == 6}
+    shown = {row[0]: row for row in read.words if len(row) == 6}
     for row in comparison["rows"]:
         assert shown[row["name"]][1].startswith(row["verdict"])
         assert shown[row["name"]][4] == row["place"]
     assert shown["camber"][2] == f"{WRONG:.1e} deg"
     assert comparison["rows"][0]["place"] == "line 4"
-    assert {"velocity", "position"} <= {row[0] for row in read.cells if row[1:2] == ["not given"]}
+    assert {"velocity", "position"} <= {row[0] for row in read.words if row[1:2] == ["not given"]}
 
 
 def test_what_is_drawn_is_the_file_and_the_car_at_the_files_own_travel(folder: Path) -> None:
     read = Read((folder / "page" / "index.html").read_text(encoding="utf-8"))
-    plots = [json.loads(given["data-plot"] or "") for _, given in read.opened if "data-plot" in given]
+    plots = [plot for _, plot in read.plots]
     assert len(plots) == 4  # of each angle its curve and its difference
     ours, file = plots[0]["data"]
     bumps = sorted(bump for bump, *_ in BUMP)
@@ -119,9 +85,9 @@ def test_the_numbers_beside_the_page_are_the_files_and_those_it_was_held_to(fold
 def test_names_of_a_file_show_as_text_and_what_the_page_lacks_is_named(folder: Path) -> None:
     text = (folder / "page" / "index.html").read_text(encoding="utf-8")
     read = Read(text)
-    assert not {"b"} & {tag for tag, _ in read.opened}
+    assert not {"b"} & {tag for tag, _ in read.tags}
     assert not [script for script in read.scripts if "alert(1)" in script]
-    lacking = {row[0]: row[1] for row in read.cells if row and row[-1].startswith("pointcoord ")}
+    lacking = {row[0]: row[1] for row in read.words if row and row[-1].startswith("pointcoord ")}
     assert lacking["scenes in motion, compared by two formulations"] == "pointcoord report DIR SCENE"
     assert "hard cases" in lacking
     assert "Drawn are 0" not in text
@@ -142,8 +108,8 @@ def test_a_file_over_time_that_agrees_has_a_page_by_either_command(
     said = capsys.readouterr().out.splitlines()
     assert said == [f"{file} and the car of steer: 2 of 2 agree.", str(tmp_path / "a" / "index.html")]
     read = Read((tmp_path / "a" / "index.html").read_text(encoding="utf-8"))
-    assert read.verdict == said[0]
-    plots = [json.loads(given["data-plot"] or "") for _, given in read.opened if "data-plot" in given]
+    assert read.verdict[1] == said[0]
+    plots = [plot for _, plot in read.plots]
     assert [plot["layout"]["xaxis"]["title"]["text"] for plot in plots] == ["time [s]"] * 4
 
 

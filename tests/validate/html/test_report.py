@@ -8,13 +8,12 @@ from contextlib import suppress
 from dataclasses import replace
 from hashlib import sha256
 from html import unescape
-from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
 import jsonschema
 import numpy as np
 import pytest
+from page_read import Read
 from page_runs import run_of
 
 from pointcoord import Scene, simulate
@@ -22,7 +21,7 @@ from validate.cli import main
 from validate.comparison.examined import Examined, examine
 from validate.html.page import page
 from validate.html.plot import fewer
-from validate.html.run import Told
+from validate.html.run import Drawn
 from validate.html.sections import sections
 from validate.output.document import schema_text
 from validate.output.report import worst_rows
@@ -33,59 +32,17 @@ BOUNCE = Path(__file__).parents[3] / "pointcoord" / "scenes" / "bounce.toml"
 FILES = {"results.json": "the run", "comparisons.csv": "its lines"}
 
 
-class Read(HTMLParser):
-    """The elements of a page with their attributes, its tables as text, and all that it loads."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.opened: list[tuple[str, dict[str, str | None]]] = []
-        self.cells: list[list[str]] = []
-        self.verdict = ""
-        self.scripts: list[str] = []
-        self._into: str | None = None
-        self.feed(text)
-        self.close()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        given = dict(attrs)
-        self.opened.append((tag, given))
-        if tag == "tr":
-            self.cells.append([])
-        elif tag in ("th", "td"):
-            self.cells[-1].append("")
-            self._into = "cell"
-        elif tag == "script":
-            self.scripts.append("")
-            self._into = "script"
-        elif tag == "p" and given.get("role") == "status":
-            self._into = "verdict"
-        elif tag == "small" and self._into == "verdict":
-            self._into = None
-
-    def handle_endtag(self, tag: str) -> None:
-        if tag in ("th", "td", "p", "script"):
-            self._into = None
-
-    def handle_data(self, data: str) -> None:
-        if self._into == "cell":
-            self.cells[-1][-1] += data
-        elif self._into == "script":
-            self.scripts[-1] += data
-        elif self._into == "verdict":
-            self.verdict += data
-
-
-def told(name: str, scene: Scene, factor: float = 1.0) -> Told:
+def told(name: str, scene: Scene, factor: float = 1.0) -> Drawn:
     examined = examine(name, scene, (("pointcoord", "absolute"),), False, factor)
-    return Told(examined, scene, simulate(scene))
+    return Drawn(examined, scene, simulate(scene))
 
 
 @pytest.fixture(scope="module")
-def bounce() -> Told:
+def bounce() -> Drawn:
     return told("bounce", Scene.load("bounce"))
 
 
-def spoiled(one: Told) -> Told:
+def spoiled(one: Drawn) -> Drawn:
     """The same with one comparison that disagrees."""
     outcome = one.examined.outcomes[0]
     rows = (replace(outcome.rows[0], share=7.0, verdict="disagrees"), *outcome.rows[1:])
@@ -100,9 +57,9 @@ def test_a_scene_called_script_shows_as_text(tmp_path: Path) -> None:
     file.write_text("\n".join(["title = '</title></script><img src=x onerror=alert(1)>'", *lines]))
     assert main(["report", str(tmp_path / "out"), str(file)]) == 0
     read = Read((tmp_path / "out" / "index.html").read_text(encoding="utf-8"))
-    assert not [given for _, given in read.opened if "src" in given or "onerror" in given]
+    assert not [given for _, given in read.tags if "src" in given or "onerror" in given]
     assert [row[0] for row in read.cells if name in row[0]]
-    assert "img" not in {tag for tag, _ in read.opened}
+    assert "img" not in {tag for tag, _ in read.tags}
     assert len(read.scripts) == 4  # plotly and three of our own
     assert any(cell.startswith("</title></script>") for row in read.cells for cell in row)
     assert "alert('x')" not in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
@@ -120,18 +77,18 @@ def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> No
         assert (line["scene"], line["name"], line["verdict"]) == (row["scene"], row["name"], row["verdict"])
         assert float(line["difference"]) == row["difference"]
     read = Read((tmp_path / "index.html").read_text(encoding="utf-8"))
-    assert read.verdict == "2 of 2 scenes agree."
+    assert read.verdict[1] == "2 of 2 scenes agree."
     shown = [row for row in read.cells if len(row) > 3 and row[1].endswith(" and absolute")]
     assert len(shown) == 4
     for row in shown:
         assert all(cell.startswith(("agrees", "not asked for")) for cell in row[2:])
 
 
-def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Told) -> None:
+def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Drawn) -> None:
     run = run_of(spoiled(bounce), replace(bounce, examined=replace(bounce.examined, name="other")))
     read = Read(page(run, FILES))
-    assert read.verdict == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
-    coloured = [given for tag, given in read.opened if tag == "td" and given.get("class") == "disagrees"]
+    assert read.verdict[1] == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
+    coloured = [given for tag, given in read.tags if tag == "td" and given.get("class") == "disagrees"]
     # The quantity's own cell, and that of the scene.
     assert len(coloured) == 2
     assert sum(cell.startswith("disagrees") for row in read.cells for cell in row) == 2
@@ -139,21 +96,21 @@ def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: T
 
 
 def test_a_scene_that_cannot_be_read_is_no_agreement() -> None:
-    run = run_of(Told(Examined(name="no such", problem="no such: is no scene"), None))
+    run = run_of(Drawn(Examined(name="no such", problem="no such: is no scene"), None))
     read = Read(page(run, FILES))
-    assert read.verdict == "0 of 1 scene agrees; not tested (wrong input): no such."
+    assert read.verdict[1] == "0 of 1 scene agrees; not tested (wrong input): no such."
     assert run.status == 2
 
 
-def test_a_wider_tolerance_is_said_in_the_verdict(bounce: Told) -> None:
+def test_a_wider_tolerance_is_said_in_the_verdict(bounce: Drawn) -> None:
     assert "2.0 times" in run_of(bounce, factor=2.0).sentence
     assert "times" not in run_of(bounce).sentence
 
 
-def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
+def test_the_page_loads_nothing_and_forbids_to(bounce: Drawn) -> None:
     read = Read(page(run_of(bounce), FILES))
     policies = [
-        given["content"] or "" for tag, given in read.opened if given.get("http-equiv", "") and tag == "meta"
+        given["content"] or "" for tag, given in read.tags if given.get("http-equiv", "") and tag == "meta"
     ]
     assert len(policies) == 1
     assert policies[0].startswith("default-src 'none';")
@@ -161,15 +118,15 @@ def test_the_page_loads_nothing_and_forbids_to(bounce: Told) -> None:
     hashes = [b64encode(sha256(script.encode()).digest()).decode() for script in read.scripts]
     assert policies[0].endswith("script-src " + " ".join(f"'sha256-{one}'" for one in hashes))
     assert "unsafe-eval" not in policies[0]
-    for tag, given in read.opened:
+    for tag, given in read.tags:
         assert tag not in ("link", "iframe", "object", "embed", "base")
         assert "src" not in given
         assert tag != "a" or (given["href"] or "").startswith("#") or given["href"] in FILES
 
 
-def test_every_section_has_a_name_of_its_own_and_a_heading(bounce: Told) -> None:
+def test_every_section_has_a_name_of_its_own_and_a_heading(bounce: Drawn) -> None:
     read = Read(page(run_of(bounce), FILES))
-    ids = [given["id"] for _, given in read.opened if "id" in given]
+    ids = [given["id"] for _, given in read.tags if "id" in given]
     assert len(set(ids)) == len(ids)
     assert {section.name for section in sections() if section.blocks(run_of(bounce))} <= set(ids)
     assert len({section.place for section in sections()}) == len(sections())
@@ -215,18 +172,9 @@ def test_without_its_packages_the_extra_is_named(
     assert not (tmp_path / "out").exists()
 
 
-def plots(read: Read) -> list[tuple[str, dict[str, Any]]]:
-    """Of each plot what a screen reader says, and what plotly draws."""
-    return [
-        (given["aria-label"] or "", json.loads(given["data-plot"] or ""))
-        for _, given in read.opened
-        if "data-plot" in given
-    ]
-
-
-def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Told) -> None:
+def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Drawn) -> None:
     run = run_of(bounce)
-    shown = [(words, one) for words, one in plots(Read(page(run, FILES))) if "of its tolerance" in words]
+    shown = [(words, one) for words, one in Read(page(run, FILES)).plots if "of its tolerance" in words]
     worst = worst_rows(bounce.examined.outcomes[0])
     assert len(shown) == len(worst) > 5
     for row, (_, one) in zip(worst, shown, strict=True):
@@ -236,8 +184,8 @@ def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Told
         assert row.unit in one["layout"]["yaxis"]["title"]["text"]
 
 
-def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Told) -> None:
-    shown = [(w, one) for w, one in plots(Read(page(run_of(bounce), FILES))) if w.startswith("wheel travel")]
+def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Drawn) -> None:
+    shown = [(w, one) for w, one in Read(page(run_of(bounce), FILES)).plots if w.startswith("wheel travel")]
     assert len(shown) >= 2
     for _, one in shown:
         line, dots = one["data"]
@@ -267,7 +215,7 @@ def test_a_page_of_all_built_in_scenes_is_below_eight_megabytes(built_in: Path) 
 
 def test_every_printed_row_of_the_paper_is_on_the_page_beside_ours(built_in: Path) -> None:
     read = Read((built_in / "index.html").read_text(encoding="utf-8"))
-    shown = [one for words, one in plots(read) if words == "wheel centre, z, over time"]
+    shown = [one for words, one in read.plots if words == "wheel centre, z, over time"]
     assert len(shown) == 2
     for one, table in zip(shown, (TABLE_2, TABLE_3), strict=True):
         printed, computed = one["data"]
@@ -289,9 +237,9 @@ def test_the_errata_are_those_of_the_data_each_with_its_number(built_in: Path) -
         assert any(row[2].startswith(number) for row in line), finding
 
 
-def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Told) -> None:
+def test_the_drawing_that_moves_has_the_places_of_both_models_and_those_drawn(bounce: Drawn) -> None:
     read = Read(page(run_of(bounce), FILES))
-    (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
+    (shown,) = read.motions
     first, second = bounce.examined.outcomes[0].solutions
     for solution, model in zip((first, second), shown["models"], strict=True):
         assert model["name"] == solution.formulation
@@ -312,22 +260,22 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
     built_in: Path,
 ) -> None:
     read = Read((built_in / "index.html").read_text(encoding="utf-8"))
-    there = [given["id"] for tag, given in read.opened if tag == "section"]
+    there = [given["id"] for tag, given in read.tags if tag == "section"]
     opening = ["verdict", "agreement", "motion", "cost"]
     details = ["scenes", "differences", "paper", "hard", "published", "left-out", "machine"]
     assert there == [*opening, *details]
     assert [section.name for section in sections() if section.folded] == details
     # That of a file of results has nothing to say here.
     assert there == [section.name for section in sections() if section.name != "file"]
-    links = [given["href"] or "" for tag, given in read.opened if tag == "a"]
+    links = [given["href"] or "" for tag, given in read.tags if tag == "a"]
     files = {link for link in links if not link.startswith("#")}
     assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
     document = json.loads((built_in / "results.json").read_text())
     jsonschema.validate(document, json.loads(schema_text()))
     jsonschema.validate(json.loads((built_in / "hard.json").read_text()), json.loads(schema_text()))
     assert document["exit_status"] == 0
-    assert read.verdict.startswith(f"{len(DEFAULT_SCENES)} of {len(DEFAULT_SCENES)} scenes agree; ")
-    assert read.verdict.endswith("all as expected.")
+    assert read.verdict[1].startswith(f"{len(DEFAULT_SCENES)} of {len(DEFAULT_SCENES)} scenes agree; ")
+    assert read.verdict[1].endswith("all as expected.")
     text = (built_in / "index.html").read_text(encoding="utf-8")
     for name in DEFAULT_SCENES:
         assert f">{Scene.load(name).title}</td>" in unescape(text)
@@ -336,11 +284,11 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
         assert len(list(csv.DictReader(stream))) == 11 * 4 + 21 * 2
 
 
-def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Told) -> None:
+def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Drawn) -> None:
     closing = bounce.examined.closing
     assert closing is not None
     read = Read(page(run_of(bounce), FILES))
-    (shown,) = [json.loads(given["data-motion"] or "") for _, given in read.opened if "data-motion" in given]
+    (shown,) = read.motions
     drawn, closed = (dict(zip(shown["points"], shown[key], strict=True)) for key in ("drawn", "closed"))
     rows = [row for row in read.cells if row[0] == "bounce"]
     assert closing["largest"] == pytest.approx(16.8, abs=0.05)  # of Table 1

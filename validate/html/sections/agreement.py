@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -12,7 +11,7 @@ from validate.comparison.examined import Examined
 from validate.html.plot import Panel, Plots, plain
 from validate.html.run import Run
 from validate.html.section import Block, Section
-from validate.output.report import about, heading, used, when
+from validate.output.report import about, used, when, worst_of
 
 MOST = 1000  # rows of the table: a page stays small
 DRAWN = 60  # rows of the picture
@@ -28,10 +27,10 @@ ROW, EDGE = 1.4, 8.0  # rem, of a row of the picture and of what stands around i
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    table = None if run.record is None else agreement(run.record, MOST)
-    if run.record is None or table is None or not table.rows:
+    table = agreement(run.record, MOST)
+    if not table.rows:
         return []
-    compared = [] if run.files else [one for one in run.record.examined if one.outcomes]
+    compared = [] if run.record.files else [one for one in run.record.examined if one.outcomes]
     # Where something is not as wanted it is seen however many scenes there are.
     kept = {one.name for one in sorted(compared, key=lambda one: one.status == 0)[:DRAWN]}
     drawn = [one for one in compared if one.name in kept]
@@ -40,16 +39,17 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 def _picture(drawn: Sequence[Examined]) -> Block:
     """A heat map; of several pairs of formulations the one that uses most."""
-    cells = [_worst(one) for one in drawn]
+    cells = [worst_of(row for outcome in one.outcomes for row in outcome.rows) for one in drawn]
     quantities = list(dict.fromkeys(name for row in cells for name in row))
-    given = [[row.get(name) for name in quantities] for row in cells]
+    seen = [[_seen(row[name]) if name in row else (None, "", "") for name in quantities] for row in cells]
+    levels, texts, words = ([[one[i] for one in row] for row in seen] for i in range(3))
     trace = {
         "type": "heatmap",
         "x": [plain(name) for name in quantities],
         "y": [plain(one.name) for one in drawn],
-        "z": [[None if one is None else _level(one) for one in row] for row in given],
-        "text": [["" if one is None else _short(one) for one in row] for row in given],
-        "customdata": [["" if one is None else plain(_words(one)) for one in row] for row in given],
+        "z": levels,
+        "text": texts,
+        "customdata": words,
         "texttemplate": "%{text}",
         "hovertemplate": "%{y}<br>%{customdata}<extra></extra>",
         "colorscale": COLOURS,
@@ -68,35 +68,15 @@ def _picture(drawn: Sequence[Examined]) -> Block:
     return Plots("Every scene and quantity", (Panel(WORDS, (trace,), layout, EDGE + ROW * len(drawn)),), True)
 
 
-def _worst(one: Examined) -> dict[str, Comparison]:
-    worst: dict[str, Comparison] = {}
-    for outcome in one.outcomes:
-        for row in outcome.rows:
-            key = heading(row.quantity, row.name)
-            if key not in worst or _rank(row) > _rank(worst[key]):
-                worst[key] = row
-    return worst
-
-
-def _rank(row: Comparison) -> tuple[int, float]:
-    """What is seen of several: a disagreement first, then what is not tested, then the largest share."""
-    order = ("not given", "agrees", "not tested", "disagrees").index(row.verdict)
-    return order, row.share if math.isfinite(row.share) else 0.0
-
-
-def _level(row: Comparison) -> float:
-    if row.verdict in ("not tested", "not given"):
-        return -1.0
-    return 2.0 if row.verdict == "disagrees" else float(f"{row.share:.2g}")
-
-
-def _short(row: Comparison) -> str:
-    return f"{100.0 * row.share:.0f}%" if row.verdict == "agrees" else row.verdict
-
-
-def _words(row: Comparison) -> str:
+def _seen(row: Comparison) -> tuple[float, str, str]:
+    """The place of a cell among the colours, what stands in it, and what the pointer brings."""
     told = f"{about(row.quantity, row.name)}: {row.verdict}"
-    return told if row.verdict == "not given" else f"{told}, {used(row.share)} at {when(row, 4)}"
+    if row.verdict == "not given":
+        return -1.0, row.verdict, plain(told)
+    words = plain(f"{told}, {used(row.share)} at {when(row, 4)}")
+    if row.verdict == "agrees":
+        return float(f"{row.share:.2g}"), f"{100.0 * row.share:.0f}%", words
+    return (2.0 if row.verdict == "disagrees" else -1.0), row.verdict, words
 
 
 SECTION = Section("agreement", "Agreement", 20, _blocks)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from validate.cost.report import Report
-from validate.html.plot import Panel, Plots, axis, numbers, plain
+from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.table import Table
@@ -63,32 +63,21 @@ def _panel(here: pd.DataFrame, quantity: str, ways: Mapping[str, Look]) -> Panel
 
     drawn, nothing = heights(here.error)
     here = here.assign(error=drawn)
-    traces = [_trace(way, ways[way], line) for way, line in here.groupby("way", sort=False)]
-    layout = {
-        "xaxis": axis("time a pose [us]", logarithmic=True),
-        "yaxis": axis(f"largest error [{plain(unit_of(quantity))}]", logarithmic=True),
-    }
-    return Panel(f"{words_of(quantity)}: largest error over time{nothing}", tuple(traces), layout)
+    traces = (_trace(way, ways[way], line) for way, line in here.groupby("way", sort=False))
+    words = f"{words_of(quantity)}: largest error over time{nothing}"
+    up = f"largest error [{plain(unit_of(quantity))}]"
+    return panel(words, "time a pose [us]", up, traces, logarithmic="xy")
 
 
-def _trace(way: str, look: Look, line: pd.DataFrame) -> Mapping[str, Any]:
+def _trace(way: str, look: Look, line: pd.DataFrame) -> Trace:
     """As in the pictures: filled markers and a star for a way whose one solve serves any instant."""
     dash, dense = ",".join(f"{LINE * length:g}px" for length in look.dash), bool(line.dense.any())
+    name, symbol = (f"{plain(way)}*", look.symbol) if dense else (plain(way), f"{look.symbol}-open")
+    trace = marks(name, 1e6 * line.time.to_numpy(), line.error.to_numpy(), look.colour, symbol, 8)
     # Thin symbols have no inside.
-    edge = {"width": LINE, "color": look.colour}
-    return {
-        "x": numbers(1e6 * line.time.to_numpy(), 4),
-        "y": numbers(line.error.to_numpy(), 3),
-        "name": plain(way) + ("*" if dense else ""),
-        "mode": "lines+markers",
-        "line": {"color": look.colour, "width": LINE, **({"dash": dash} if dash else {})},
-        "marker": {
-            "symbol": look.symbol if dense else f"{look.symbol}-open",
-            "color": look.colour,
-            "size": 8,
-            "line": edge,
-        },
-    }
+    trace["marker"]["line"] = {"width": LINE, "color": look.colour}
+    drawn = {"color": look.colour, "width": LINE, **({"dash": dash} if dash else {})}
+    return trace | {"mode": "lines+markers", "line": drawn}
 
 
 SECTION = Section("cost", "Accuracy against time", 40, _blocks)

@@ -6,18 +6,14 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from validate.ci.record import explained, why_undecided
 from validate.comparison.compare import Comparison
-from validate.html.plot import OTHER, OURS, Panel, Plots, axis, fewer, numbers, plain
-from validate.html.run import Run, Told
+from validate.html.plot import OTHER, OURS, Panel, Plots, curve, fewer, gaps, marks, panel, plain
+from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome
-from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
+from validate.output.report import about, counted_as, degrees_of, held_to, in_degrees, when, worst_rows
 from validate.output.table import Cell, Table
-
-Array = NDArray[np.float64]
 
 # Rows of the table, those that do not agree first: a file may give every number of every point.
 MOST = 300
@@ -25,16 +21,16 @@ HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "what woul
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [block for one in run.told if one.file is not None for block in _of_file(run, one, one.file)]
+    return [block for name, file in run.record.files.items() for block in _of_file(run, name, file)]
 
 
-def _of_file(run: Run, one: Told, file: DataOutcome) -> Iterator[Block]:
+def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
     outcome = file.outcome
     source = outcome.solutions[0].formulation
     rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
     yield Paragraph(
-        f"{source} beside the car of {one.examined.name}: {counted_as(len(file.rows), 'row')} over "
-        f"{file.over}, {held_to(run.factor)}."
+        f"{source} beside the car of {name}: {counted_as(len(file.rows), 'row')} over "
+        f"{file.over}, {held_to(run.record.factor)}."
     )
     caption = "Each point, body or angle that the file gives; angles in degrees."
     if len(rows) > MOST:
@@ -44,15 +40,13 @@ def _of_file(run: Run, one: Told, file: DataOutcome) -> Iterator[Block]:
     cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
     yield Table(HEAD, tuple(cells), caption=caption)
     worst = worst_rows(outcome)
-    if panels := tuple(panel for row in worst for panel in _panels(file, row, run.points)):
+    if panels := tuple(one for row in worst for one in panels_of(file, row, run.points)):
         apart = any(row.verdict == "disagrees" for row in worst)
         yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
 
 
 def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
-    why = "; ".join(explained(row, file.outcome)[:1])
-    if row.verdict == "not tested":
-        why = why_undecided(row, file.outcome)
+    why = row.why or "; ".join(file.outcome.explained(row)[:1])
     there = not math.isnan(row.difference)
     return (
         Cell(about(row.quantity, row.name), ", ".join(h.series.column for h in file.columns_of(row))),
@@ -64,55 +58,28 @@ def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
     )
 
 
-def _factor(unit: str) -> float:
-    return math.degrees(1.0) if unit.startswith("rad") else 1.0
-
-
-def _shown_unit(unit: str) -> str:
-    return unit.replace("rad", "deg", 1) if unit.startswith("rad") else unit
-
-
-def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
-    """The curve of a row's worst column, and how far it is apart; of one without ours none."""
+def panels_of(file: DataOutcome, row: Comparison, points: int) -> tuple[Panel, ...]:
+    """The worst column of a row beside ours, and how far it is apart; none where nothing is of ours."""
     columns = [held for held in file.columns_of(row) if np.isfinite(held.gap).any()]
     if not columns:
-        return
+        return ()
     held = max(columns, key=lambda held: float(np.nanmax(held.share)))
-    meaning = held.series.meaning
     # Rows of a file are in any order; of two at the same value, which inputs tell apart, both are drawn.
     order = np.argsort(file.at, kind="stable")
     share = np.nan_to_num(held.share[order], nan=-1.0)
     at = order[np.asarray(fewer(share, points), dtype=np.intp)]
-    unit = "deg" if file.over.endswith("[rad]") else ""
-    over = file.over.replace("[rad]", "[deg]") if unit else file.over
-    x = numbers(file.at[at] * (math.degrees(1.0) if unit else 1.0), 9)
-    factor, words = _factor(meaning.unit), _shown_unit(meaning.unit)
-    look = {"symbol": "x", "color": OTHER, "size": 6}
-    given = {"x": x, "y": numbers(factor * held.series.values[at], 9), "name": "file", "mode": "markers"}
-    ours = {"x": x, "y": numbers(factor * held.ours[at], 9), "name": "pointcoord", "line": {"color": OURS}}
-    told = f"{plain(held.series.column)} ({meaning.words})"
-    layout = {"xaxis": axis(plain(over)), "yaxis": axis(f"[{words}]"), "showlegend": True}
-    yield Panel(f"{told}: {row.verdict}", (ours, given | {"marker": look}), layout)
-    gap = np.where(held.gap > 0.0, held.gap, np.nan)
-    limit = factor * file.outcome.factor * held.tolerance[at]
-    # A logarithm has no place for a difference or a tolerance of nothing.
-    difference = {
-        "x": x,
-        "y": numbers(factor * gap[at], 4),
-        "name": "difference",
-        "mode": "lines+markers",
-        "marker": {"size": 4},
-        "line": {"color": OURS, "width": 1},
-    }
-    tolerance = {
-        "x": x,
-        "y": numbers(np.where(limit > 0.0, limit, np.nan), 4),
-        "name": "tolerance",
-        "line": {"color": OTHER},
-    }
-    layout = {"xaxis": axis(plain(over)), "yaxis": axis(f"[{words}]", logarithmic=True)}
+    angle = file.over.endswith("[rad]")
+    over, x = plain(file.over.replace("[rad]", "[deg]")), file.at[at] * (math.degrees(1.0) if angle else 1.0)
+    factor, unit = degrees_of(held.series.meaning.unit)
+    told = f"{plain(held.series.column)} ({held.series.meaning.words})"
+    traces = (
+        curve("pointcoord", x, factor * held.ours[at], OURS),
+        marks("file", x, factor * held.series.values[at], OTHER),
+    )
+    gap, limit = factor * held.gap[at], factor * file.outcome.factor * held.tolerance[at]
     words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
-    yield Panel(words, (tolerance, difference), layout)
+    curves = panel(f"{told} over {over}: {row.verdict}", over, f"[{unit}]", traces)
+    return curves, gaps(words, over, x, gap, limit, unit)
 
 
 SECTION = Section("file", "The file beside the car", 15, _blocks)

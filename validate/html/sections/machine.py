@@ -7,7 +7,7 @@ from typing import Any
 
 from validate.html.run import Run
 from validate.html.section import Block, Section
-from validate.output.report import held_to
+from validate.output.report import held_to, pair_of
 from validate.output.table import Table
 from validate.plain_text import shown
 
@@ -28,15 +28,10 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 
 def _settings(run: Run) -> Iterator[tuple[str, str]]:
-    pairs = dict.fromkeys(
-        f"{outcome.solutions[0].formulation} and {outcome.solutions[1].formulation}"
-        for one in run.told
-        for outcome in one.examined.outcomes
-    )
-    if pairs:
+    if pairs := dict.fromkeys(map(pair_of, run.record.outcomes)):
         yield "compared", "; ".join(pairs)
-    if run.told:
-        yield "differences", held_to(run.factor)
+    if run.record.examined:
+        yield "differences", held_to(run.record.factor)
 
 
 def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

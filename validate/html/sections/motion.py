@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.effects.registry import ALWAYS
 from validate.closed_drawing import closed_drawing
+from validate.formulations.protocol import Solution
 from validate.html.plot import Plots
-from validate.html.run import Run, Told
+from validate.html.run import Drawn, Run
 from validate.html.section import PLOTLY, Block, Section, which
-from validate.html.sides import Side, sides
 from validate.html.wheel_angles import wheel_angles
 from validate.output.table import Table
 
@@ -59,12 +59,13 @@ def _blocks(run: Run) -> Sequence[Block]:
     return [*which(run), *blocks, *_closing(run)]
 
 
-def _of_scene(one: Told, scene: Scene, run: Run) -> Block:
-    models = sides(one)
+def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
+    models, instants = one.models, scene.instants
     topology = scene.mechanism.topology
     # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
-    reached = np.unique(np.concatenate([side.at for side in models])) if models else np.zeros(1, dtype=int)
-    at = reached[:: max(-(-len(reached) // run.frames), 1)]
+    given = np.isin(instants, np.concatenate([model.times for model in models])) if models else [True]
+    reached = np.flatnonzero(given)
+    at = instants[reached[:: max(-(-len(reached) // run.frames), 1)]]
     known = topology.with_defaults({name: np.array(p) for name, p in scene.mechanism.points.items()})
     points = [name for name in topology.points if name in known]
     number = {name: i for i, name in enumerate(points)}
@@ -76,7 +77,7 @@ def _of_scene(one: Told, scene: Scene, run: Run) -> Block:
         lines += zip(body, (*body[1:], body[0]), strict=True)
     up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
     data: dict[str, Any] = {
-        "times": [float(f"{time:.6g}") for time in scene.instants[at]],
+        "times": [float(f"{time:.6g}") for time in at],
         "points": points,
         "chassis": [number[name] for name in topology.chassis if name in number],
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
@@ -84,11 +85,14 @@ def _of_scene(one: Told, scene: Scene, run: Run) -> Block:
         "drawn": _rounded(np.stack([known[name] for name in points])),
         "closed": _closed(scene, known, points),
         "models": [
-            {"name": side.name, "frames": _frames(_places(scene, one.motion, side, known), points, at)}
-            for side in models
+            {
+                "name": m.formulation,
+                "frames": _frames(_places(scene, one.motion, m, known), m.times, points, at),
+            }
+            for m in models
         ],
     }
-    curves, why = wheel_angles(one, run.points)
+    curves, why = wheel_angles(one, models, run.points)
     return Spatial(
         one.examined.name,
         _caption(one, models) + (f"; {why}" if why else ""),
@@ -108,30 +112,35 @@ def _closed(scene: Scene, known: Mapping[str, Array], points: Sequence[str]) -> 
     return _rounded(np.stack([places.get(name, known[name]) for name in points])) if places else None
 
 
-def _places(scene: Scene, motion: Motion | None, side: Side, known: Mapping[str, Array]) -> dict[str, Array]:
-    """Of each point that the side has its places at all instants, (N, 3), NaN where it gives none.
+def _places(
+    scene: Scene, motion: Motion | None, model: Solution, known: Mapping[str, Array]
+) -> Mapping[str, Array]:
+    """Of each point that a model has its places at its instants, (N, 3).
 
     Points of the chassis are given to every model: they are where the chassis is moved to.
     """
-    times = scene.instants[side.at]
-    held: dict[str, Array] = {}
-    if motion is not None:
-        readout = motion.solved.readout
-        origin, still = readout.mechanism.origin, np.zeros((len(times), 3))
-        drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
-        shift = origin + sum(readout.chassis.states(times, 0), np.zeros(3))
-        held = {name: place + shift for name, place in readout.chassis.turned(times, [drawn])[0].items()}
-    places = {}
-    for name, own in (held | dict(side.numbers.get(PLACE, {}))).items():
-        places[name] = np.full((len(scene.instants), 3), np.nan)
-        places[name][side.at] = own
-    return places
+    if motion is None:
+        return model.numbers.get(PLACE, {})
+    readout = motion.solved.readout
+    origin, still = readout.mechanism.origin, np.zeros((len(model.times), 3))
+    drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
+    shift = origin + sum(readout.chassis.states(model.times, 0), np.zeros(3))
+    held = {name: place + shift for name, place in readout.chassis.turned(model.times, [drawn])[0].items()}
+    return {**held, **model.numbers.get(PLACE, {})}
 
 
-def _frames(places: Mapping[str, Array], points: Sequence[str], at: NDArray[np.intp]) -> Any:
-    """Of each instant a place for each point, None for one that is not given."""
-    nowhere = np.full((len(at), 3), np.nan)
-    rows = np.stack([places[name][at] if name in places else nowhere for name in points], axis=1)
+def _frames(places: Mapping[str, Array], times: Array, points: Sequence[str], shown: Array) -> Any:
+    """Of each instant that is shown a place for each point, None for one that is not given.
+
+    Args:
+        places: by point, at times, (N, 3).
+    """
+    rows = np.full((len(shown), len(points), 3), np.nan)
+    given = np.isin(shown, times)
+    at = np.searchsorted(times, shown[given])
+    for i, name in enumerate(points):
+        if name in places:
+            rows[given, i] = places[name][at]
     there = np.isfinite(rows).all(axis=-1)
     rounded = _rounded(np.nan_to_num(rows))
     return [
@@ -146,21 +155,14 @@ def _rounded(places: Array) -> Any:
 
 def _closing(run: Run) -> Iterator[Block]:
     """How far the points of the drawings move until they close."""
-    told = [one for one in run.drawn if one.examined.closing is not None]
-    movements = {one.examined.name: _movements(one) for one in told}
-    points = list(dict.fromkeys(name for moved in movements.values() for name in moved))
-    rows = tuple(
-        (name, *(_size(moved[point]) if point in moved else "" for point in points))
-        for name, moved in movements.items()
-    )
+    closed = {
+        one.examined.name: one.examined.closing for one in run.drawn if one.examined.closing is not None
+    }
+    moved: dict[str, Mapping[str, float]] = {name: one.get("movements", {}) for name, one in closed.items()}
+    points = list(dict.fromkeys(point for movements in moved.values() for point in movements))
+    rows = tuple((name, *(_size(one[p]) if p in one else "" for p in points)) for name, one in moved.items())
     if points:
         yield Table(("scene", *points), rows, caption=CLOSING, folded=True)
-
-
-def _movements(one: Told) -> Mapping[str, float]:
-    closing = one.examined.closing or {}
-    movements: Mapping[str, float] = closing.get("movements", {})
-    return movements
 
 
 def _size(movement: float) -> str:
@@ -168,9 +170,9 @@ def _size(movement: float) -> str:
     return f"{movement:.3g}" if movement > ROUNDING else "rounding"
 
 
-def _caption(one: Told, models: Sequence[Side]) -> str:
+def _caption(one: Drawn, models: Sequence[Solution]) -> str:
     lines = ("wide blue lines", "narrow orange lines")
-    told = [f"{side.name} in {line}" for side, line in zip(models, lines, strict=False)]
+    told = [f"{model.formulation} in {line}" for model, line in zip(models, lines, strict=False)]
     moved = one.examined.closing
     closing = ""
     if moved:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validate.html.plot import OTHER, OURS, Panel, Plots, axis, numbers
+from validate.ci.record import Record
+from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, marks, panel
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.output.report import findings_table, paper_sentence, paper_tables
@@ -24,7 +24,7 @@ DASHES = ("solid", "dash")
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [*(_of_paper(run.paper) if run.paper else ()), *_by_scene(run)]
+    return [*(_of_paper(run.record.paper) if run.record.paper else ()), *_by_scene(run.record)]
 
 
 def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
@@ -41,20 +41,16 @@ def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
 
 
 def _of_figure(figure: Figure) -> Panel:
-    layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{figure.unit}]")}
-    return Panel(f"Figure {figure.number}: {figure.words}, over time", tuple(_traces(figure)), layout)
+    words = f"Figure {figure.number}: {figure.words}, over time"
+    return panel(words, "time [s]", f"[{figure.unit}]", _traces(figure))
 
 
-def _traces(figure: Figure) -> Iterator[Mapping[str, Any]]:
-    times = numbers(figure.times, 6)
+def _traces(figure: Figure) -> Iterator[Trace]:
     for (name, values), dash in zip(figure.curves.items(), DASHES, strict=False):
-        line = {"color": OURS, "dash": dash}
-        yield {"x": times, "y": numbers(values, 6), "name": name, "mode": "lines", "line": line}
+        yield curve(name, figure.times, values, OURS, dash=dash)
     if figure.printed is not None:
         at, values = figure.printed
-        marker = {"symbol": "x", "color": OTHER, "size": 7}
-        shown = {"x": numbers(at, 6), "y": numbers(values, 6)}
-        yield {**shown, "name": "printed", "mode": "markers", "marker": marker}
+        yield marks("printed", at, values, OTHER)
 
 
 def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
@@ -63,34 +59,23 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
         ("omega", "rad/s", [(row.printed.omega, row.omega) for row in rows]),
         ("alpha", "rad/s^2", [(row.printed.alpha, row.alpha) for row in rows]),
     )
-    times = numbers(np.array([row.printed.time for row in rows]), 6)
+    times = [row.printed.time for row in rows]
     for words, unit, pairs in kinds:
-        values = np.array(pairs)
         for i, component in enumerate("xyz"):
-            layout = {"xaxis": axis("time [s]"), "yaxis": axis(f"[{unit}]")}
-            looks = (("printed", "x", OTHER), ("computed", "circle-open", OURS))
-            traces = tuple(
-                {
-                    "x": times,
-                    "y": numbers(values[:, side, i], 6),
-                    "name": name,
-                    "mode": "markers",
-                    "marker": {"symbol": symbol, "color": colour, "size": 7},
-                }
-                for side, (name, symbol, colour) in enumerate(looks)
-            )
-            yield Panel(f"{words}, {component}, over time", traces, layout)
+            printed, ours = np.array(pairs)[:, :, i].T
+            crosses = marks("printed", times, printed, OTHER)
+            rings = marks("computed", times, ours, OURS, "circle-open")
+            yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
 
 
-def _by_scene(run: Run) -> Iterator[Block]:
+def _by_scene(record: Record) -> Iterator[Block]:
     """What the formulas as printed get wrong."""
-    examined = () if run.record is None else run.record.examined
-    tried = [one.name for one in examined if one.printed is not None]
-    if run.record is not None and run.record.findings:
-        yield findings_table(run.record.findings)
+    tried = [one.name for one in record.examined if one.printed is not None]
+    if record.findings:
+        yield findings_table(record.findings)
     elif tried:
         yield Paragraph(f"The paper's printed formulas agree in {', '.join(tried)}.")
-    for one in examined:
+    for one in record.examined:
         if one.unprinted is not None:
             yield Paragraph(f"The formulas as printed cannot solve {one.name}: {one.unprinted.message}")
 

@@ -15,7 +15,8 @@ MOST = 100
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    read = [(one.examined, one.scene) for one in run.told if one.scene is not None]
+    scenes = run.record.scenes
+    read = [(one, scenes[one.name]) for one in run.record.examined if one.name in scenes]
     more = (
         f" The first {MOST} of {len(read)}; the data beside this page have all." if len(read) > MOST else ""
     )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from validate.ci.verdict import by_scene, complaints, disagreements, notes, undecided
+from validate.ci.verdict import by_scene, complaints, disagreements, notes, undecided, word
 from validate.exit_status import ExitStatus
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 
-VERDICTS = {ExitStatus.AGREE: "agrees", ExitStatus.DISAGREE: "disagrees"}
 # Lines of all scenes together, at most: there may be hundreds of scenes.
 LINES = 150
 
@@ -17,11 +16,11 @@ LINES = 150
 def _blocks(run: Run) -> Sequence[Block]:
     # What concerns the verdict goes first, and what several scenes have to say is said once.
     of = (disagreements, complaints, undecided, notes)
-    lines = [] if run.record is None else by_scene(run.record, *of)
+    lines = by_scene(run.record, *of)
     told = [Paragraph(line) for line in lines[:LINES]]
     if len(lines) > LINES:
         told.append(Paragraph(f"{len(lines) - LINES} more such lines are in the data beside this page."))
-    verdict = VERDICTS.get(run.status, "not tested")
+    verdict = word(run.status)
     if run.head.kind == "cost" and run.status is ExitStatus.AGREE:
         # Times compare nothing that could be right or wrong.
         verdict = "measured"
