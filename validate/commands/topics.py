@@ -15,6 +15,7 @@ PAGE = "README.md"
 TOPICS = {
     "scenes": (pointcoord, "scenes"),
     "mechanisms": (pointcoord, "mechanisms"),
+    "effects": (pointcoord, "effects"),
     "python": (pointcoord, ""),
     "models": (validate, "formulations"),
     "solvers": (validate, "solvers"),
