@@ -1,7 +1,7 @@
 """What a scene does not ask for is not computed: shown by counts of work, never by time."""
 
 from collections.abc import Callable
-from itertools import chain, combinations
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -21,15 +21,25 @@ from pointcoord.solve import assembly
 from pointcoord.solve.proven_path import inverses
 from validate.cars.paper_car import PAPER
 
-# None, each, every pair and all: what three need is what two of them need.
-SUBSETS = [*chain.from_iterable(combinations(EFFECTS, n) for n in range(3)), tuple(EFFECTS)]
+# None, each, every pair of kinds and all: what three need is what two of them need.
+KINDS = (
+    "velocity",
+    "acceleration",
+    "knuckle_rates",
+    "wheel_angles",
+    "steering_axis",
+    "damper",
+    "toe_by_travel",
+    "steering_axis_by_rack",
+)
+SUBSETS = [(), *((name,) for name in EFFECTS), *combinations(KINDS, 2), tuple(EFFECTS)]
 SAMPLES = 7
 COLLINEAR = mechanism_file("macpherson").topology("collinear", points=PAPER)
 POINTS = COLLINEAR.points
 MOVING = len(POINTS) - len(COLLINEAR.chassis)
 KNUCKLE = len(COLLINEAR.bodies["knuckle"])
 POWER_OF_TIME = {"mm": 0, "rad": 0, "mm/s": 1, "rad/s": 1, "mm/s^2": 2, "rad/s^2": 2}
-NEEDED = {name: max(POWER_OF_TIME[q.unit] for q in effect.quantities) for name, effect in EFFECTS.items()}
+NEEDED = {n: max(POWER_OF_TIME.get(q.unit, 0) for q in effect.quantities) for n, effect in EFFECTS.items()}
 OF_EVERY_POINT = {name for name, effect in EFFECTS.items() if any(q.of == "point" for q in effect.quantities)}
 
 

@@ -27,7 +27,8 @@ NO_EFFECT = "no effect"
 
 def choices(scene: Scene) -> dict[str, tuple[str, ...]]:
     """Which effects are asked for, by what a row says of it."""
-    had = scene.mechanism.effects
+    # Gradients are solved for at each instant, which no copy is like.
+    had = tuple(name for name in scene.mechanism.effects if not EFFECTS[name].way)
     return {
         NO_EFFECT: (),
         **{name: (name,) for name in had},
