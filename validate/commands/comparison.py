@@ -98,6 +98,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "that is not there yet is written, to be filled in",
     )
     parser.add_argument(
+        "--tables",
+        action="store_true",
+        help="compare tables that other programs printed of their own cars, in place of scenes: every column "
+        "with both models, to the last printed digit",
+    )
+    parser.add_argument(
         "--solver",
         metavar="MODULE:NAME",
         help="a solver of your own in the place of --first: a function, object or class that takes plain "
@@ -169,6 +175,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         MissingPackage: a formulation's packages are not there.
         OutputError: the results cannot be written.
     """
+    if options.tables:
+        # Most runs compare no table.
+        from validate.commands.tables import run as run_tables
+
+        return run_tables(options, console)
     if options.data is not None:
         # Most runs compare no file.
         from validate.commands.data import run as run_data
