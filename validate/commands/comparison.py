@@ -67,6 +67,12 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         description=DESCRIPTION,
     )
     add_options(parser)
+    parser.add_argument(
+        "--tables",
+        action="store_true",
+        help="compare tables that other programs printed of their own cars, in place of scenes: every column "
+        "with both models, to the last printed digit",
+    )
     add_report(parser)
     parser.set_defaults(run=run)
 
@@ -96,12 +102,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.toml",
         help="what the columns of --data are; not needed for files that pointcoord simulate -o writes; one "
         "that is not there yet is written, to be filled in",
-    )
-    parser.add_argument(
-        "--tables",
-        action="store_true",
-        help="compare tables that other programs printed of their own cars, in place of scenes: every column "
-        "with both models, to the last printed digit",
     )
     parser.add_argument(
         "--solver",
