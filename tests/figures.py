@@ -1,6 +1,8 @@
 """Writes measured figures into the pages that show them: what a command printed, when, and of which commit.
 
-    python tests/figures.py NAME [NAME ...]      names: agreement hard random bounds cost growth speed struts
+    python tests/figures.py NAME [NAME ...]
+
+Names: agreement, hard, random, bounds, cost, growth, speed, struts, tables.
 
 A figure stands in its page between two comments, `<!-- figure NAME -->` and `<!-- end -->`; what is between
 them is replaced, and nothing else is. Long ones (see `FIGURES`) take as long as their command.
@@ -132,6 +134,7 @@ FIGURES = {
         "pytest tests/benchmarks/speed.py -n 0 -p benchmark --benchmark-json {folder}/speed.json",
         _speed,
     ),
+    "tables": Figure("validate/published/README.md", "pointcoord validate --tables", _from(r"")),
     "struts": Figure(
         "validate/formulations/README.md",
         "tests.support.badly_drawn_struts",

@@ -24,7 +24,7 @@ def record(folder: Path) -> Record:
     facts["all"] |= {key: results.get(key) for key in ("exit_status", "verdict", "complete")}
     facts |= {f"scene {scene}": found for scene, found in scene_facts(results).items()}
     for table in results.get("published_tables", []):
-        facts[f"table {table['title']}"] = comparison_facts(table)
+        facts.setdefault(f"table {table['title']}", {}).update(comparison_facts(table))
     for finding in results.get("printed_formulas", []):
         facts[f"printed formula of {finding['quantity']} in {finding['scene']}"] = _worst(finding["worst"])
     if results.get("printed_tables"):
@@ -67,8 +67,9 @@ def _published(path: Path) -> dict[str, Fact]:
         return {}
     with path.open(encoding="utf-8", newline="") as stream:
         return {
-            f"{row['table']}, {row['over']} {row['at']}: {row['name']}": [float(row["computed"]), SOLVED]
+            f"{row['table']}, {row['over']} {row['at']}: {row['name']}": [float(row["pointcoord"]), SOLVED]
             for row in csv.DictReader(stream)
+            if row["pointcoord"]
         }
 
 

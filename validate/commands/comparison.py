@@ -67,6 +67,12 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         description=DESCRIPTION,
     )
     add_options(parser)
+    parser.add_argument(
+        "--tables",
+        action="store_true",
+        help="compare tables that other programs printed of their own cars, in place of scenes: every column "
+        "with both models, to the last printed digit",
+    )
     add_report(parser)
     parser.set_defaults(run=run)
 
@@ -169,6 +175,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         MissingPackage: a formulation's packages are not there.
         OutputError: the results cannot be written.
     """
+    if options.tables:
+        # Most runs compare no table.
+        from validate.commands.tables import run as run_tables
+
+        return run_tables(options, console)
     if options.data is not None:
         # Most runs compare no file.
         from validate.commands.data import run as run_data

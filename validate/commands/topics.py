@@ -20,6 +20,7 @@ TOPICS = {
     "models": (validate, "formulations"),
     "solvers": (validate, "solvers"),
     "results": (validate, "measured"),
+    "tables": (validate, "published"),
     "fit": (validate, "fitting"),
     "tests": (validate, "testing"),
     "ci": (validate, "ci"),

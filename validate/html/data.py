@@ -10,7 +10,7 @@ from validate.html.hard_cases import HardCases
 from validate.html.run import Run
 from validate.output.document import json_text
 from validate.output.table import csv_of
-from validate.published.tables import Published
+from validate.published.tables import MODELS, Published
 
 OF_COST = {
     "report.md": "the sentences and full tables",
@@ -31,7 +31,7 @@ WORDS = {
 """Every file that a report may write beside its page, and what it holds."""
 # Of the files of lines; a comparison's columns are what it is made of.
 NUMBERS = ("row", "over", "at", "column", "is", "unit", "given", "ours", "difference", "held_to")
-PUBLISHED = ("table", "over", "at", "quantity", "name", "unit", "printed", "computed")
+PUBLISHED = ("table", "over", "at", "quantity", "name", "unit", "printed", *MODELS)
 HARD = ("case", "value", "formulation", "outcome", "error", "bound", "unit", "reason")
 
 
@@ -70,16 +70,13 @@ def _numbers(run: Run) -> Iterator[Iterable[object]]:
 
 
 def _published(tables: Iterable[Published]) -> Iterator[Iterable[object]]:
+    """Numbers of printed tables in our units, those of columns whose rule is not known among them."""
     for one in tables:
-        outcome = one.found.outcome
-        for row in outcome.rows:
-            if row.verdict == "not given":
-                continue
-            sides = [s.numbers[row.quantity][row.name].reshape(len(s.times), -1) for s in outcome.solutions]
-            for i, at in enumerate(outcome.solutions[0].times):
-                for printed, computed in zip(sides[0][i], sides[1][i], strict=True):
-                    what = (one.table.title, one.found.over, float(at), row.quantity, row.name, row.unit)
-                    yield (*what, float(printed), float(computed))
+        for column in one.columns:
+            row = column.rows[0]
+            for at, printed, *ours in zip(one.at, column.printed, *column.ours, strict=True):
+                what = (one.table.title, one.over, float(at), row.quantity, row.name, row.unit)
+                yield (*what, float(printed), *map(float, ours))
 
 
 def _hard(hard: HardCases) -> Iterator[Iterable[object]]:

@@ -19,7 +19,7 @@ from validate.exit_status import ExitStatus, combined
 from validate.formulations.protocol import Accuracy, Solution
 from validate.html.hard_cases import HardCases
 from validate.output.document import Head
-from validate.output.report import file_data
+from validate.output.report import outcome_data
 from validate.published.tables import Published
 
 # Scenes that are drawn, and not only told in tables: the first ones, and so many more that do not agree.
@@ -123,7 +123,7 @@ class Run:
             found.append(self.hard.status)
         if self.cost is not None and not self.cost.measured:
             found.append(ExitStatus.NO_VERDICT)
-        if not all(one.found.outcome.agreed for one in self.published):
+        if not all(one.agreed for one in self.published):
             found.append(ExitStatus.DISAGREE)
         return combined(found)
 
@@ -131,7 +131,7 @@ class Run:
     def sentence(self) -> str:
         """The verdict in a sentence; what does not agree is named."""
         parts = [sentence(self.record)] if self.record.names else []
-        wrong = [one.table.title for one in self.published if not one.found.outcome.agreed]
+        wrong = [one.table.title for one in self.published if not one.agreed]
         if wrong:
             parts.append(f"other programs' tables disagree: {', '.join(wrong)}")
         if self.hard is not None:
@@ -160,7 +160,8 @@ class Run:
             results = self.cost.data()
         elif self.published:
             results["published_tables"] = [
-                {"title": one.table.title, "source": one.table.source} | file_data(one.found)
+                {"title": one.table.title, "source": one.table.source} | outcome_data(outcome)
                 for one in self.published
+                for outcome in one.outcomes
             ]
         return self.head.document(results, self.status, complete=True)

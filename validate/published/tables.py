@@ -1,62 +1,213 @@
-"""Printed tables of other programs, and the built-in car that they are about.
+"""Printed tables of other programs, and how far each of our two models is from every column.
 
-A table is a file of results with a map of its columns, as `pointcoord validate --data --map` takes them. What
-is shipped here are printed numbers, with their source and under which licence that is to be had.
+What is shipped here are printed numbers, with their source and under which licence that is to be had.
 """
 
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import nan
 from pathlib import Path
 
-from pointcoord import Scene
-from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.mapping import read_results
+import numpy as np
+from numpy.typing import NDArray
 
+from pointcoord import Scene
+from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
+from pointcoord.scene.scene_file import InputPart
+from validate.comparison.compare import SMALLEST, Comparison, Outcome
+from validate.formulations.protocol import Accuracy, Solution
+from validate.formulations.registry import formulation
+from validate.measured.reading import Columns, read_columns
+from validate.published.rules import Solved, rule_of
+from validate.tables.errors import FileError
+from validate.tables.units import factor_of
+
+Array = NDArray[np.float64]
 FOLDER = Path(__file__).parent
+MODELS = ("pointcoord", "absolute")
+NOT_HELD = "rule not known"
 
 
 @dataclass(frozen=True)
 class Table:
-    """A printed table.
+    """A printed table; `tables.toml` says what its entries mean.
 
     Attributes:
-        name: of its files in this folder. title: for people. scene: the built-in car that it is about.
-        source: where it was printed. note: what must be known to read it.
+        name: of its file in the folder. title: for people.
     """
 
     name: str
     title: str
     scene: str
+    drives: str
+    columns: Mapping[str, str]
     source: str
+    licence: str
     note: str = ""
+    left_out: str = ""
+    wheelbase: float = nan
+    accuracy: Mapping[str, float] = field(default_factory=dict)
+    open: Mapping[str, str] = field(default_factory=dict)
+
+    def scene_over(self, printed: Columns) -> Scene:
+        """The car with its driven input at the rows of the first column, which are its instants.
+
+        Raises:
+            FileError: the rows are not in even steps.
+        """
+        beside = FOLDER / f"{self.scene}.toml"
+        scene, over = Scene.load(beside if beside.exists() else self.scene), printed.values[0]
+        per = _factor(printed.units[0], scene.mechanism.topology.input_units[self.drives])
+        ends = {"start": float(over[0]), "stop": float(over[-1]), "samples": len(over)}
+        inputs = scene.inputs | {self.drives: InputPart(polynomial=(0.0, per))}
+        time = scene.time.model_copy(update=ends)
+        there = scene.model_copy(update={"time": time, "inputs": inputs})
+        # Instants are made of their ends, in another order of sums than the table's.
+        if np.abs(there.instants - over).max() > 1e-14 * np.abs(over).max():
+            raise FileError(printed.source, printed.names[0], "is not in even steps", "rows in even steps")
+        return there
+
+
+def tables() -> tuple[Table, ...]:
+    """Every table, in the order of `tables.toml`."""
+    known = tomllib.loads((FOLDER / "tables.toml").read_text(encoding="utf-8"))
+    return tuple(Table(name, **about) for name, about in known.items())
+
+
+@dataclass(frozen=True)
+class Column:
+    """A printed column beside ours.
+
+    Attributes:
+        name, unit: as printed. per: how many of our unit that is.
+        printed: (N,), in our unit. ours: likewise, of each model.
+        rows: the comparison with each. open: why they decide nothing; empty where they do.
+    """
+
+    name: str
+    unit: str
+    per: float
+    printed: Array
+    ours: tuple[Array, ...]
+    rows: tuple[Comparison, ...]
+    open: str
 
     @property
-    def files(self) -> tuple[Path, Path]:
-        """The table, and the map of its columns."""
-        return FOLDER / f"{self.name}.csv", FOLDER / f"{self.name}.toml"
-
-
-_KNOWN = tomllib.loads((FOLDER / "tables.toml").read_text(encoding="utf-8"))
-TABLES = tuple(Table(name, **about) for name, about in _KNOWN.items())
+    def verdict(self) -> str:
+        """What both models say together."""
+        if self.open:
+            return NOT_HELD
+        return "disagrees" if any(row.verdict == "disagrees" for row in self.rows) else "agrees"
 
 
 @dataclass(frozen=True)
 class Published:
-    """A printed table beside what the car gives at the same places."""
+    """A printed table beside what the car gives at the same places.
+
+    Attributes:
+        over: the first column, with its unit. at: its rows, (N,).
+        columns: every one beside it. outcomes: the comparison with each model, of those that decide.
+    """
 
     table: Table
-    found: DataOutcome
+    over: str
+    at: Array
+    columns: tuple[Column, ...]
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def agreed(self) -> bool:
+        """Whether both models give every number to its last digit."""
+        return all(outcome.agreed for outcome in self.outcomes)
 
 
 def compare_published() -> tuple[Published, ...]:
-    """Every table, held to its own printed digits."""
-    return tuple(Published(table, _compared(table)) for table in TABLES)
+    """Every table beside both models; raises what `compare_table` does."""
+    return tuple(map(compare_table, tables()))
 
 
-def _compared(table: Table) -> DataOutcome:
-    scene = Scene.load(table.scene)
-    data, map = table.files
-    measured = replace(read_results(str(data), str(map), scene), source=table.title)
-    return compare_results(measured, scene, table.scene)
+def compare_table(table: Table) -> Published:
+    """A table beside both models, held to its own printed digits.
+
+    Raises:
+        FormulationError: a model refuses the car; MissingPackage: it is not installed.
+        FileError: the table's rows are not in even steps.
+    """
+    printed = read_columns(str(FOLDER / f"{table.name}.csv"))
+    scene, over = table.scene_over(printed), printed.values[0]
+    solutions = [formulation(name).solve(scene) for name in MODELS]
+    solved = [_solved(table, over, scene, solution) for solution in solutions]
+    columns = tuple(_column(table, printed, i, solutions, solved) for i in range(1, len(printed.names)))
+    told = [f"{one.name} decides nothing: {one.open}" for one in columns if one.open]
+    notes = tuple(note for note in (table.note, *told) if note)
+    theirs = Solution(table.title, over, {}, Accuracy(np.ones(len(over))))
+    outcomes = tuple(
+        Outcome(
+            table.name, tuple(one.rows[k] for one in columns if not one.open), (theirs, solution), notes, ()
+        )
+        for k, solution in enumerate(solutions)
+    )
+    return Published(table, f"{printed.names[0]} [{printed.units[0]}]", over, columns, outcomes)
+
+
+def _solved(table: Table, over: Array, scene: Scene, solution: Solution) -> Solved:
+    of_car = {
+        name: solution.numbers[number.quantity.name][name]
+        for name, number in NUMBERS_OF_THE_CAR.items()
+        if name in solution.numbers.get(number.quantity.name, {})
+    }
+    return Solved(scene, {**solution.numbers["position"], **of_car}, over, table.wheelbase)
+
+
+def _column(
+    table: Table, printed: Columns, i: int, solutions: Sequence[Solution], solved: Sequence[Solved]
+) -> Column:
+    """A printed column beside both models.
+
+    Half a unit of the last digit is what printing rounds off; beside it stand what the table's own program
+    leaves out, and the error bound that a model states with a number. Of a rule no bound is added: beside
+    printed digits what models round is nothing, and a table in full has an accuracy.
+    """
+    name, unit, over = printed.names[i], printed.units[i], printed.values[0]
+    what = table.columns[name]
+    rule = rule_of(what)
+    per = _factor(unit, rule.unit)
+    theirs = per * printed.values[i]
+    off = per * (0.5 * printed.steps[i] + table.accuracy.get(name, 0.0))
+    ours = tuple(rule.of(one) for one in solved)
+    rows = []
+    for values, solution in zip(ours, solutions, strict=True):
+        gap = np.abs(values - theirs)
+        # What does not exist is no distance where the rule is not known, and the worst one where it is.
+        gap[np.isnan(gap)] = 0.0 if name in table.open else np.inf
+        allowed = off + solution.accuracy.claims.get(rule.quantity, {}).get(what, 0.0)
+        share = gap / (allowed + SMALLEST)
+        worst = int(np.argmax(share))
+        rows.append(
+            Comparison(
+                scene=table.name,
+                first=table.title,
+                second=solution.formulation,
+                quantity=rule.quantity,
+                name=what,
+                unit=rule.unit,
+                difference=float(gap[worst]),
+                tolerance=float(allowed[worst]),
+                share=float(share[worst]),
+                instant=float(over[worst]),
+                verdict="agrees" if share[worst] <= 1.0 else "disagrees",
+                rests_on=table.title,
+                part=float(off[worst] / allowed[worst]),
+                place=f"{printed.names[0]} {over[worst]:g} {printed.units[0]}",
+            )
+        )
+    return Column(name, unit, per, theirs, ours, tuple(rows), table.open.get(name, ""))
+
+
+def _factor(unit: str, ours: str) -> float:
+    """How many of our unit one of a table's is; NaN, which agrees with nothing, where it is no such unit."""
+    factor = 1.0 if unit == ours else factor_of(unit, ours)
+    return nan if factor is None else factor

@@ -281,7 +281,7 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
         assert f">{Scene.load(name).title}</td>" in unescape(text)
     # A line for each printed number: 11 rows of 4 angles, 21 of 2.
     with (built_in / "published.csv").open(newline="") as stream:
-        assert len(list(csv.DictReader(stream))) == 11 * 4 + 21 * 2
+        assert len(list(csv.DictReader(stream))) == 11 * (5 + 5) + 21 * 6 + 10 + (11 + 17) * 3
 
 
 def test_how_far_each_point_moves_until_the_drawing_closes_is_on_the_page(bounce: Drawn) -> None:

@@ -1,0 +1,194 @@
+"""Tables that other programs printed: both models give every number, and a wrong digit is found."""
+
+import json
+import shutil
+import tomllib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import jsonschema
+import lotus_front
+import numpy as np
+import pytest
+from mechanism_checks import table as printed_in_full
+
+from pointcoord import Scene
+from validate.cli import main
+from validate.measured.reading import read_columns
+from validate.output.document import schema_text
+from validate.published import tables as room
+from validate.published.rules import RULES
+from validate.published.tables import FOLDER, MODELS, Published, compare_published, compare_table, tables
+
+TABLES = {table.name: table for table in tables()}
+HELD = [
+    (name, column) for name, table in TABLES.items() for column in table.columns if column not in table.open
+]
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[str, Published]:
+    return {one.table.name: one for one in compare_published()}
+
+
+@pytest.fixture
+def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The room's files, to be spoilt."""
+    target = tmp_path / "tables"
+    shutil.copytree(FOLDER, target, ignore=shutil.ignore_patterns("*.py", "__pycache__"))
+    monkeypatch.setattr(room, "FOLDER", target)
+    return target
+
+
+def planted(file: Path, name: str, by: float, row: int = 0) -> None:
+    """Add to a printed number, in its last digits."""
+    head, *lines = file.read_text().splitlines()
+    place = [cell.partition(" [")[0] for cell in head.split(",")].index(name)
+    cells = lines[row].split(",")
+    decimals = len(cells[place].partition(".")[2])
+    cells[place] = f"{float(cells[place]) + by:.{decimals}f}"
+    lines[row] = ",".join(cells)
+    file.write_text("\n".join([head, *lines]) + "\n")
+
+
+def test_both_models_give_every_column_whose_rule_is_known_to_its_last_digit(
+    found: dict[str, Published],
+) -> None:
+    assert set(found) == set(TABLES)
+    assert all(one.agreed for one in found.values())
+    for name, column in HELD:
+        (one,) = (c for c in found[name].columns if c.name == column)
+        assert [row.second for row in one.rows] == list(MODELS)
+        for row in one.rows:
+            own = TABLES[name].accuracy.get(column, 0.0) * one.per
+            # What a model states of itself is nothing beside printed digits, and no more than thrice what a
+            # table in full may be off.
+            assert row.part > (0.25 if own else 1.0 - 1e-6)
+            # A column of many rounded numbers uses most of what rounding allows somewhere.
+            assert own or len(found[name].at) < 10 or 0.5 < row.share <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "apart"),
+    [
+        ("lotus-bump", "damper ratio", 5.14e-4),
+        ("lotus-bump-lengths", "roll centre height to body", 0.0623),
+        ("lotus-bump-lengths", "roll centre height to ground", 0.0623),
+        ("lotus-steering", "ackermann", 0.0391),
+        ("lotus-static", "roll centre height", 0.0272),
+    ],
+)
+def test_a_column_whose_rule_is_not_known_decides_nothing_and_its_distance_is_told(
+    name: str, column: str, apart: float, found: dict[str, Published]
+) -> None:
+    (one,) = (c for c in found[name].columns if c.name == column)
+    assert one.verdict == "rule not known"
+    assert [row.difference for row in one.rows] == pytest.approx([apart] * 2, rel=2e-3)
+    assert any(column in note and one.open in note for note in found[name].outcomes[0].notes)
+    assert {column for name, table in TABLES.items() for column in table.open} == {
+        *("damper ratio", "roll centre height to body", "roll centre height to ground"),
+        *("ackermann", "roll centre height"),
+    }
+
+
+@pytest.mark.parametrize(("name", "column"), HELD)
+def test_one_wrong_digit_makes_its_column_disagree_and_no_other(name: str, column: str, copy: Path) -> None:
+    file, accuracy = copy / f"{name}.csv", TABLES[name].accuracy.get(column)
+    columns = read_columns(str(file))
+    row = len(columns.rows) // 3
+    # One unit of the last digit; of numbers in full the first digit that their accuracy answers for.
+    step = columns.steps[columns.names.index(column), row] if accuracy is None else 5.0 * accuracy
+    planted(file, column, step, row)
+    spoilt = compare_table(TABLES[name])
+    assert not spoilt.agreed
+    assert [one.name for one in spoilt.columns if one.verdict == "disagrees"] == [column]
+    for found in next(one for one in spoilt.columns if one.name == column).rows:
+        assert found.verdict == "disagrees"
+        assert found.instant == columns.values[0, row]
+
+
+def test_a_wrong_digit_ends_the_program_with_status_1_and_is_named_in_words_json_and_junit(
+    copy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    json_file, junit = tmp_path / "results.json", tmp_path / "junit.xml"
+    words = ["validate", "--tables", "--json", str(json_file), "--junit", str(junit)]
+    assert main(words) == 0
+    assert f"{len(HELD)} of {len(HELD)} printed columns agree" in capsys.readouterr().out
+    planted(copy / "lotus-bump-lengths.csv", "damper travel", 0.01)
+    assert main(words) == 1
+    said = capsys.readouterr().out
+    assert f"{len(HELD) - 1} of {len(HELD)} printed columns agree" in said
+    assert "disagrees: Lotus: lengths over bump, damper travel" in said
+    (line,) = (line for line in said.splitlines() if "DISAGREES" in line)
+    assert line.split()[:2] == ["damper", "travel"]
+    assert "bump -37.5 mm" in line
+    content = json.loads(json_file.read_text())
+    jsonschema.validate(content, json.loads(schema_text()))
+    rows = [row for one in content["scenes"] for pair in one["comparisons"] for row in pair["rows"]]
+    assert {(row["scene"], row["name"]) for row in rows if row["verdict"] == "disagrees"} == {
+        ("lotus-bump-lengths", "damper_travel")
+    }
+    failures = [
+        case.get("name") for case in ElementTree.parse(junit).iter("testcase") if len(case.findall("failure"))
+    ]
+    assert failures == ["damper_travel"] * 2
+
+
+def test_a_car_drawn_otherwise_is_found_by_both_models(copy: Path) -> None:
+    scene = copy / "lotus-front.toml"
+    scene.write_text(
+        scene.read_text().replace("damper_top       = [-10, 372, 356]", "damper_top = [-10, 372, 357]")
+    )
+    spoilt = {one.table.name: one for one in compare_published() if not one.agreed}
+    assert set(spoilt) == {"lotus-bump-lengths"}
+    for outcome in spoilt["lotus-bump-lengths"].outcomes:
+        assert [row.name for row in outcome.disagreements] == ["damper_travel"]
+
+
+def test_a_row_at_another_place_than_its_first_column_says_is_refused_in_a_line(
+    copy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    planted(copy / "lotus-bump.csv", "bump", 1.0, 3)
+    assert main(["validate", "--tables"]) == 2
+    error = capsys.readouterr().err
+    assert "lotus-bump.csv: bump: is not in even steps" in error
+    assert len(error.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    "words", [["steer"], ["--first", "absolute"], ["--tolerance-factor", "2"], ["--fail-fast"]]
+)
+def test_what_is_about_scenes_is_refused_beside_tables(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["validate", "--tables", *words]) == 2
+    assert f"leave out {words[0]}" in capsys.readouterr().err
+
+
+def test_every_column_has_a_meaning_and_every_table_a_source_and_a_licence() -> None:
+    every = {number for table in TABLES.values() for number in table.columns.values()}
+    assert set(RULES) <= every
+    for name, table in TABLES.items():
+        assert set(read_columns(str(FOLDER / f"{name}.csv")).names[1:]) == set(table.columns)
+        assert set(table.open) | set(table.accuracy) <= set(table.columns)
+        assert table.source
+        assert table.licence
+    assert {file.stem for file in FOLDER.glob("*.csv")} == set(TABLES)
+
+
+def test_the_numbers_are_those_that_are_written_down_elsewhere_of_the_same_sources() -> None:
+    bump, steering = (
+        read_columns(str(FOLDER / f"lotus-{name}.csv")).values.T for name in ("bump", "steering")
+    )
+    assert np.array_equal(bump[:, :5], lotus_front.BUMP)
+    assert np.array_equal(steering[:, [0, 1, 3]], lotus_front.STEERING)
+    for name in ("five_link", "trailing_arm"):
+        rows = np.array(printed_in_full(f"vdsim_{name}_rear")["table"], dtype=float)
+        here = read_columns(str(FOLDER / f"vdsim-{name.replace('_', '-')}.csv")).values.T
+        assert np.array_equal(here, rows[:, [0, 2, 3, 4]])
+    car = tomllib.loads((FOLDER / "lotus-front.toml").read_text())["mechanism"]
+    built_in = Scene.load("double-wishbone").mechanism
+    assert {name: tuple(place) for name, place in car["points"].items() if name in lotus_front.POINTS} == (
+        lotus_front.POINTS
+    )
+    assert car["wheel_radius"] == built_in.wheel_radius == lotus_front.ROLLING_RADIUS

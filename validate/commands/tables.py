@@ -1,0 +1,92 @@
+"""`pointcoord validate --tables`: what other programs printed, beside both models."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+
+from validate.ci.record import Record
+from validate.commands.usage import result_files
+from validate.comparison.examined import Examined
+from validate.errors import UsageError
+from validate.exit_status import ExitStatus
+from validate.output.console import Console
+from validate.output.document import Head, Journal
+from validate.output.report import counted_as, with_unit
+from validate.output.table import Cell, Part, Table
+from validate.published.tables import MODELS, NOT_HELD, Column, Published, compare_published, tables
+
+# Options that are about scenes or files.
+NOT_WITH = (
+    *("first", "second", "data", "map", "solver", "accuracy", "traceback", "solver_timeout", "in_process"),
+    *("scenes_dir", "fail_fast", "save_baseline", "baseline", "report"),
+)
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Compare every printed table.
+
+    Raises:
+        UsageError: an option is about scenes or files.
+        OutputError: the results cannot be written.
+        MissingPackage, FormulationError: see `compare_published`.
+    """
+    given = [
+        f"--{name.replace('_', '-')}" for name in NOT_WITH if getattr(options, name) not in (None, False)
+    ]
+    if options.tolerance_factor != 1.0:
+        given.append("--tolerance-factor")
+    if options.scenes or given:
+        what = ", ".join((*options.scenes, *given))
+        raise UsageError(f"--tables is about printed tables and their own cars; leave out {what}")
+    targets = result_files(options, (), console)
+    targets.require_writable()
+    record = Record([table.name for table in tables()])
+    journal = Journal(options.json, Head.of("validate", options.command, options.timings), console)
+
+    def finished() -> str:
+        return f"{len(record.examined)} of {counted_as(len(record.names), 'table')}"
+
+    with (
+        journal.closing(record.data, lambda: record.examined, finished) as ending,
+        targets.closing(record, console),
+    ):
+        found = compare_published()
+        for one in found:
+            record.add(Examined(one.table.name, one.table.title, one.outcomes, solved=MODELS))
+            console.show((*_parts(one), ""))
+        console.say(_sentence([column for one in found for column in one.columns]))
+        ending.status = record.status
+    return ending.status
+
+
+def _parts(one: Published) -> Iterator[Part]:
+    """A table's columns, where it comes from, and what is not known of it or left out."""
+    table = one.table
+    yield f"{table.title}: {counted_as(len(one.at), 'row')} over {one.over}"
+    head = ("column", *MODELS, "allowed", "at", "verdict")
+    yield Table(head, tuple(tuple(_cells(column)) for column in one.columns), indent=2)
+    yield f"  source: {table.source}; licence: {table.licence}"
+    yield from (f"  note: {note}" for note in one.outcomes[0].notes)
+    if table.left_out:
+        yield f"  left out: {table.left_out}"
+
+
+def _cells(column: Column) -> Iterator[str | Cell]:
+    """The largest distance of each model, in the printed unit."""
+    worst = max(column.rows, key=lambda row: row.share)
+    yield column.name
+    yield from (with_unit(row.difference / column.per, "", 2) for row in column.rows)
+    yield with_unit(worst.tolerance / column.per, column.unit, 2)
+    yield worst.place
+    word = column.verdict.upper() if column.verdict == "disagrees" else column.verdict
+    yield Cell(word, verdict=column.verdict)
+
+
+def _sentence(columns: list[Column]) -> str:
+    held = [column for column in columns if not column.open]
+    wrong = [f"{column.rows[0].first}, {column.name}" for column in held if column.verdict == "disagrees"]
+    parts = [f"{len(held) - len(wrong)} of {counted_as(len(held), 'printed column')} agree to the last digit"]
+    parts += [f"disagrees: {'; '.join(wrong)}"] if wrong else []
+    parts.append(f"{NOT_HELD}: {len(columns) - len(held)}")
+    return f"{'; '.join(parts)}."
