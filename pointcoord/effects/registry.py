@@ -48,6 +48,24 @@ NUMBERS_OF_THE_CAR: Mapping[str, CarNumber | NumberAlong] = {
 }
 """Numbers of a car, by their names."""
 
+READ_FIRST = (
+    "travel",
+    "camber",
+    "camber_by_travel",
+    "toe",
+    "toe_by_travel",
+    "toe_by_rack",
+    "caster",
+    "kingpin",
+    "half_track_change",
+    "recession",
+    "kingpin_offset",
+    "mechanical_trail",
+    "damper_length",
+    "damper_length_by_travel",
+)
+"""The numbers that a table shows unless others are asked for, as far as a car has them."""
+
 ANGLES: Mapping[str, Angle] = {
     name: number for name, number in NUMBERS_OF_THE_CAR.items() if isinstance(number, Angle)
 }

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SceneError, simulate
-from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR, READ_FIRST
 from pointcoord.wording import meant
 from validate.commands.motion import comment, how_many
 from validate.commands.usage import (
@@ -34,23 +34,6 @@ Array = NDArray[np.float64]
 
 ENDINGS = (".csv", ".md")
 ROWS = 21
-# What is shown unless something else is asked for, as far as the car has it.
-USUAL = (
-    "travel",
-    "camber",
-    "camber_by_travel",
-    "toe",
-    "toe_by_travel",
-    "toe_by_rack",
-    "caster",
-    "kingpin",
-    "half_track_change",
-    "recession",
-    "kingpin_offset",
-    "mechanical_trail",
-    "damper_length",
-    "damper_length_by_travel",
-)
 DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5}
 
 DESCRIPTION = """\
@@ -137,7 +120,7 @@ def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
         )
     if options.number:
         return list(dict.fromkeys(options.number))
-    return known if options.all else [number for number in USUAL if number in known]
+    return known if options.all else [number for number in READ_FIRST if number in known]
 
 
 def _columns(

@@ -8,11 +8,18 @@ import pytest
 
 import pointcoord
 from pointcoord.effects import registry
+from pointcoord.effects.car_number import CarNumbers
+from pointcoord.effects.effect import Effect
+from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism.structure import PAIR_ROLES
 
 PACKAGE = Path(pointcoord.__file__).parent
 REGISTRY = Path(registry.__file__)
+
+
+def is_base(effect: Effect) -> bool:
+    return isinstance(effect, CarNumbers)
 
 
 def own_files() -> dict[Path, str]:
@@ -30,6 +37,9 @@ def own_files() -> dict[Path, str]:
 OWN = own_files()
 # A kind of effects, in a file of its own, may name the quantity that all of its kind give.
 KINDS = {
+    PACKAGE / "effects" / "gradients.py",
+}
+KINDS |= {
     PACKAGE.parent / Path(*kind.__module__.split(".")).with_suffix(".py")
     for one in (*EFFECTS.values(), *NUMBERS_OF_THE_CAR.values())
     for kind in type(one).__mro__
@@ -58,8 +68,10 @@ def named(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def test_every_effect_has_a_file_of_its_own() -> None:
-    assert sorted(OWN.values()) == sorted(EFFECTS)
-    assert len(OWN) == len(EFFECTS)
+    """But gradients, which one file makes of all that they are gradients of."""
+    made = {gradients(effect, way).name for effect in EFFECTS.values() for way in WAYS if is_base(effect)}
+    assert sorted(OWN.values()) == sorted(EFFECTS.keys() - made)
+    assert len(OWN) == len(EFFECTS) - len(made)
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(PACKAGE)))
