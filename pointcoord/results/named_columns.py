@@ -30,9 +30,9 @@ def number_columns(samples: Samples) -> Iterator[tuple[str, Array]]:
     for quantity, channel in samples.numbers.items():
         unit = QUANTITIES[quantity].unit
         for name, array in channel.items():
-            if unit == "rad":
+            if unit.startswith("rad") and QUANTITIES[quantity].of == "car":
                 # Users read angles in degrees.
-                yield f"{quantity}.{name} [deg]", np.degrees(array)
+                yield f"{quantity}.{name} [{unit.replace('rad', 'deg', 1)}]", np.degrees(array)
             elif QUANTITIES[quantity].of == "car":
                 yield f"{quantity}.{name} [{unit}]", array
             else:

@@ -59,7 +59,7 @@ def test_the_main_job_prints_every_scene_and_ends_with_0(capsys: pytest.CaptureF
     (warning,) = err.splitlines()
     assert warning.startswith(f"pointcoord: warning: {', '.join(PAPER_SCENES)}: closing the drawing moves ")
     head, blank, columns, *lines = out.splitlines()
-    assert (head, blank) == ("pointcoord and absolute; pointcoord-newton and absolute: 21 scenes", "")
+    assert (head, blank) == ("pointcoord and absolute; pointcoord-newton and absolute: 22 scenes", "")
     line = re.compile(r"(\S+) +agrees +\d+\.\d s +\d+%  .* at .* s(, .*)?")
     scenes = [found[1] for one in lines[: len(DEFAULT_SCENES)] if (found := line.fullmatch(one))]
     assert scenes == list(DEFAULT_SCENES)
@@ -263,6 +263,8 @@ def test_every_kind_of_file_gives_back_the_same_bits(
                 columns[f"{quantity}.{name}.{axis} [{unit}]"] = array[:, i]
     for name, angle in motion.wheel.items():
         columns[f"wheel.{name} [deg]"] = np.degrees(angle)
+    for name, length in motion.dimension.items():
+        columns[f"dimension.{name} [mm]"] = length
     assert list(rows[0]) == list(arrays) == list(columns)
     assert "position.wheel_centre.x [mm]" in columns
     for name, column in columns.items():
