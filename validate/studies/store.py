@@ -22,7 +22,7 @@ from pathlib import Path
 
 from validate.errors import UsageError
 from validate.extras import needed
-from validate.output.files import unwritable, write_content, write_whole
+from validate.output.files import remove_left_over, unwritable, write_content, write_whole
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
 
@@ -127,6 +127,7 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
     """
     needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
+    remove_left_over(folder)
     new, there = not folder.exists(), _found(folder)
     # A run that ended before anything was recorded left nothing to be held to.
     if there is not None and there.files():
