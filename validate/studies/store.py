@@ -127,8 +127,9 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
     """
     needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
-    remove_left_over(folder)
-    new, there = not folder.exists(), _found(folder)
+    new, there = not os.path.exists(folder), _found(folder)
+    if not new:
+        remove_left_over(folder)
     # A run that ended before anything was recorded left nothing to be held to.
     if there is not None and there.files():
         _require_same(there, store)
