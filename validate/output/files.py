@@ -74,7 +74,7 @@ def remove_left_over(folder: Path) -> None:
     """
     for path in folder.glob(PART.format("*")):
         # Gone meanwhile, another user's, being written, or on a disk that knows no locks: it stays.
-        with suppress(OSError), path.open("rb") as stream:
+        with suppress(OSError), path.open("r+b") as stream:  # network disks lock only what can be written
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
             path.unlink()
 
