@@ -1,8 +1,8 @@
 """The first lines of the program `pointcoord`, which need nothing but Python itself.
 
-The solver and its libraries take most of a second to import. Ctrl-C is one line in that time too, and so is
-a `validate` that another distribution has put in the place of ours. The solver does not depend on what
-validates it: the program behind these lines is looked up by its name, as a shell would.
+The solver and its libraries take most of a second to import. Ctrl-C or SIGTERM is one line in that time too,
+and so is a `validate` that another distribution has put in the place of ours. The solver does not depend on
+what validates it: the program behind these lines is looked up by its name, as a shell would.
 """
 
 from __future__ import annotations
@@ -15,20 +15,26 @@ from types import FrameType
 from typing import NoReturn
 
 NAME = "pointcoord"
-WRONG_INPUT, NOT_FINISHED, INTERRUPTED = 2, 4, 130
+WRONG_INPUT, NOT_FINISHED = 2, 4
+# What ends a program, each by a word for it, and what Python does about it; a parent may have it ignored.
+SIGNALS = {
+    signal.SIGINT: ("interrupted", signal.default_int_handler),
+    signal.SIGTERM: ("terminated", signal.SIG_DFL),
+}
 
 
 def main() -> int:
     """Run the program; returns its exit status, see `validate.exit_status`."""
     _open_closed_descriptors()
-    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if usual:
-        signal.signal(signal.SIGINT, _interrupted)
+    ours = [one for one, (_, usual) in SIGNALS.items() if signal.getsignal(one) is usual]
+    for one in ours:
+        signal.signal(one, _interrupted)
     try:
         validate = importlib.import_module("validate")
         if getattr(validate, "DISTRIBUTION", None) != NAME:
             return _said(not_ours(), WRONG_INPUT)
         cli = importlib.import_module("validate.cli")
+        terminated = importlib.import_module("validate.exit_status").terminated
     except ImportError as error:
         if (error.name or "").partition(".")[0] == "validate":
             return _said(not_ours(), WRONG_INPUT)
@@ -37,12 +43,12 @@ def main() -> int:
         return _said(f"cannot start: {error}; try: pip install --force-reinstall {NAME}", NOT_FINISHED)
     except MemoryError:
         return _said("cannot start: out of memory", NOT_FINISHED)
-    if usual:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    for one in ours:
+        signal.signal(one, signal.default_int_handler if one == signal.SIGINT else terminated)
     status = int(cli.main())
-    if usual:
+    for one in ours:
         # All is written: the end of the interpreter need not be interrupted.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(one, signal.SIG_IGN)
     return status
 
 
@@ -55,8 +61,8 @@ def _open_closed_descriptors() -> None:
 
 def _interrupted(number: int, frame: FrameType | None) -> NoReturn:
     # At once: a library that is being imported may take an exception for a fault of its own.
-    _said("interrupted; nothing is written", INTERRUPTED)
-    os._exit(INTERRUPTED)
+    word, _ = SIGNALS[signal.Signals(number)]
+    os._exit(_said(f"{word}; nothing is written", 128 + number))
 
 
 def _said(message: str, status: int) -> int:

@@ -5,17 +5,32 @@ Every message says what is wrong, where, the value, what is allowed and what to 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
+
+# No name of ours is longer, and few folders and files are.
+LONGEST = 60
+MARKS = "'\":;,)]"
+_LONGER = re.compile(rf"[^\s/]{{{LONGEST + 1},}}")
 
 
 def visible(text: str) -> str:
     r"""The text with each character that does not print as its escape, such as \x1b, \n or \u202e.
 
     These are the controls, the marks that turn the direction of writing, the separators but for the space,
-    and halves of characters, which file names may hold. What prints stays as it is.
+    and halves of characters, which file names may hold. What prints stays as it is, but of a word, or a part
+    of a path, that is longer than LONGEST only the beginning is there.
     """
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    escaped = "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+    return _LONGER.sub(_beginning, escaped)
+
+
+def _beginning(found: re.Match[str]) -> str:
+    """The beginning of a long word, and the marks of the sentence behind it."""
+    word = found[0].rstrip(MARKS)
+    marks = found[0][len(word) :]
+    return (word if len(word) <= LONGEST else word[: LONGEST - 3] + "...") + marks[:3]
 
 
 class PointcoordError(Exception):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-LONGEST = 60
+from pointcoord.errors import LONGEST
 
 
 def shown(value: object) -> str:

@@ -2,7 +2,7 @@
 
 import sys
 
-from validate.cli import main
+from pointcoord.__main__ import main
 
 if __name__ == "__main__":
     sys.exit(main())

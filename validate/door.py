@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pointcoord import PointcoordError
 from validate.comparison.examined import told_failure
 from validate.errors import UsageError
-from validate.exit_status import ExitStatus
+from validate.exit_status import ExitStatus, of_interruption
 from validate.extras import MissingPackage
 from validate.formulations.protocol import FormulationError
 from validate.output.console import Console
@@ -45,8 +45,10 @@ def guarded(action: Callable[[Console], ExitStatus], program: str = "pointcoord"
 
 def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | None:
     """Status and message of an error; None for the end that the interpreter itself was asked for."""
-    if any(isinstance(one, KeyboardInterrupt) for one in _chain(error)):
-        return ExitStatus.INTERRUPTED, f"interrupted; {'; '.join(console.written) or 'nothing is written'}"
+    for one in _chain(error):
+        if isinstance(one, KeyboardInterrupt):
+            status = of_interruption(one)
+            return status, f"{status.verdict}; {'; '.join(console.written) or 'nothing is written'}"
     for kind, status in MEANINGS:
         if isinstance(error, kind):
             return status, str(error)

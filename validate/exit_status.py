@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import IntEnum
+from types import FrameType
+from typing import NoReturn
 
 
 class ExitStatus(IntEnum):
@@ -15,6 +17,7 @@ class ExitStatus(IntEnum):
     NO_VERDICT = 3
     NOT_FINISHED = 4
     INTERRUPTED = 130
+    TERMINATED = 143
 
     @property
     def verdict(self) -> str:
@@ -29,6 +32,7 @@ MEANINGS = {
     ExitStatus.NO_VERDICT: "no verdict: a scene is refused, is not its baseline's, or tests nothing",
     ExitStatus.NOT_FINISHED: "could not finish or write: a full disk, no memory, an error of the program",
     ExitStatus.INTERRUPTED: "interrupted by Ctrl-C",
+    ExitStatus.TERMINATED: "ended by SIGTERM, as a cancelled job is; all else as after Ctrl-C",
 }
 
 # The first of these that any scene has is the status of the run. A disagreement is news whatever became of
@@ -47,9 +51,23 @@ HELP = "\n".join(
         *(f"  {status.value:>3}  {meaning}" for status, meaning in MEANINGS.items()),
         "A run of several scenes ends with the first of "
         f"{', '.join(str(status.value) for status in ORDER)} that one of them has; with 4 if its results\n"
-        "cannot be written, and with 130 if it is interrupted.",
+        "cannot be written, and with 130 or 143 if it is interrupted.",
     )
 )
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM: everything ends as it does by Ctrl-C."""
+
+
+def terminated(number: int, frame: FrameType | None) -> NoReturn:
+    """What the program does about SIGTERM."""
+    raise Terminated
+
+
+def of_interruption(error: KeyboardInterrupt) -> ExitStatus:
+    """The status of a run that a signal ends."""
+    return ExitStatus.TERMINATED if isinstance(error, Terminated) else ExitStatus.INTERRUPTED
 
 
 def combined(statuses: Iterable[ExitStatus]) -> ExitStatus:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from pointcoord.errors import visible
+
 
 def shown(text: str) -> str:
     """Text on one line in which nothing acts on a terminal: control characters are shown as escapes."""
@@ -25,5 +27,5 @@ def gathered(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
 
 
 def one_line(message: str) -> str:
-    """A message without its line breaks."""
-    return shown(" ".join(message.split()))
+    """A message without its line breaks, and with no word that is longer than a line."""
+    return visible(" ".join(message.split()))

@@ -40,11 +40,13 @@ DAMAGED = (
     ValueError,
     EOFError,
     AttributeError,
-    KeyError,
+    LookupError,
     TypeError,
+    ArithmeticError,
     MemoryError,  # a size that was never written
     RuntimeError,  # a password
-    TokenError,  # an array whose header is no Python
+    SyntaxError,  # an array whose header is no Python
+    TokenError,  # likewise
     zipfile.BadZipFile,
     zlib.error,
 )
@@ -120,7 +122,7 @@ def unpacked(data: bytes, what: str) -> Content:
         return _content(json.loads(text), found, what)
     except MapError:
         raise
-    except (KeyError, ValueError, TypeError, PointcoordError) as error:
+    except (*DAMAGED, PointcoordError) as error:
         raise MapError(what, f"does not hold a whole map: {error}", ALLOWED) from error
 
 

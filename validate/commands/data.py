@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import os
 
 from pointcoord import Scene
@@ -23,7 +22,7 @@ from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.measured.comparing import DataOutcome, compare_results
-from validate.measured.mapping import map_to_fill_in, read_results
+from validate.measured.mapping import FARTHEST, map_to_fill_in, read_results
 from validate.measured.tolerances import OURS
 from validate.output import report
 from validate.output.console import Console
@@ -112,8 +111,8 @@ def _require(options: argparse.Namespace) -> None:
     if STANDARD_INPUT in (options.data, options.map):
         raise UsageError("--data and --map read files; standard input (-) can be the scene only")
     accuracy = options.accuracy
-    if accuracy is not None and not (math.isfinite(accuracy) and accuracy >= 0.0):
-        raise UsageError(f"--accuracy is {accuracy}; allowed: a finite number from 0 up")
+    if accuracy is not None and not 0.0 <= accuracy <= FARTHEST:
+        raise UsageError(f"--accuracy is {accuracy}; allowed: a number from 0 to {FARTHEST:g}")
 
 
 def _examined(found: DataOutcome, scene: Scene, name: str) -> Examined:

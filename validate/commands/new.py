@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import re
 from functools import partial
 from pathlib import Path
@@ -83,7 +84,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + read_file(source, ", ".join(shipped())).decode()
     files = {f"{name}.toml": SCENE_NOTE.format(name=name) + text, **files}
     for target in files:
-        if Path(target).exists():
+        if os.path.exists(target):
             raise UsageError(f"{shown(target)} is there already; allowed: a name of its own")
         require_writable(target)
     for target, content in files.items():

@@ -9,7 +9,6 @@ import stat
 import sys
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from pathlib import Path
 
 from pointcoord import Scene, SceneError
 from validate.ci.files import Files
@@ -158,7 +157,7 @@ def require_target(target: str | None, option: str, scenes: tuple[str, ...] = ()
     if _is_standard_output(target):
         raise UsageError(f"{option} {target} is standard output; use {option} - for that")
     for scene in scenes:
-        if Path(target).is_file() and Path(scene).is_file() and os.path.samefile(target, scene):
+        if os.path.isfile(target) and os.path.isfile(scene) and os.path.samefile(target, scene):
             raise UsageError(f"{option} {target} would overwrite the scene; give another file")
 
 

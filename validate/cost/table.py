@@ -109,6 +109,7 @@ class Row:
 
 
 _KINDS = {"float": "float64", "int": "Int64", "bool": "bool"}
+NEVER_EMPTY = [one.name for one in fields(Row) if not str(one.type).endswith("None")]
 COLUMNS = {one.name: _KINDS.get(str(one.type).removesuffix(" | None"), "str") for one in fields(Row)}
 """Every column with its type in pandas."""
 
@@ -137,11 +138,16 @@ def read_rows(path: Path) -> list[Row]:
         table = pd.read_parquet(BytesIO(content))
         if odd := set(table.columns) ^ set(COLUMNS):
             raise ValueError(f"the columns {', '.join(sorted(odd))} are missing or unknown")
+        if odd := {name for name in NEVER_EMPTY if table[name].isna().any()}:
+            raise ValueError(f"there are rows without {', '.join(sorted(odd))}")
         table = table[list(COLUMNS)].astype(COLUMNS)
         for name, allowed in (("part", PARTS), ("verdict", get_args(Verdict))):
             if odd := set(table[name]) - set(allowed):
                 raise ValueError(f"{name} is {min(odd)!r}; allowed: {', '.join(allowed)}")
-    except (ValueError, TypeError, OSError) as error:
+    except ImportError:
+        raise
+    # pyarrow's errors have no family of their own.
+    except Exception as error:
         why = " ".join(str(error).split())[:200]
         raise StoreError(
             f"{path}: is no Parquet file of what accuracy costs ({why}); give another file"

@@ -74,7 +74,7 @@ FEWEST = 3
 FARTHEST = 1e12
 
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Number = Annotated[float, Field(strict=True, ge=-FARTHEST, le=FARTHEST)]
 Size = Annotated[Number, Field(ge=0.0)]
 
 

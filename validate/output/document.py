@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from validate.exit_status import ExitStatus
+from validate.exit_status import ExitStatus, of_interruption
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.files import require_writable
 
@@ -174,8 +174,8 @@ def at_the_end(write: Callable[[Ending], None]) -> Iterator[Ending]:
     try:
         yield ending
         ending.complete = True
-    except KeyboardInterrupt:
-        ending.status = ExitStatus.INTERRUPTED
+    except KeyboardInterrupt as error:
+        ending.status = of_interruption(error)
         raise
     except BaseException:
         ending.status = ExitStatus.NOT_FINISHED

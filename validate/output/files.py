@@ -1,11 +1,13 @@
 """Files that are whole or not there: written beside their place under another name, and then renamed.
 
-A full disk, a kill or Ctrl-C leaves what was there before.
+A full disk, a kill or Ctrl-C leaves what was there before. What a kill leaves half written goes when the
+next run asks whether it can write there.
 """
 
 from __future__ import annotations
 
 import errno
+import fcntl
 import os
 import stat
 from collections.abc import Callable, Iterable
@@ -14,6 +16,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from validate.errors import UsageError
+
+PART = ".pointcoord-{}.part"
+"""The name of what is being written."""
 
 
 class OutputError(Exception):
@@ -57,8 +62,21 @@ def require_writable(target: str) -> None:
             descriptor, beside = _open_beside(target)
             os.close(descriptor)
             beside.unlink()
+            remove_left_over(beside.parent)
     except OSError as error:
         raise unwritable(target, error) from None
+
+
+def remove_left_over(folder: Path) -> None:
+    """Remove what runs that were killed have left half written in a folder.
+
+    A file that is being written is locked by who writes it, and the lock goes with the process.
+    """
+    for path in folder.glob(PART.format("*")):
+        # Gone meanwhile, another user's, being written, or on a disk that knows no locks: it stays.
+        with suppress(OSError), path.open("r+b") as stream:  # network disks lock only what can be written
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            path.unlink()
 
 
 def write_whole(target: str, write: Callable[[BinaryIO], object]) -> None:
@@ -97,7 +115,8 @@ def _write_beside(target: str, write: Callable[[BinaryIO], object]) -> None:
             write(stream)
             stream.flush()
             os.fsync(stream.fileno())
-        os.replace(beside, _place(target))
+            # Before it is closed, which ends its lock.
+            os.replace(beside, _place(target))
     except BaseException:
         # Ctrl-C as well: nothing half written stays behind.
         with suppress(OSError):
@@ -139,8 +158,14 @@ def _open_beside(target: str) -> tuple[int, Path]:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     if mode is None:
         _require_name(place)
-    beside = place.parent / f".pointcoord-{os.getpid()}-{os.urandom(4).hex()}.part"
+    beside = place.parent / PART.format(f"{os.getpid()}-{os.urandom(4).hex()}")
     descriptor = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+    with suppress(OSError):  # A disk that knows no locks: nothing is removed there.
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+    if not beside.exists():
+        # Removed by another run before it was locked.
+        os.close(descriptor)
+        return _open_beside(target)
     if mode is not None:
         with suppress(OSError):
             os.fchmod(descriptor, mode)

@@ -173,6 +173,7 @@ def _labels(
         around = place + np.array(AROUND) * np.array([6.0 + 0.5 * wide, 11.0])
         half = np.array([0.5 * wide, 6.0])
         others = np.array([other for other in taken if np.abs(other - place).max() >= TOGETHER])
+        others = others.reshape(-1, 2)  # none where all points fall together
         # A number is wider than it is high, and reaches further to its sides.
         away = np.linalg.norm((around[:, None] - others) / (1.0 + half / 20.0), axis=-1)
         clear = np.minimum(away.min(axis=1, initial=CLEAR), CLEAR)

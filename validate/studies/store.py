@@ -22,7 +22,7 @@ from pathlib import Path
 
 from validate.errors import UsageError
 from validate.extras import needed
-from validate.output.files import unwritable, write_content, write_whole
+from validate.output.files import remove_left_over, unwritable, write_content, write_whole
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
 
@@ -127,7 +127,9 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
     """
     needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
-    new, there = not folder.exists(), _found(folder)
+    new, there = not os.path.exists(folder), _found(folder)
+    if not new:
+        remove_left_over(folder)
     # A run that ended before anything was recorded left nothing to be held to.
     if there is not None and there.files():
         _require_same(there, store)

@@ -352,6 +352,10 @@ DAMAGE: dict[str, tuple[Callable[[Path], object], str]] = {
         lambda p: _with_header(p, "off", lambda d: d.replace(b"{", b"(")),
         "is no npz file, or a damaged one",
     ),
+    "numbers of a type that is no Python": (
+        lambda p: _with_header(p, "off", lambda d: d.replace(b"'<f8'", b"'(,)'")),
+        "is no npz file, or a damaged one",
+    ),
     "objects": (lambda p: _changed(p, "off", lambda c: np.array([None])), "is no npz file, or a damaged one"),
 }
 

@@ -330,8 +330,14 @@ def test_visible_text_prints_and_keeps_what_prints(text: str) -> None:
     shown = visible(text)
     assert shown.isprintable()
     assert visible(shown) == shown
+    assert visible(visible(10 * text)) == visible(10 * text)
     if text.isprintable():
         assert shown == text
+
+
+def test_of_a_long_word_in_a_message_the_beginning_is_shown_and_of_a_path_every_part() -> None:
+    path = "/".join(["folder"] * 20) + "/scene.toml"
+    assert visible(f"{path}: no {'x' * 10_000!r}, 1") == f"{path}: no '{'x' * 56}...', 1"
 
 
 def test_steering_characters_are_spelled_out() -> None:

@@ -215,6 +215,31 @@ def test_a_wrong_command_ends_with_2_and_one_line(
         assert word in err
 
 
+LONG_NAME = "n" * 10_000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status"),
+    [
+        (["validate", LONG_NAME], 2),
+        (["simulate", "bounce", "-o", f"{LONG_NAME}.csv"], 4),
+        (["simulate", "bounce", "-o", f"a.{LONG_NAME}"], 2),
+        (["sweep", "bounce", "--vary", f"{LONG_NAME}=1"], 2),
+        (["new", LONG_NAME], 4),
+        (["study", "random", "--records", LONG_NAME], 2),
+        ([LONG_NAME], 2),
+    ],
+)
+def test_a_name_of_ten_thousand_letters_is_not_echoed(
+    arguments: list[str], status: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == status
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "n" * 50 in line
+    assert "n" * 61 not in line
+    assert "defect" not in line
+
+
 def test_a_motion_that_stops_halfway_keeps_what_was_solved(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -141,19 +141,25 @@ def waited_for(path: Path) -> None:
         time.sleep(0.01)
 
 
-def test_ctrl_c_is_one_line_and_what_is_finished_is_in_the_file(tmp_path: Path) -> None:
+ENDS = [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
+
+
+@pytest.mark.parametrize(("end", "status", "word"), ENDS)
+def test_ctrl_c_and_sigterm_are_one_line_and_what_is_finished_is_in_the_file(
+    end: signal.Signals, status: int, word: str, tmp_path: Path
+) -> None:
     target = tmp_path / "out.json"
     scenes = [short_scene(tmp_path), short_scene(tmp_path, "long.toml", samples=LONG)]
     process = started("validate", *scenes, "--json", str(target))
     waited_for(target)
     going = json.loads(target.read_text())
     assert (going["complete"], going["exit_status"], going["verdict"]) == (False, None, None)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(end)
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert only_line(err) == f"pointcoord: interrupted; {target} holds 1 of 2 scenes"
+    assert process.returncode == status
+    assert only_line(err) == f"pointcoord: {word}; {target} holds 1 of 2 scenes"
     left = json.loads(target.read_text())
-    assert (left["complete"], left["exit_status"], left["verdict"]) == (False, 130, "interrupted")
+    assert (left["complete"], left["exit_status"], left["verdict"]) == (False, status, word)
     assert [scene["verdict"] for scene in left["scenes"]] == ["agree"]
 
 
@@ -181,13 +187,16 @@ def test_ctrl_c_before_anything_is_finished_leaves_the_old_file_whole(tmp_path: 
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_ctrl_c_while_the_program_starts_is_one_line() -> None:
+@pytest.mark.parametrize(("end", "status", "word"), ENDS)
+def test_ctrl_c_and_sigterm_while_the_program_starts_are_one_line(
+    end: signal.Signals, status: int, word: str
+) -> None:
     program = (
         "import os, signal, sys, threading, time\n"
         "from pointcoord.__main__ import main\n"
         "def press():\n"
         "    while 'numpy' not in sys.modules: time.sleep(0.001)\n"
-        "    os.kill(os.getpid(), signal.SIGINT)\n"
+        f"    os.kill(os.getpid(), {int(end)})\n"
         "threading.Thread(target=press, daemon=True).start()\n"
         "sys.argv[1:] = ['validate']\n"
         "sys.exit(main())"
@@ -195,8 +204,8 @@ def test_ctrl_c_while_the_program_starts_is_one_line() -> None:
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, env=ENVIRONMENT, check=False
     )
-    assert done.returncode == 130
-    assert only_line(done.stderr) == "pointcoord: interrupted; nothing is written"
+    assert done.returncode == status
+    assert only_line(done.stderr) == f"pointcoord: {word}; nothing is written"
 
 
 def test_a_refused_motion_on_standard_output_says_how_far_it_goes(tmp_path: Path) -> None:

@@ -262,6 +262,12 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT, {"columns": {"camber": {"unit": "mm"}}}, ("'mm' is no unit of wheel.camber", "deg")),
         (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
         (TEXT, {"columns": {"camber": {"sign": 2}, "time": {}}}, ("columns.camber.sign", "1 or -1")),
+        *(
+            (TEXT, {"columns": {"camber": {key: 1e308}, "time": {}}}, (f"columns.camber.{key}", "is 1e+308"))
+            for key in ("offset", "printed", "accuracy")
+        ),
+        (TEXT, {"rolling_radius": 1e308}, ("rolling_radius: is 1e+308", "less than")),
+        (TEXT, {"held": {"rack": -1e308}}, ("held.rack: is -1e+308", "greater than")),
         (TEXT, {"independent": "camber"}, ("'camber' is wheel.camber", "a time, an input or a travel")),
         (TEXT.replace(" [deg]", ""), {}, ("column 'camber'", "unit is not said", "deg")),
         (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column says at which pose",)),
@@ -284,6 +290,7 @@ def test_a_wrong_map_or_file_is_refused_with_its_place(
     ("words", "told"),
     [
         (["--data", "none.csv", "steer"], "none.csv: cannot be read"),
+        (["--data", "none.csv", "steer", "--accuracy", "1e308"], "allowed: a number from 0 to 1e+12"),
         (["--data", "none.csv"], "no scene is given with --data"),
         (["--data", "none.csv", "steer", "--first", "absolute"], "leave --first and --second out"),
         (["--data", "none.csv", "steer", "--baseline", "x.npz"], "--baseline is about what is solved"),

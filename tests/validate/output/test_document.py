@@ -148,7 +148,7 @@ def test_every_status_is_explained_where_a_user_looks(
     assert set(MEANINGS) == set(ExitStatus)
     for status in ExitStatus:
         assert re.search(rf"^ +{status.value}  {re.escape(MEANINGS[status])}$", said, flags=re.M)
-    assert {*ORDER, ExitStatus.INTERRUPTED} == set(ExitStatus)
+    assert {*ORDER, ExitStatus.INTERRUPTED, ExitStatus.TERMINATED} == set(ExitStatus)
 
 
 def test_writing_on_the_way_takes_a_small_part_of_the_time(

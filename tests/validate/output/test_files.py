@@ -3,6 +3,8 @@
 import errno
 import os
 import stat
+import subprocess
+import sys
 import threading
 from pathlib import Path
 from typing import BinaryIO
@@ -40,6 +42,28 @@ def test_what_was_there_is_whole_and_nothing_else_is_left(
         write_whole(str(target), stops(error))
     assert (target.read_bytes() if target.exists() else None) == before
     assert len(list(tmp_path.iterdir())) == (before is not None)
+
+
+def test_what_a_kill_left_half_written_goes_with_the_next_run_and_what_is_being_written_stays(
+    tmp_path: Path,
+) -> None:
+    target = str(tmp_path / "x.json")
+    killed = (
+        "import os, signal, sys\n"
+        "from validate.output.files import write_whole\n"
+        "write_whole(sys.argv[1], lambda stream: os.kill(os.getpid(), signal.SIGKILL))"
+    )
+    subprocess.run([sys.executable, "-c", killed, target], check=False, cwd=Path(__file__).parents[3])
+    assert [path.suffix for path in tmp_path.iterdir()] == [".part"]
+
+    def write(stream: BinaryIO) -> None:
+        assert len(list(tmp_path.iterdir())) == 2
+        require_writable(target)
+        (left,) = tmp_path.iterdir()
+        assert os.path.samestat(left.stat(), os.fstat(stream.fileno()))
+
+    write_whole(target, write)
+    assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
 
 
 def test_the_new_content_appears_at_once(tmp_path: Path) -> None:

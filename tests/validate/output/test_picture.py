@@ -55,6 +55,15 @@ def test_a_drawing_that_moves_when_it_closes_is_drawn_twice_and_says_so() -> Non
     assert "closing the drawing moves wheel_centre by 16.8 mm" in words
 
 
+@pytest.mark.parametrize("far", [-1e9, 1e10])
+def test_points_that_fall_together_are_drawn_with_one_number(far: float) -> None:
+    """A wheel centre so far away that all other points are one on the paper, and from above all of them."""
+    plain = content(Scene.load("bounce"), wheel_centre=(452.0, -410.0, far))
+    root = ET.fromstring(svg(closed_drawing(Scene.from_mapping(plain))))
+    numbers = [text.text or "" for text in root.findall(f".//{SVG}text[@class='number']")]
+    assert sorted(number.count(",") for number in numbers) == [0, 0, 8, 8, 9]
+
+
 def test_odd_titles_leave_the_picture_well_formed() -> None:
     plain = content(Scene.load("off-axis-strut")) | {"title": "</svg> & \x1b[2J \n <b>"}
     root = ET.fromstring(svg(closed_drawing(Scene.from_mapping(plain))))

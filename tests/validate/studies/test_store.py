@@ -63,6 +63,13 @@ def test_others_read_the_folder_while_something_is_being_written(tmp_path: Path)
             recorded(tmp_path, [2])
 
 
+def test_what_a_kill_left_half_written_is_no_reason_to_refuse_a_folder(tmp_path: Path) -> None:
+    left = tmp_path / ".pointcoord-1-ab.part"
+    left.write_bytes(b"{")
+    recorded(tmp_path, [0])
+    assert not left.exists()
+
+
 @pytest.mark.parametrize(
     ("other", "words"),
     [(bounds(3, 0, seed=6), "seed 5, here 6"), (claims(1), "holds the study 'bounds', not 'claims'")],
