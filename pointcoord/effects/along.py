@@ -57,15 +57,25 @@ class NumberAlong:
 
 @dataclass(frozen=True)
 class NumbersAlong(Effect):
-    """Some numbers along one way."""
+    """Some numbers along one way.
+
+    Attributes:
+        base: the effect whose numbers' gradients they are; empty if they are none.
+    """
 
     numbers: tuple[NumberAlong, ...]
+    base: str = ""
 
     @classmethod
-    def of(cls, name: str, gives: str, *numbers: NumberAlong) -> NumbersAlong:
-        """The effect that gives some numbers of one quantity."""
+    def of(cls, name: str, gives: str, *numbers: NumberAlong, base: str = "") -> NumbersAlong:
+        """The effect that gives some numbers of one quantity.
+
+        Args:
+            base: the effect whose numbers' gradients they are, if they are such.
+        """
         sign = "; ".join(f"{number.words}: positive {number.sign}" for number in numbers)
-        return cls(name, gives, sign, derivative=0, quantities=(numbers[0].quantity,), numbers=numbers)
+        quantities = (numbers[0].quantity,)
+        return cls(name, gives, sign, 0, quantities, numbers=numbers, base=base)
 
     @property
     def names(self) -> tuple[str, ...]:

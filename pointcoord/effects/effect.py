@@ -114,6 +114,11 @@ class Effect(ABC):
         return ""
 
     @property
+    def base(self) -> str:
+        """The effect whose numbers' gradients it gives; empty if it gives none."""
+        return ""
+
+    @property
     def reports_states(self) -> bool:
         """Whether its numbers are the states of every point of its derivative, with what reporting adds."""
         return False

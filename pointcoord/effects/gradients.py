@@ -31,7 +31,10 @@ def gradients(base: CarNumbers, way: str) -> NumbersAlong:
     """What the numbers of an effect change by along a way."""
     numbers = [_gradient(number, way) for number in base.numbers]
     return NumbersAlong.of(
-        f"{base.name}_{way}", f"what these change by per mm {WAYS[way]}: {base.gives}", *numbers
+        f"{base.name}_{way}",
+        f"what these change by per mm {WAYS[way]}: {base.gives}",
+        *numbers,
+        base=base.name,
     )
 
 

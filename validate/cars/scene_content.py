@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
 from validate.cars.car import Car
 
 # A number is held constant, a sequence is a polynomial from t^0 up, a mapping is a law as a scene has it.
@@ -45,7 +46,9 @@ def content_of(
     }
     if effects is not None:
         return content
-    return content | {"effects": list(Scene.from_mapping(content).mechanism.effects)}
+    # Gradients follow from the rest, and take as long.
+    had = Scene.from_mapping(content).mechanism.effects
+    return content | {"effects": [name for name in had if not EFFECTS[name].way]}
 
 
 def _input(law: Law) -> dict[str, Any]:

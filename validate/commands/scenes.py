@@ -67,7 +67,9 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
         *(
             f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
             for effect in plan.left_out
+            if not EFFECTS[effect].base
         ),
+        *_gradients_left_out(plan),
         *_work(plan, part.topology),
         *_effort(scene, plan),
     ]
@@ -107,6 +109,14 @@ def _reported(scene: Scene) -> list[str]:
     return [
         f"of the points: {', '.join(scene.reported_points)}; add {', '.join(left_out)} to points to have them"
     ]
+
+
+def _gradients_left_out(plan: Plan) -> list[str]:
+    """In a line: there are two for each effect of the car."""
+    names = [effect for effect in plan.left_out if EFFECTS[effect].base]
+    if not names:
+        return []
+    return [f"left out: what these change by per mm of travel and of rack; add one of {', '.join(names)}"]
 
 
 def _work(plan: Plan, topology: Topology) -> list[str]:

@@ -252,7 +252,7 @@ def usual(scene: Scene, numbers: Sequence[Number], motion: Motion) -> Curves:
     """
     there = [n for n in numbers if n.missing is None]
     one: Mapping[str, Number] = {n.path[0]: n for n in there if len(n.path) == 1}
-    angles = tuple(n for n in there if n.of_the_car)
+    angles = tuple(n for n in there if n.of_the_car and n.unit == "rad")
     if not angles:
         points = [n for n in there if len(n.path) == 3]
         name = scene.mechanism.topology.wheel_centre

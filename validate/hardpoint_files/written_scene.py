@@ -10,6 +10,7 @@ from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
@@ -75,7 +76,9 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
     topology = mechanism_file(kind).topology()
     content["inputs"] = {name: {"constant": 1.0} for name in topology.required_inputs}
     scene = Scene.from_mapping(content, source)
-    return scene.model_copy(update={"effects": scene.mechanism.effects})
+    # Angles and rates; what is made of the wheel's radius or a damper a table seldom says.
+    effects = [e for e in scene.mechanism.effects if not EFFECTS[e].way and e not in ("camber", "damper")]
+    return scene.model_copy(update={"effects": effects})
 
 
 def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:

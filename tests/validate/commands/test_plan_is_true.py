@@ -13,7 +13,7 @@ from pointcoord.solve.taylor import COARSEST, FINEST
 from validate.cli import main
 
 TAKES = re.compile(
-    r"accuracy: positions to (?P<tolerance>\S+) mm, rates to (?P<part>\S+) of their size\n"
+    r"accuracy: positions to (?P<tolerance>\S+) mm(?:, rates to (?P<part>\S+) of their size)?\n"
     r"solved at each step: .*\n"
     r"takes: (?P<segments>\d+) power series of orders? (?P<few>\d+)(?: to (?P<many>\d+))?, "
     r"(?P<orders>\d+) orders in all; (?P<all>\d+) factorisations, (?P<start>\d+) of them to assemble "

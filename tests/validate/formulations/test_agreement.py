@@ -6,6 +6,7 @@ from built_in_cars import STEERED_CARS
 from hypothesis import assume, given, note, settings
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionNotMapped, Scene, built_in_scenes, simulate
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.cars.car import moved, turned
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
@@ -43,6 +44,8 @@ def test_formulations_agree_in_everything_that_the_built_in_scenes_ask_for(
     vectors = ("position", *(effect for effect in scene.effects if effect in ("velocity", "acceleration")))
     asked = {(quantity, point) for quantity in vectors for point in scene.mechanism.points}
     asked |= {row for effect in scene.effects for row in WHAT_IT_GIVES.get(effect, ())}
+    numbers = [NUMBERS_OF_THE_CAR[n] for e in scene.effects for n in EFFECTS[e].names or ()]
+    asked |= {(number.quantity.name, number.name) for number in numbers}
     assert {(row.quantity, row.name) for row in outcome.rows} == asked
 
 

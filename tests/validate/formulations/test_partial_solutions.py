@@ -33,11 +33,12 @@ def test_what_both_models_solved_before_a_lock_agrees_within_their_claims(
     one, two = partial(solver, scene), partial(other, scene)
     np.testing.assert_array_equal(one.times, two.times)
     assert 10 < len(one.times) < len(scene.instants)
-    assert one.numbers.keys() == two.numbers.keys()
-    for quantity, arrays in one.numbers.items():
+    # Models that are outside witnesses give no gradients.
+    assert {"position", "wheel"} <= two.numbers.keys() <= one.numbers.keys()
+    for quantity, arrays in two.numbers.items():
         for point, array in arrays.items():
             claims = (s.accuracy.claims[quantity][point] for s in (one, two))
-            assert (np.abs(array - two.numbers[quantity][point]) <= sum(claims)).all(), (quantity, point)
+            assert (np.abs(array - one.numbers[quantity][point]) <= sum(claims)).all(), (quantity, point)
 
 
 def test_a_scene_refused_at_its_start_keeps_nothing() -> None:

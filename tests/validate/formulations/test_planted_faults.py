@@ -117,7 +117,7 @@ def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
     right = EFFECTS["wheel_angles"]
-    wrong = replace(right, angles=(CAMBER, replace(KINGPIN, sine="outboard")))
+    wrong = replace(right, numbers=(CAMBER, replace(KINGPIN, sine="outboard")))
     patch.setitem(EFFECTS, right.name, wrong)
 
 
