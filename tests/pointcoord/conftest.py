@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from every_effect import asking_for_all
 from sample_cars import PAPER_STRUT, SampleCar
 
 from pointcoord import Scene
@@ -70,6 +71,6 @@ def make_scene() -> Callable[..., Scene]:
                 "time": {"start": float(start), "stop": float(stop), "samples": samples},
             }
         )
-        return scene if effects is not None else scene.model_copy(update={"effects": scene.mechanism.effects})
+        return scene if effects is not None else asking_for_all(scene)
 
     return make

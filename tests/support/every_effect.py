@@ -1,9 +1,15 @@
-"""Built-in scenes that ask for all that their cars have."""
+"""Scenes that ask for all that their cars have."""
 
 from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
 
 
 def every_effect(name: str) -> Scene:
-    """A built-in scene with every effect of its car."""
-    scene = Scene.load(name)
-    return scene.model_copy(update={"effects": scene.mechanism.effects})
+    """A built-in scene with every effect of its car but derivatives by an input."""
+    return asking_for_all(Scene.load(name))
+
+
+def asking_for_all(scene: Scene) -> Scene:
+    """The same of any scene."""
+    had = [name for name in scene.mechanism.effects if not EFFECTS[name].way]
+    return scene.model_copy(update={"effects": had})

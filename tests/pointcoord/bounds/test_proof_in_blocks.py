@@ -32,10 +32,10 @@ def test_a_proof_in_blocks_is_the_proof_in_one(
             assert np.array_equal(one, many), field.name
             continue
         assert one.keys() == many.keys()
+        assert all(one[quantity] for quantity in ("position", "velocity", "wheel", "dimension"))
         for quantity in one:
             bounds, others = one[quantity], many[quantity]
             assert bounds.keys() == others.keys()
-            assert bounds
             assert all(np.array_equal(bounds[name], others[name]) for name in bounds), quantity
     # Every instant is another pose, so that no block may stand for another one.
     assert len(np.unique(whole.condition)) == 30

@@ -68,7 +68,11 @@ def test_lines_look_misdrawn_beyond_their_limits_only(
 def test_angles_are_of_positions_and_their_errors_of_the_places_that_are_enclosed() -> None:
     points, moving = drawn(3.0, 8.0), {name: np.full(3, 7.0) for name in drawn(0.0, 0.0)}
     mechanism = SimpleNamespace(
-        topology=topology({}), unit=1.0, drawn_places=points, drawing=SimpleNamespace(vectors=points)
+        topology=topology({}),
+        unit=1.0,
+        origin=np.zeros(3),
+        drawn_places=points,
+        drawing=SimpleNamespace(vectors=points),
     )
     states = [points, moving, moving]
     poses = SimpleNamespace(states=states, in_chassis=points, mechanism=mechanism, axes=AXES)

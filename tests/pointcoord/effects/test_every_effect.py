@@ -66,7 +66,7 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
         knuckle = (*topology.bodies[topology.knuckle], *topology.wheel_axis)
         shifts, other_shifts = (
             {n: v if n in knuckle else plus(v, exactly(own.normal(size=3))) for n in topology.points}
-            for v in (exactly(own.normal(size=3)), exactly(own.normal(size=3)))
+            for v in (exactly(3.0 * axes[:, 2] + own.normal(size=3)), exactly(own.normal(size=3)))
         )
         origin = exactly(mechanism.origin)
         points = {}

@@ -40,7 +40,8 @@ def test_an_effect_is_made_of_its_derivative_and_of_none_above_it(effect) -> Non
     for order in (1, 2):
         states = turning()
         states[order] = {name: np.full_like(vector, np.nan) for name, vector in states[order].items()}
-        found = effect.evaluate(Poses(MECHANISM, AXES, states, states[0], [None, None, None]))
+        moving = dict.fromkeys(("by_travel", "by_rack"), (states[0], states[0]))
+        found = effect.evaluate(Poses(MECHANISM, AXES, states, states[0], [None, None, None], moving))
         changed.append(any(np.isnan(a).any() for of in found.values() for a in of.values()))
     assert effect.derivative == max(
         (order for order, seen in zip((1, 2), changed, strict=True) if seen), default=0

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from every_effect import asking_for_all
 from numpy.typing import NDArray
 
 from pointcoord import KinematicMap, Scene, kinematic_map
@@ -34,7 +35,7 @@ def with_all_effects(name: str) -> Scene:
     content["inputs"].setdefault("heave", {"constant": 0.0})
     scene = Scene.from_mapping(content)
     time = scene.time.model_copy(update={"samples": POSES})
-    return scene.model_copy(update={"effects": scene.mechanism.effects, "time": time})
+    return asking_for_all(scene).model_copy(update={"time": time})
 
 
 def states_of(scene: Scene, name: str, seed: int) -> States:

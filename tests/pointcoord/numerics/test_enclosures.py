@@ -181,10 +181,12 @@ def test_a_quotient_by_what_may_be_zero_is_not_bounded() -> None:
 
 @pytest.mark.parametrize("seed", range(20))
 def test_quotients_roots_and_angles_of_groups_lie_within_their_radii(seed: int) -> None:
-    """Of numbers that share radii by fives, of either sign, and of one number that has its own for all."""
+    """Of neighbours that share radii by fives, of either sign, and of one number that has its own for all."""
     rng = np.random.default_rng(seed)
     r = 10.0 ** rng.uniform(-12.0, -2.0, (2, 3, 1))
-    middles, off = rng.choice([-1.0, 1.0], (2, 3, 5)) * rng.uniform(0.1, 3.0, (2, 3, 5)), np.empty((2, 3, 5))
+    near = 1.0 + 0.01 * rng.uniform(-1.0, 1.0, (2, 3, 5))
+    middles = rng.choice([-1.0, 1.0], (2, 3, 1)) * rng.uniform(0.1, 3.0, (2, 3, 1)) * near
+    off = np.empty((2, 3, 5))
     off[:] = r * rng.choice([-1.0, 1.0], (2, 3, 5))
     x, y = (anchored(m, part.shape, part, part) for m, part in zip(middles, r, strict=True))
     (a, b), one = middles + off, Enclosed.of(0.3)
@@ -196,7 +198,7 @@ def test_quotients_roots_and_angles_of_groups_lie_within_their_radii(seed: int) 
     ):
         distance = np.abs(found.middle - true)
         assert (distance <= found.radius[0] + 8.0 * U * np.abs(true)).all()
-        assert (found.radius[0].max(axis=-1) <= 1e3 * distance.max(axis=-1) + 1e-14).all()
+        assert (found.radius[0].max(axis=-1) <= 50.0 * distance.max(axis=-1) + 1e-14).all()
 
 
 def test_a_root_of_what_may_be_zero_is_at_most_the_root_of_what_it_may_be() -> None:

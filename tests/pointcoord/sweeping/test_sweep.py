@@ -76,6 +76,8 @@ def allowed(motion: Motion, part: float, quantity: str, name: str) -> np.ndarray
         "velocity": fastest,
         "acceleration": quickest,
         "wheel": 2.0 * size / LEVER,
+        # From the end of a line that is LEVER long to the road, a wheel's radius below.
+        "dimension": 2.0 * size * (1.0 + 300.0 / LEVER),
         "angular_velocity": 2.0 * (fastest + turn * size) / LEVER,
         "angular_acceleration": 2.0 * (quickest + (spin + turn * turn) * size + turn * fastest) / LEVER,
     }
