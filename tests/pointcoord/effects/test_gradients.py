@@ -1,0 +1,114 @@
+"""Gradients and the roll centre of whole motions: proven against the reference, however they are driven."""
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import MapError, Scene, SceneError, kinematic_map, simulate, sweep
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
+from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.reference.exact import as_fraction
+
+ALONG = {name for name, effect in EFFECTS.items() if effect.way}
+TRAVEL, STEER = {"sine": {"amplitude": 30.0, "angular_frequency": 3.0}}, {"polynomial": [0.0, 8.0]}
+
+
+def asking(name: str, inputs: dict[str, Any] | None = None) -> Scene:
+    """A built-in car with all that is along an input, at few instants."""
+    content = Scene.load(name).model_dump(exclude_none=True)
+    content["effects"] = []
+    content["time"]["samples"] = 7
+    content["inputs"] = inputs or content["inputs"]
+    content["mechanism"].setdefault("wheel_radius", 300.0)
+    scene = Scene.from_mapping(content)
+    return scene.model_copy(update={"effects": [e for e in scene.mechanism.effects if e in ALONG]})
+
+
+@pytest.mark.parametrize("name", ["off-axis-strut", "pushrod", "five-link", "pushrod-by-damper"])
+def test_every_gradient_is_within_its_bound_of_the_reference_and_that_is_some_roundings(name: str) -> None:
+    scene = asking(name)
+    motion = simulate(scene)
+    proof = motion.proof(rates=True)
+    found = {n: (q, a) for q, channel in motion.numbers.items() for n, a in channel.items()}
+    asked = {n for effect in scene.effects for n in EFFECTS[effect].names or ()}
+    assert len(asked) > 6
+    for k, instant in enumerate(motion.times.tolist()):
+        exact = reference_instant(scene, inputs_at(scene, instant)).effects
+        for number in asked & exact.keys():
+            quantity, array = found[number]
+            error = abs(as_fraction(exact[number], number) - Fraction(float(array[k])))
+            bound = float(proof.proven[quantity][number][k])
+            assert error <= Fraction(bound), (number, k)
+            assert bound <= 1e-11 * max(1.0, abs(float(array[k]))), (number, k)
+
+
+def test_by_which_input_the_wheel_is_moved_makes_no_difference() -> None:
+    """Per mm of travel, whether the arm's angle, the travel or the damper's length is driven."""
+    by_travel = simulate(asking("pushrod", {"wheel_travel": TRAVEL, "rack": STEER}))
+    times = by_travel.times
+    poses = by_travel.position
+    arm = poses["lower_ball_joint"] - poses["lower_arm_front"]
+    angle = np.arccos(arm[:, 2] / np.linalg.norm(arm, axis=-1))
+    table = {"table": {"times": times.tolist(), "values": angle.tolist()}}
+    by_arm = simulate(asking("pushrod", {"arm_angle": table, "rack": STEER}))
+    for quantity in ("angle_gradient", "dimension_gradient", "dimension"):
+        for name, array in by_travel.numbers[quantity].items():
+            if not name.endswith("_by_rack"):  # the rack moves with the other input held
+                # The table's angles are off by some roundings, which the wheel multiplies.
+                assert np.allclose(by_arm.numbers[quantity][name], array, rtol=1e-9, atol=1e-11), name
+
+
+def test_a_gradient_by_travel_is_what_the_number_changes_by_over_a_short_way() -> None:
+    step = 1e-3
+    here = simulate(asking("pushrod", {"wheel_travel": {"constant": 12.0}, "rack": {"constant": 5.0}}))
+    base = [n for n in NUMBERS_OF_THE_CAR if f"{n}_by_travel" in NUMBERS_OF_THE_CAR]
+    ends = []
+    for travel in (12.0 - step, 12.0 + step):
+        scene = asking("pushrod", {"wheel_travel": {"constant": travel}, "rack": {"constant": 5.0}})
+        plain = [e for e in scene.mechanism.effects if EFFECTS[e].names and e not in ALONG]
+        ends.append(simulate(scene.model_copy(update={"effects": plain})))
+    for name in base:
+        number = NUMBERS_OF_THE_CAR[name].quantity.name
+        behind, ahead = (float(end.numbers[number][name][0]) for end in ends)
+        quantity = NUMBERS_OF_THE_CAR[f"{name}_by_travel"].quantity.name
+        slope = float(here.numbers[quantity][f"{name}_by_travel"][0])
+        # A number of 300 mm rounds the quotient by 300 u / step; what is left out is step^2 of its third
+        # derivative, below 1e-3 of it per mm^2.
+        assert slope == pytest.approx((ahead - behind) / (2 * step), abs=1e-9), name
+
+
+def test_where_the_wheel_does_not_travel_there_is_no_number_and_a_note_says_why() -> None:
+    """A trailing arm that stands straight up moves its wheel level."""
+    tables = {
+        "title": "arm",
+        "bodies": {"chassis": ["a", "b"], "arm": ["a", "b", "inner", "centre"]},
+        "inputs": {"turn": {"angle": "arm", "from": "drawing"}},
+        "roles": {"knuckle": "arm", "wheel_axis": ["inner", "centre"], "inboard": "a"},
+    }
+    points = {"a": [0, 400, 0], "b": [0, 600, 0], "inner": [0, 650, -300], "centre": [0, 700, -300]}
+    content = {
+        "effects": ["toe_by_travel"],
+        "mechanism": {**tables, "side": "right", "points": points},
+        "inputs": {"turn": {"polynomial": [0.0, 0.1]}},
+        "time": {"start": 0.0, "stop": 1.0, "samples": 3},
+    }
+    motion = simulate(Scene.from_mapping(content))
+    assert np.isfinite(motion.angle_gradient["toe_by_travel"]).tolist() == [False, True, True]
+    assert any("does not travel" in note for note in motion.notes)
+
+
+def test_what_takes_no_derivatives_by_an_input_says_so() -> None:
+    scene = asking("pushrod", {"wheel_travel": TRAVEL, "rack": STEER})
+    with pytest.raises(SceneError, match="takes no derivatives by an input"):
+        sweep(scene, offsets={"lower_ball_joint.z": [0.0, 1.0]})
+    with pytest.raises(MapError, match="without derivatives by an input"):
+        kinematic_map(scene, {"wheel_travel": (-5.0, 5.0), "rack": (-1.0, 1.0)})
+
+
+def test_without_exactly_one_input_to_go_along_there_is_none() -> None:
+    scene = asking("five-link")
+    assert not {name for name in scene.effects if name.endswith("_by_rack")}
+    with pytest.raises(SceneError, match="needs exactly one driven input that is the travel of a slide"):
+        scene.model_copy(update={"effects": ["toe_by_rack"]})
