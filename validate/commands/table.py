@@ -78,7 +78,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     target = place_of_result(options, ENDINGS, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     chosen = _chosen(options, scene, name)
-    givers = {n: effect.name for effect in EFFECTS.values() for n in effect.names or ()}
+    had = scene.mechanism.effects
+    givers = {number: effect for effect in reversed(had) for number in EFFECTS[effect].names or ()}
     effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in chosen))))
     problem: PointcoordError | None = None
     try:
@@ -108,6 +109,11 @@ def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
     """
     had = [number for effect in scene.mechanism.effects for number in EFFECTS[effect].names or ()]
     known = [number for number in dict.fromkeys(had) if number in NUMBERS_OF_THE_CAR]
+    if not known:
+        raise UsageError(
+            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles], or of its "
+            "parts only; pointcoord simulate writes what it gives"
+        )
     for number in options.number or ():
         if number in known:
             continue
