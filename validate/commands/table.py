@@ -111,8 +111,8 @@ def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
     known = [number for number in dict.fromkeys(had) if number in NUMBERS_OF_THE_CAR]
     if not known:
         raise UsageError(
-            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles], or of its "
-            "parts only; pointcoord simulate writes what it gives"
+            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles], or of "
+            "its parts only; pointcoord simulate writes what it gives"
         )
     for number in options.number or ():
         if number in known:
