@@ -92,6 +92,8 @@ class Readout:
         in_chassis = states[0]
         slopes = {} if coordinates is None else self.slopes(times, coordinates)
         if self.chassis.turns:
+            # The states may be views of the table, which those of the turned car are written into.
+            in_chassis = {name: place.copy() for name, place in states[0].items()}
             states = self.chassis.turned(times, states)
             for first, (derivative, point) in self.table.states:
                 vectors(rows, first)[...] = states[derivative][point]

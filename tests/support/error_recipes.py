@@ -203,8 +203,8 @@ RECIPES: dict[str, Recipe] = {
     ),
     "pointcoord.errors.NotComputed": Recipe(
         lambda *_: pointcoord.simulate(BOUNCE.model_copy(update={"effects": ()})).wheel["camber"],
-        ("camber was not computed", "add 'wheel_angles'"),
-        {"effect": "wheel_angles", "quantity": lambda name: "camber" in name},
+        ("camber was not computed", "add 'camber'"),
+        {"effect": "camber", "quantity": lambda name: "camber" in name},
     ),
     "pointcoord.errors.MissingLibrary": Recipe(
         lambda _, pretend: frame_without(pretend, "pandas", "polars"),
@@ -519,7 +519,7 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: solve_car(
             {**TABLE, "wheel_centre": TABLE["strut_lower"]}, {"arm_angle": (1.5, 0, 0)}
         ).effect("camber"),
-        ("the camber angle cannot be proven", "both sides are 0", "use the positions"),
+        ("camber cannot be proven", "where it is 0/0"),
     ),
     "validate.reference.errors.BadInputError": Recipe(
         lambda *_: solve_car(TABLE, {"arm_angle": (1.5, 0, 0)}, side="middle"),

@@ -10,6 +10,7 @@ from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
+from pointcoord.effects.car_number import DIMENSION
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files.contents import FilePoint, Place
@@ -77,8 +78,10 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
     content["inputs"] = {name: {"constant": 1.0} for name in topology.required_inputs}
     scene = Scene.from_mapping(content, source)
     # Angles and rates; what is made of the wheel's radius or a damper a table seldom says.
-    effects = [e for e in scene.mechanism.effects if not EFFECTS[e].way and e not in ("camber", "damper")]
-    return scene.model_copy(update={"effects": effects})
+    had = [EFFECTS[e] for e in scene.mechanism.effects if EFFECTS[e].quantities != (DIMENSION,)]
+    plain = [effect for effect in had if not effect.way]
+    parts = {e.name for e in plain for o in plain if {*(e.names or ())} < {*(o.names or ())} and e.names}
+    return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
 
 def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:

@@ -9,6 +9,7 @@ import pytest
 from pointcoord import MapError, Scene, SceneError, kinematic_map, simulate, sweep
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.comparison.compare import compare
 from validate.reference.exact import as_fraction
 
 ALONG = {name for name, effect in EFFECTS.items() if effect.way}
@@ -42,6 +43,13 @@ def test_every_gradient_is_within_its_bound_of_the_reference_and_that_is_some_ro
             bound = float(proof.proven[quantity][number][k])
             assert error <= Fraction(bound), (number, k)
             assert bound <= 1e-11 * max(1.0, abs(float(array[k]))), (number, k)
+
+
+@pytest.mark.parametrize("name", ["off-axis-strut", "pushrod", "five-link"])
+def test_the_two_models_agree_in_every_gradient(name: str) -> None:
+    outcome = compare(asking(name), "pointcoord", "absolute")
+    assert outcome.agreed, outcome.disagreements
+    assert len([row for row in outcome.rows if row.unit.endswith("/mm")]) > 5
 
 
 def test_by_which_input_the_wheel_is_moved_makes_no_difference() -> None:

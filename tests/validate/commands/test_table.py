@@ -12,10 +12,10 @@ from validate.cli import main
 
 def test_a_table_has_the_motions_numbers_in_degrees_and_mm(tmp_path: Path) -> None:
     target = tmp_path / "t.csv"
-    assert main(["table", "bump", "--rows", "5", "-o", str(target), "-q"]) == 0
+    assert main(["table", "wheel-travel", "--rows", "5", "-o", str(target), "-q"]) == 0
     with target.open(newline="") as stream:
         rows = list(csv.DictReader(stream))
-    motion = simulate(Scene.load("bump")).at(np.linspace(0.0, 1.0, 5))
+    motion = simulate(Scene.load("wheel-travel")).at(np.linspace(0.0, 1.0, 5))
     assert [float(row["wheel_travel [mm]"]) for row in rows] == [-50.0, -25.0, 0.0, 25.0, 50.0]
     assert [float(row["camber [deg]"]) for row in rows] == np.degrees(motion.wheel["camber"]).tolist()
     gradient = np.degrees(motion.angle_gradient["toe_by_travel"])
@@ -42,10 +42,10 @@ def test_a_table_in_text_says_each_sign_and_in_markdown_too(
     ("words", "said"),
     [
         (["bricard"], "there is no number of a wheel"),
-        (["bump", "--number", "tow"], "did you mean 'toe'?"),
+        (["wheel-travel", "--number", "tow"], "did you mean 'toe'?"),
         (["five-link", "--number", "caster"], "needs the role steering_axis"),
         (["bmw-e90-strut", "--number", "scrub_radius"], "wheel_radius = 300.0"),
-        (["bump", "-o", "t.pdf"], "allowed: .csv, .md"),
+        (["wheel-travel", "-o", "t.pdf"], "allowed: .csv, .md"),
     ],
 )
 def test_what_there_is_not_is_one_line(

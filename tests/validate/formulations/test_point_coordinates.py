@@ -84,7 +84,7 @@ def test_a_comparison_solves_as_finely_as_rounding_allows_however_coarse_the_sce
     method: str, tolerance: float
 ) -> None:
     fine, coarse = (formulation(method).solve(rack_to_its_end(0.5, t)) for t in (1e-13, tolerance))
-    for quantity, claims in coarse.accuracy.claims.items():
+    for quantity, claims in ((q, of) for q, of in coarse.accuracy.claims.items() if of):
         for name, claim in claims.items():
             # Both are proven; they differ where Newton's last step and the instants of the joints do.
             gap = np.abs(coarse.numbers[quantity][name] - fine.numbers[quantity][name])

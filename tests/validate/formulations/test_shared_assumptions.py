@@ -20,6 +20,7 @@ from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
 Points = dict[str, Array]
+EVERY = ["velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"]
 SCENES = {"strut": Scene.load("off-axis-strut"), "wishbone": Scene.load("double-wishbone")}
 CARS = {
     car: {name: np.array(place) for name, place in scene.mechanism.points.items()}
@@ -47,7 +48,7 @@ def solved(name: str, car: str, points: Points | None = None, side: str = "", **
     """A car's motion by a model, with other points, on the other side, or driven otherwise."""
     drawn = SCENES[car].mechanism
     content = {
-        "effects": list(drawn.effects),
+        "effects": EVERY,
         "mechanism": {
             "type": drawn.type,
             "side": side or drawn.side,

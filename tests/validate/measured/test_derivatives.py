@@ -141,7 +141,11 @@ def rates_of(motion: Motion) -> dict[str, Array]:
 def over_travel(*left_out: str) -> tuple[str, dict[str, Any]]:
     """Rates of a bump, over its travel with the rates of that."""
     columns = {"bump [mm]": rise(BUMP), "v [mm/s]": rise(BUMP, 1), "a [mm/s^2]": rise(BUMP, 2)}
-    named = {"bump": "travel.wheel_centre", "v": "travel.wheel_centre.rate", "a": "wheel_centre.acceleration"}
+    named = {
+        "bump": "travel.wheel_centre",
+        "v": "travel.wheel_centre.rate",
+        "a": "wheel_centre.acceleration",
+    }
     named["a"] = f"travel.{named['a']}"
     kept = {
         n: values for n, values in (columns | rates_of(BUMP)).items() if n.partition(" ")[0] not in left_out

@@ -21,7 +21,10 @@ CSV = "bump [mm],camber [deg],toe [deg],caster [deg],kingpin [deg]\n" + "".join(
 )
 CONTENT: dict[str, Any] = {
     "rolling_radius": ROLLING_RADIUS,
-    "columns": {"bump": {"is": "travel.contact", "printed": 0}, **{name: {"is": name} for name in ANGLES}},
+    "columns": {
+        "bump": {"is": "travel.contact", "printed": 0},
+        **{name: {"is": name} for name in ANGLES},
+    },
 }
 
 

@@ -230,12 +230,12 @@ def test_numbers_of_positions_are_those_of_their_words_on_a_turned_chassis(name:
     wanted = by_hand(there, drawn, plain["roles"], car.wheel_radius, out)
     upright = by_hand(level.position, drawn, plain["roles"], car.wheel_radius, out)
     on_chassis = {"travel", "contact_travel"}
-    assert set(wanted) == set(OF_POSITIONS) - set(ANGLES) - {"damper_length"}
+    assert set(wanted) | {"damper_length"} == set(OF_POSITIONS) - set(ANGLES)
     for one, value in wanted.items():
         assert abs(found.effects[one] - (upright if one in on_chassis else wanted)[one]) < WITHIN, one
         assert abs(level.effects[one] - upright[one]) < WITHIN, one
-        # A check of the check: the turns of the chassis are seen.
-        assert abs(value - upright[one]) > 1e-3, one
+        # A check of the check: the turns of the chassis are seen, but by a length of the car.
+        assert one == "damper_length" or abs(value - upright[one]) > 1e-3, one
 
 
 @pytest.mark.parametrize("name", CARS)

@@ -41,7 +41,7 @@ def test_sensitivities_are_the_derivatives_of_every_quantity(
             want = times(minus(*pair), per)
             assert all(abs(x) <= off + slope.error_bound[quantity] for x in minus(got, want))
         assert slope.error_bound[quantity] < mpf("1e-60")
-    assert set(slope.effects) == set(OF_POSITIONS) - {"damper_length"}  # these cars have none
+    assert set(slope.effects) | {"damper_length"} == set(OF_POSITIONS)  # some of these cars have none
     for one, got in slope.effects.items():
         assert (
             abs(got - (ahead.effects[one] - behind.effects[one]) * per) <= off + slope.error_bound["effects"]

@@ -28,7 +28,8 @@ def test_closed_forms_agree_with_pointcoord_and_with_the_reference(states) -> No
     for against in ("pointcoord", reference_solution(SCENE)):
         outcome = assert_agrees(states, SCENE, against=against)
         assert outcome.passed
-        assert {row.verdict for row in outcome.rows} == {"agrees"}
+        # The closed forms give no dimensions of the wheel.
+        assert {row.verdict for row in outcome.rows if row.quantity != "dimension"} == {"agrees"}
 
 
 def test_one_coordinate_off_at_one_instant_is_named_with_its_size_and_its_time(states) -> None:
