@@ -15,13 +15,18 @@ def test_a_table_has_the_motions_numbers_in_degrees_and_mm(tmp_path: Path) -> No
     assert main(["table", "wheel-travel", "--rows", "5", "-o", str(target), "-q"]) == 0
     with target.open(newline="") as stream:
         rows = list(csv.DictReader(stream))
-    motion = simulate(Scene.load("wheel-travel")).at(np.linspace(0.0, 1.0, 5))
+    scene = Scene.load("wheel-travel")
+    # A chain of series is cut for the highest rate that is asked for, so that last digits may differ.
+    asking = scene.model_copy(update={"effects": scene.mechanism.effects})
+    motion = simulate(asking).at(np.linspace(0.0, 1.0, 5))
     assert [float(row["wheel_travel [mm]"]) for row in rows] == [-50.0, -25.0, 0.0, 25.0, 50.0]
-    assert [float(row["camber [deg]"]) for row in rows] == np.degrees(motion.wheel["camber"]).tolist()
+    assert [float(row["camber [deg]"]) for row in rows] == pytest.approx(
+        np.degrees(motion.wheel["camber"]).tolist(), rel=1e-11
+    )
     gradient = np.degrees(motion.angle_gradient["toe_by_travel"])
-    assert [float(row["toe_by_travel [deg/mm]"]) for row in rows] == gradient.tolist()
+    assert [float(row["toe_by_travel [deg/mm]"]) for row in rows] == pytest.approx(gradient, rel=1e-11)
     ratio = motion.dimension_gradient["damper_length_by_travel"].tolist()
-    assert [float(row["damper_length_by_travel [mm/mm]"]) for row in rows] == ratio
+    assert [float(row["damper_length_by_travel [mm/mm]"]) for row in rows] == pytest.approx(ratio, rel=1e-11)
 
 
 def test_a_table_in_text_says_each_sign_and_in_markdown_too(

@@ -49,10 +49,14 @@ def read(run: Run) -> Read:
     return Read(page(run, {}))
 
 
+ANGLES_AND_RATES = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster")
+
+
 @pytest.fixture(scope="module")
 def wide() -> Examined:
     """A scene of more instants than are drawn."""
     content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["effects"] = ANGLES_AND_RATES
     content["time"] = content["time"] | {"samples": 301}
     scene = Scene.from_mapping(content)
     return examine("wide", scene, (("pointcoord", "absolute"), ("pointcoord-newton", "absolute")), False)
