@@ -162,6 +162,9 @@ def check(effect: Effect, car: Car, mechanism: Mechanism) -> None:
             off = np.array([float(abs(mpf(float(value)) - exact)) for value, exact in pairs])
         proven, expected = bounds[quantity][name].reshape(2, -1)
         largest = max(1.0, *(float(abs(c)) for c in true[quantity][name]))
+        if effect.way and not effect.base:
+            # A roll centre is a ratio times how far the wheel is from the user's origin.
+            largest = max(largest, float(np.abs(mechanism.origin).max()))
         assert (off <= proven).all(), (quantity, name, off, proven)
         assert (off <= ROUNDINGS * expected).all(), (quantity, name, off, expected)
         assert (proven <= 1e-11 * largest).all(), (quantity, name)
