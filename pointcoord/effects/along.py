@@ -6,7 +6,7 @@ up and down. The other inputs and the chassis are held (see `linkage.slopes`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import Dual
-from pointcoord.effects.car_number import corner_of, enclosed_corner, refused
+from pointcoord.effects.car_number import OfTheCar, corner_of, enclosed_corner, signs_of
 from pointcoord.effects.corner import Corner, View
-from pointcoord.effects.effect import Effect, Point, Poses, Quantity
+from pointcoord.effects.effect import Point, Poses, Quantity
 from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -56,7 +56,7 @@ class NumberAlong:
 
 
 @dataclass(frozen=True)
-class NumbersAlong(Effect):
+class NumbersAlong(OfTheCar):
     """Some numbers along one way.
 
     Attributes:
@@ -73,19 +73,7 @@ class NumbersAlong(Effect):
         Args:
             base: the effect whose numbers' gradients they are, if they are such.
         """
-        sign = "; ".join(f"{number.words}: positive {number.sign}" for number in numbers)
-        quantities = (numbers[0].quantity,)
-        return cls(name, gives, sign, 0, quantities, numbers=numbers, base=base)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The names of the numbers."""
-        return tuple(number.name for number in self.numbers)
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """The axes that they are seen on."""
-        return tuple(dict.fromkeys(role for number in self.numbers for role in number.roles))
+        return cls(name, gives, signs_of(numbers), 0, (numbers[0].quantity,), numbers=numbers, base=base)
 
     @property
     def way(self) -> str:
@@ -96,10 +84,6 @@ class NumbersAlong(Effect):
     def no_number(self) -> str:
         """Where nothing can be divided by."""
         return "the wheel does not travel there" if self.way == BY_TRAVEL else ""
-
-    def needs(self, topology: Topology) -> Collection[str]:
-        """The points of the roles."""
-        return {point for role in self.lines for point in topology.role(role)}
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Each number, (..., N)."""
@@ -117,8 +101,7 @@ class NumbersAlong(Effect):
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
         """A role, the wheel's radius or the one input is missing."""
-        radius = wheel_radius is None and any(number.needs_radius for number in self.numbers)
-        problem = refused(self.name, self.lines, topology, radius)
+        problem = super().refusal(topology, drawn, wheel_radius)
         driven = topology.driven_along(self.way)
         if problem or len(driven) == 1:
             return problem

@@ -118,21 +118,28 @@ class Length(CarNumber):
         return self.formula(corner)
 
 
+class NumberOfTheCar(Protocol):
+    """What every number of a car says of itself, whatever it is made of; see `CarNumber`."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def words(self) -> str: ...
+    @property
+    def sign(self) -> str: ...
+    @property
+    def quantity(self) -> Quantity: ...
+    @property
+    def roles(self) -> tuple[str, ...]: ...
+    @property
+    def needs_radius(self) -> bool: ...
+
+
 @dataclass(frozen=True)
-class CarNumbers(Effect):
-    """Some numbers of the car.
+class OfTheCar(Effect):
+    """Numbers of the car that are made of the points of some roles."""
 
-    Attributes:
-        numbers: what they are.
-    """
-
-    numbers: tuple[CarNumber, ...]
-
-    @classmethod
-    def of(cls, name: str, gives: str, *numbers: CarNumber) -> CarNumbers:
-        """The effect that gives some numbers of one quantity."""
-        sign = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
-        return cls(name, gives, sign, derivative=0, quantities=(numbers[0].quantity,), numbers=numbers)
+    numbers: tuple[NumberOfTheCar, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -148,6 +155,41 @@ class CarNumbers(Effect):
         """The points of their roles."""
         return {point for role in self.lines for point in topology.role(role)}
 
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
+        """A role or the wheel's radius is missing."""
+        for role in self.lines:
+            if not topology.role(role):
+                return no_role(self.name, role, topology)
+        if wheel_radius is not None or not any(number.needs_radius for number in self.numbers):
+            return ""
+        return (
+            f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
+            f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
+        )
+
+
+def signs_of(numbers: Sequence[NumberOfTheCar]) -> str:
+    """Where each is positive, in words."""
+    return "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
+
+
+@dataclass(frozen=True)
+class CarNumbers(OfTheCar):
+    """Some numbers of the car.
+
+    Attributes:
+        numbers: what they are.
+    """
+
+    numbers: tuple[CarNumber, ...]
+
+    @classmethod
+    def of(cls, name: str, gives: str, *numbers: CarNumber) -> CarNumbers:
+        """The effect that gives some numbers of one quantity."""
+        return cls(
+            name, gives, signs_of(numbers), derivative=0, quantities=(numbers[0].quantity,), numbers=numbers
+        )
+
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Each number, (..., N)."""
         corner = corner_of(poses)
@@ -162,26 +204,11 @@ class CarNumbers(Effect):
         return {quantity.name: {n.name: n.errors(corner, found[n.name], unit) for n in self.numbers}}
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
-        """A role or the wheel's radius is missing."""
-        radius = wheel_radius is None and any(number.needs_radius for number in self.numbers)
-        problem = refused(self.name, self.lines, topology, radius)
-        if problem:
-            return problem
-        problems = (number.refusal(topology, drawn) for number in self.numbers)
-        return next((f"{problem}, or leave {self.name!r} out" for problem in problems if problem), "")
-
-
-def refused(effect: str, roles: Sequence[str], topology: Topology, lacks_radius: bool) -> str:
-    """Why a car does not have an effect and what to do, in words; empty if nothing of these is missing."""
-    for role in roles:
-        if not topology.role(role):
-            return no_role(effect, role, topology)
-    if not lacks_radius:
-        return ""
-    return (
-        f"{effect!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
-        f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {effect!r} out"
-    )
+        """What it is made of is missing, or a number has no meaning in the drawing."""
+        problem = super().refusal(topology, drawn, wheel_radius)
+        problems = (number.refusal(topology, drawn) for number in self.numbers if not problem)
+        own = next((problem for problem in problems if problem), "")
+        return f"{own}, or leave {self.name!r} out" if own else problem
 
 
 def corner_of(poses: Poses) -> Corner[Array]:

@@ -59,6 +59,8 @@ READ_FIRST = (
     "kingpin",
     "half_track_change",
     "recession",
+    "roll_centre_height",
+    "scrub_radius",
     "kingpin_offset",
     "mechanical_trail",
     "damper_length",

@@ -50,6 +50,7 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 from math import sqrt
@@ -70,7 +71,7 @@ from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
-from validate.reference.effects.car import KNUCKLE, Car
+from validate.reference.effects.car import KNUCKLE, Car, DrawnCar
 from validate.reference.effects.effect import RACK
 from validate.reference.effects.registry import EFFECTS, available
 from validate.reference.in_doubles import (
@@ -354,12 +355,17 @@ class _Held:
         off themselves.
         """
         wanted = available(self.of_car, provided(self.design))
-        cars: dict[str | None, Car] = {None: self._car(off, [jet.value for jet in solved], known, growth)}
+        needs = {need for effect in wanted.values() for need in effect.needs}
+        whole = drawn_car(self.design, float)
+        # Each point has columns of its own: only those that a number is made of.
+        drawn = replace(whole, ends={role: ends for role, ends in whole.ends.items() if role in needs})
+        places = [jet.value for jet in solved]
+        cars: dict[str | None, Car] = {None: self._car(drawn, off, places, known, growth)}
         for way, (driven, driving) in along.items():
             pose = [Dual(jet.value, jet.rate) for jet in driven]
             points, turns = driving.points_of(driven), body_turns(driven, driving)
             states = {n: [values_of(order_of(p, d), len(off)) for d in range(3)] for n, p in points.items()}
-            cars[way] = self._car(off, pose, driving, growth, self._per_length(states, turns)[1])
+            cars[way] = self._car(drawn, off, pose, driving, growth, self._per_length(states, turns)[1])
         found = {}
         for name, effect in wanted.items():
             number = effect.evaluate(cars[effect.along])
@@ -369,6 +375,7 @@ class _Held:
 
     def _car(
         self,
+        drawn: DrawnCar,
         off: Array,
         pose: Sequence[Scalar],
         known: Known,
@@ -376,7 +383,6 @@ class _Held:
         per_length: Array | None = None,
     ) -> Car:
         """The car, each of whose points is off by itself; where it moves, that moves it otherwise too."""
-        drawn = drawn_car(self.design, float)
         placed = known.equations.points_of(pose, drawn.points)
         body = self.design.role(KNUCKLE)
         turns = per_length is not None and body in self.design.mechanism.frames
