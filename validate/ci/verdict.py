@@ -15,8 +15,8 @@ from validate.output.report import (
     about,
     agreeing,
     explained_lines,
-    heading,
     held_to,
+    kind,
     pair_of,
     severity,
     share_of,
@@ -225,7 +225,7 @@ def agreement(record: Record, most: int) -> Table:
     rows += [
         (name, "", Cell(NOT_TESTED, f"not run: {record.stopped}", NOT_TESTED), {}) for name in record.not_run
     ]
-    quantities = list(dict.fromkeys(heading for *_, cells in rows for heading in cells))
+    quantities = list(dict.fromkeys(words for *_, cells in rows for words in cells))
     rest = {*sorted(range(len(rows)), key=lambda i: rows[i][2].verdict == "agrees")[most:]}
     kept = [row for i, row in enumerate(rows) if i not in rest]
     blank = {True: Cell("not asked for"), False: Cell(NOT_TESTED, verdict=NOT_TESTED)}
@@ -248,13 +248,12 @@ def _rows(one: Examined) -> Iterator[tuple[str, str, Cell, dict[str, Cell]]]:
         verdict = word(outcome.status)
         if why and verdict == "agrees":
             verdict = standing(one)[0]  # one of the other formulations has no answer
-        cells = {heading(row.quantity, row.name): _cell(row) for row in worst_rows(outcome)}
+        cells = {kind(row.quantity, row.name): _cell(row) for row in worst_rows(outcome, kind)}
         yield one.name, pair_of(outcome), Cell(verdict, why, verdict), cells
 
 
 def _cell(row: Comparison) -> Cell:
     if row.verdict == "not given":
         return Cell(row.verdict, row.name, row.verdict)
-    of = "" if row.name == heading(row.quantity, row.name) else f"{row.name}, "
     text = f"disagrees, {used(row.share)}" if row.verdict == "disagrees" else row.verdict
-    return Cell(text, f"{used(row.share)}: {of}{when(row, 4)}", row.verdict)
+    return Cell(text, f"{used(row.share)}: {row.name}, {when(row, 4)}", row.verdict)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -78,8 +78,8 @@ def heading(quantity: str, name: str) -> str:
 
 def about(quantity: str, name: str) -> str:
     """What a number is, in words, such as position of a point; an angle of the wheel by its name."""
-    kind = QUANTITIES[quantity]
-    return name if kind.of == "car" else f"{kind.words} of {name}"
+    given = QUANTITIES[quantity]
+    return name if given.of == "car" else f"{given.words} of {name}"
 
 
 def pair_of(outcome: Outcome) -> str:
@@ -87,18 +87,27 @@ def pair_of(outcome: Outcome) -> str:
     return " and ".join(solution.formulation for solution in outcome.solutions)
 
 
-def worst_rows(outcome: Outcome) -> list[Comparison]:
+def kind(quantity: str, name: str) -> str:
+    """Under which words all numbers of its kind stand together: position, angle, dimension."""
+    return QUANTITIES[quantity].words
+
+
+def worst_rows(outcome: Outcome, by: Callable[[str, str], str] = heading) -> list[Comparison]:
     """For each quantity the row that uses most of its tolerance, or exceeds it the most."""
     # A solver that states an accuracy need not give everything.
     order = OF_WHAT_IS_GIVEN if outcome.stated else OF_EVERYTHING
-    return list(worst_of(outcome.rows, order).values())
+    return list(worst_of(outcome.rows, order, by).values())
 
 
-def worst_of(rows: Iterable[Comparison], order: Sequence[str] = OF_WHAT_IS_GIVEN) -> dict[str, Comparison]:
+def worst_of(
+    rows: Iterable[Comparison],
+    order: Sequence[str] = OF_WHAT_IS_GIVEN,
+    by: Callable[[str, str], str] = heading,
+) -> dict[str, Comparison]:
     """By heading the row whose verdict is the last one in an order, of several the largest share."""
     worst: dict[str, Comparison] = {}
     for row in rows:
-        key = heading(row.quantity, row.name)
+        key = by(row.quantity, row.name)
         if key not in worst or severity(row, order) > severity(worst[key], order):
             worst[key] = row
     return worst

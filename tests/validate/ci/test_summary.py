@@ -50,7 +50,7 @@ def test_the_verdict_is_the_first_sentence_and_each_scene_has_a_row_of_quantitie
     lines = text.splitlines()
     assert lines[2].startswith("**Disagree**: 1 of 2 scenes agree; disagrees: two (exit status 1: ")
     one, two = table(text)
-    quantities = {"position", "velocity", "acceleration", "angular velocity", "camber", "kingpin"}
+    quantities = {"position", "velocity", "acceleration", "angular velocity", "wheel angle"}
     assert quantities <= one.keys()
     assert {one[quantity] for quantity in quantities} == {"agrees"}
     assert {two[quantity] for quantity in quantities - {"velocity"}} == {"agrees"}
