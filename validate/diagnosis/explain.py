@@ -211,7 +211,7 @@ def _pairs(evidence: Evidence) -> Iterator[_Found]:
     thin = replace(evidence.at(few.tolist()), wrong=tuple(largest))
     for first in KINDS:
         if first.opens and (evidence.over_time or not first.of_time):
-            promising = {key for key, _ in _seconds(thin, first)}
+            promising = None if first.neighbours else {key for key, _ in _seconds(thin, first)}
             yield from _seconds(evidence, first, promising).values()
 
 

@@ -52,6 +52,7 @@ class Kind:
             is sought in what the first would make of the held numbers.
         last: whether it is tried only on what nothing else explains, because it says little.
         of_time: whether it makes sense of numbers over time only, or of a car whose inputs are known.
+        neighbours: whether it takes numbers from the rows beside, so that some rows alone do not show it.
     """
 
     name: str
@@ -62,3 +63,4 @@ class Kind:
     closes: bool = False
     last: bool = False
     of_time: bool = False
+    neighbours: bool = False

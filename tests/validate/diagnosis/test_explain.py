@@ -75,6 +75,10 @@ def by_differences(places: Mapping[str, Array], times: Array) -> Mapping[str, Ar
     return {n: np.gradient(p, times, axis=0) for n, p in places.items()}
 
 
+def padded(places: Array, times: Array) -> Array:
+    return np.concatenate([np.diff(places, axis=0) / np.diff(times)[:, None], np.zeros((1, 3))])
+
+
 def mirrored(held: Solution) -> Numbers:
     side = np.array([1.0, -1.0, 1.0])
     return {**each(held, STATES, lambda v: v * side), **each(held, TURNS, lambda v: -v * side)}
@@ -140,6 +144,31 @@ FAULTS: Mapping[str, tuple[Callable[[Solution], Numbers], str, str]] = {
         lambda h: {"velocity": h.numbers["acceleration"], "acceleration": h.numbers["velocity"]},
         "swapped",
         "acceleration is swapped with velocity",
+    ),
+    "one sample late": (
+        lambda h: each(h, (*STATES, *TURNS, "wheel"), lambda v: np.concatenate([v[:1], v[:-1]])),
+        "sample",
+        "toe, caster: one sample late, the first one twice",
+    ),
+    "one sample late, and toe out": (
+        lambda h: angle(h, "toe", lambda v: -np.roll(v, 1)),
+        "sample and sign",
+        "toe: one sample late, the last one first, and the other sign",
+    ),
+    "differences padded with a zero": (
+        lambda h: {"velocity": {n: padded(p, h.times) for n, p in h.position.items()}},
+        "differences",
+        "velocity: rates by forward differences, zero in the last row",
+    ),
+    "slopes for angles": (
+        lambda h: each(h, ("wheel",), np.tan),
+        "definition",
+        "camber, kingpin, toe, caster: the slope, no angle",
+    ),
+    "sines for angles": (
+        lambda h: each(h, ("wheel",), np.sin),
+        "definition",
+        "camber, kingpin, toe, caster: the sine, no angle",
     ),
     "degrees and sign": (lambda h: camber(h, lambda v: -np.degrees(v)), "sign and unit", "degrees"),
     "degrees, printed": (
@@ -288,6 +317,19 @@ def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong(nam
     assert [one.kind for one in found[:2]] == ["hardpoint", "unit"]
     assert "tie_rod_outer.z drawn 2 mm too high" in found[0].words
     assert "degrees for radians" in found[1].words
+
+
+@pytest.mark.parametrize("name", ["double-wishbone", "bmw-e90-strut", "wheel-travel"])
+@pytest.mark.parametrize("quantities", [("position",), ("wheel",), (*STATES, *TURNS, "wheel")])
+def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_is_said(
+    name: str, quantities: tuple[str, ...]
+) -> None:
+    numbers = drawn_with(name, tie_rod_inner__z=5.0)
+    given = {quantity: numbers[quantity] for quantity in quantities}
+    found = check(lambda _: given, solved(name)[0], accuracy=1e-6).explanations
+    assert [one.kind for one in found] == ["hardpoint"]
+    assert "tie_rod_inner.z drawn 5 mm too high" in found[0].words
+    assert found[0].words.endswith("and rack_centre with it")
 
 
 @pytest.mark.parametrize("name", SCENES)

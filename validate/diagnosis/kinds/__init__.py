@@ -18,7 +18,7 @@ from validate.diagnosis.kinds.numbers import (
     swapped,
 )
 from validate.diagnosis.kinds.rates import differences, rates_per_input
-from validate.diagnosis.kinds.time_shift import shifted_in_time
+from validate.diagnosis.kinds.time_shift import one_sample_off, shifted_in_time
 
 UNIT, OFFSET = "unit", "offset"
 KINDS = (
@@ -32,6 +32,7 @@ KINDS = (
     Kind("swapped", swapped),
     Kind("differences", differences, of_time=True),
     Kind("per input", rates_per_input, opens=True, of_time=True),
+    Kind("sample", one_sample_off, opens=True, neighbours=True),
     Kind("closure", other_closures, solves=True, first=True, of_time=True),
     Kind("input", wrong_inputs, solves=True, first=True, of_time=True),
     Kind("branch", other_assemblies, solves=True, of_time=True),

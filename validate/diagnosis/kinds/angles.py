@@ -2,7 +2,8 @@
 
 Ours is projected: atan2(p, q) with p and q the components of a line along two directions of the car. With l
 the line and r its third component, sources also print arcsin(p / |l|) (camber: Adams' turning tables; toe:
-OptimumK), the sine p / |l| itself, the slope p / q, and the angle to the plane's other direction.
+OptimumK), the sine p / |l| itself, that of the projected angle, the slope p / q, and the angle to the
+plane's other direction.
 """
 
 from __future__ import annotations
@@ -26,12 +27,13 @@ DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
     "the angle to the opposite direction": lambda p, q, n: np.arctan2(p, -q),
     "the component of a unit vector, no angle": lambda p, q, n: p / n,
     "the slope, no angle": lambda p, q, n: p / q,
+    "the sine, no angle": lambda p, q, n: p / np.hypot(p, q),
 }
 """By words, from p, q and the line's length."""
 
 
 def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each definition, of each angle that disagrees."""
+    """Each definition, of all angles that disagree."""
     topology = evidence.scene.mechanism.topology
     for row in evidence.wrong:
         angle = ANGLES.get(row[1])
@@ -49,4 +51,4 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
                 value = rule(p, q, length)
             if np.isfinite(value).all():
                 allowed = evidence.rounded(row, value) + 8.0 * EPS * size / length
-                yield Hypothesis((row, words), words, {row: (value, allowed)}, cost=1.2)
+                yield Hypothesis(words, words, {row: (value, allowed)}, cost=1.2)

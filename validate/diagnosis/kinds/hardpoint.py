@@ -2,7 +2,8 @@
 
 One coordinate first, then two, then the three of a point. With J how the numbers change with each coordinate
 of the drawing (central differences of solved designs), least squares of J a = theirs - ours picks the
-likeliest; their amounts are found by solving the corrected designs.
+likeliest; their amounts are found by solving the corrected designs. A point that another one stands in for,
+as the tie rod's inner end does for the rack's centre, is misread with it or alone.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import LIKELY, fitted
 
 Array = NDArray[np.float64]
-Names = tuple[str, ...]
+Coordinate = tuple[str, ...]
+"""Of a point, such as `tie_rod_outer.z`, and of the points that are read with it."""
+Chosen = tuple[Coordinate, ...]
 
 STEP = 0.05  # mm, of the differences
 MOST_INSTANTS = 25  # that amounts are found from
@@ -51,9 +54,9 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     ours, theirs = (np.concatenate([part[row][at].ravel() for row in looked]) for part in evidence.both)
     if not np.isfinite(theirs).all():
         return
-    names = [f"{point}.{axis}" for point in scene.mechanism.points for axis in "xyz"]
+    names = _coordinates(scene)
     steps = STEP * np.concatenate([np.eye(len(names)), -np.eye(len(names))])
-    read = _read(few, dict(zip(names, steps.T, strict=True)), looked)
+    read = _read(few, _offsets(few, names, steps.T), looked)
     slopes = (read[: len(names)] - read[len(names) :]) / (2.0 * STEP)
     usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
     names, slopes = [n for n, use in zip(names, usable, strict=True) if use], slopes[usable]
@@ -62,9 +65,9 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
         found = []
         for chosen in choices:
 
-            def moved(amounts: Array, chosen: Names = chosen) -> Array:
+            def moved(amounts: Array, chosen: Chosen = chosen) -> Array:
                 near = np.clip(amounts, -farthest, farthest)
-                return _read(few, dict(zip(chosen, near.T, strict=True)), looked)
+                return _read(few, _offsets(few, chosen, near.T), looked)
 
             amounts = fitted(moved, [0.0] * len(chosen), STEP, theirs)
             if amounts is not None and np.abs(amounts).max() < farthest:
@@ -84,24 +87,55 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
             return
 
 
+def _coordinates(scene: Scene) -> list[Coordinate]:
+    """Every one of the drawing; those of a point that others stand at the place of also with theirs."""
+    points = scene.mechanism.points
+    with_others: dict[str, list[str]] = {}
+    for missing, point in scene.mechanism.topology.stand_ins.items():
+        if missing in points and points[missing] == points[point]:
+            with_others.setdefault(point, []).append(missing)
+    together = [(point, *others) for point, others in with_others.items()]
+    return [
+        tuple(f"{name}.{axis}" for name in some)
+        for some in (*together, *((point,) for point in points))
+        for axis in "xyz"
+    ]
+
+
+def _offsets(scene: Scene, chosen: Sequence[Coordinate], amounts: Array) -> dict[str, Array]:
+    """Offsets of designs, by dotted name, from those of chosen coordinates, (coordinates, designs)."""
+    mechanism = scene.mechanism
+    # A point that is varied, by nothing, does not go along with the one that stands in for it.
+    alone = [f"{name}.x" for name in mechanism.topology.stand_ins if name in mechanism.points]
+    offsets = {name: np.zeros(amounts.shape[1]) for name in (*alone, *(n for names in chosen for n in names))}
+    for names, amount in zip(chosen, amounts, strict=True):
+        for name in names:
+            offsets[name] += amount
+    return offsets
+
+
 def _read(scene: Scene, offsets: Mapping[str, Array], rows: Sequence[Row]) -> Array:
     """Numbers of rows of several designs, (designs, numbers); NaN of designs that cannot be solved."""
     found = sweep(scene, offsets=offsets)
     return np.concatenate([found.numbers[q][name].reshape(len(found), -1) for q, name in rows], axis=1)
 
 
-def _likeliest(names: Sequence[str], slopes: Array, gap: Array, farthest: float) -> Iterator[list[Names]]:
+def _likeliest(
+    names: Sequence[Coordinate], slopes: Array, gap: Array, farthest: float
+) -> Iterator[list[Chosen]]:
     """The choices of one, two and three coordinates that leave the least by linear least squares."""
     products, right, whole = slopes @ slopes.T, slopes @ gap, float(gap @ gap)
     places = range(len(names))
-    threes = [t for t in combinations(places, 3) if len({names[i].rpartition(".")[0] for i in t}) == 1]
+    twos = [(i, k) for i, k in combinations(places, 2) if not {*names[i]} & {*names[k]}]
+    points = [tuple(name.rpartition(".")[0] for name in some) for some in names]
+    threes = [t for t in combinations(places, 3) if len({points[i] for i in t}) == 1]
     groups: tuple[list[tuple[int, ...]], ...] = (
         [(i,) for i in places],
-        [*combinations(places, 2)],
+        [*twos],
         [*threes],
     )
     for choices in groups:
-        left: list[tuple[float, Names]] = []
+        left: list[tuple[float, Chosen]] = []
         for some in choices:
             chosen = list(some)
             amounts = np.linalg.lstsq(products[np.ix_(chosen, chosen)], right[chosen], rcond=1e-12)[0]
@@ -111,10 +145,10 @@ def _likeliest(names: Sequence[str], slopes: Array, gap: Array, farthest: float)
         yield [chosen for _, chosen in sorted(left)[:LIKELIEST]]
 
 
-def _rows(evidence: Evidence, chosen: Names, amounts: Array) -> dict[Row, tuple[Array, Array]]:
+def _rows(evidence: Evidence, chosen: Chosen, amounts: Array) -> dict[Row, tuple[Array, Array]]:
     """All numbers of a corrected design; none where it cannot be solved."""
-    offsets = {name: np.array([amount]) for name, amount in zip(chosen, amounts.tolist(), strict=True)}
-    found = sweep(evidence.solved.fine, offsets=offsets)
+    scene = evidence.solved.fine
+    found = sweep(scene, offsets=_offsets(scene, chosen, amounts[:, None]))
     if not found.solved.all():
         return {}
     at = np.searchsorted(evidence.scene.instants, evidence.times)
@@ -126,11 +160,14 @@ def _rows(evidence: Evidence, chosen: Names, amounts: Array) -> dict[Row, tuple[
     }
 
 
-def _said(evidence: Evidence, coordinate: str, amount: float) -> str:
+def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:
     """A coordinate, how far off it is drawn and to which side."""
+    coordinate, *others = names
     point, _, axis = coordinate.rpartition(".")
     place = evidence.scene.mechanism.points[point]["xyz".index(axis)]
     direction = np.eye(3)["xyz".index(axis)] * np.sign(amount)
     words = [word for way, word in TOO.items() if evidence.axes.component(direction, way) > 0.999]
     word = words[0] if words else "large" if amount > 0.0 else "small"
-    return f"{coordinate} drawn {abs(amount):.4g} mm too {word}, at {place + amount:.6g} for {place:.6g}"
+    with_it = "".join(f", and {other.rpartition('.')[0]} with it" for other in others)
+    drawn = f"{abs(amount):.4g} mm too {word}, at {place + amount:.6g} for {place:.6g}"
+    return f"{coordinate} drawn {drawn}{with_it}"

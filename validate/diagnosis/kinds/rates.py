@@ -3,8 +3,8 @@
 Their velocity is then what their positions change by from instant to instant. With h the time between two
 instants: forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
 accelerations also (x_{k+1} - 2 x_k + x_{k-1}) / h^2. At the ends, where the rule has no neighbour, it is
-one-sided, or the neighbour's number is repeated. Differences of numbers that disagree themselves explain
-nothing: any car's rates are nearly differences of its positions.
+one-sided, or the neighbour's number is repeated, or a zero stands for it. Differences of numbers that
+disagree themselves explain nothing: any car's rates are nearly differences of its positions.
 """
 
 from __future__ import annotations
@@ -38,6 +38,16 @@ def _backward(x: Array, t: Array) -> Array:
     return np.concatenate([steps[:1], steps])
 
 
+def _forward_and_zero(x: Array, t: Array) -> Array:
+    steps = _steps(x, t)
+    return np.concatenate([steps, 0.0 * steps[-1:]])
+
+
+def _zero_and_backward(x: Array, t: Array) -> Array:
+    steps = _steps(x, t)
+    return np.concatenate([0.0 * steps[:1], steps])
+
+
 def _central(x: Array, t: Array) -> Array:
     return np.asarray(np.gradient(x, t, axis=0))
 
@@ -49,6 +59,11 @@ def _central_second_order(x: Array, t: Array) -> Array:
 def _repeated(x: Array, t: Array) -> Array:
     inner = _central(x, t)[1:-1]
     return np.concatenate([inner[:1], inner, inner[-1:]])
+
+
+def _zeros_outside(x: Array, t: Array) -> Array:
+    inner = _central(x, t)[1:-1]
+    return np.concatenate([0.0 * inner[:1], inner, 0.0 * inner[-1:]])
 
 
 def _second(x: Array, t: Array) -> Array:
@@ -66,6 +81,9 @@ ONCE: dict[str, Rule] = {
     "central differences, repeated at the ends": _repeated,
     "forward differences": _forward,
     "backward differences": _backward,
+    "central differences, zero at the ends": _zeros_outside,
+    "forward differences, zero in the last row": _forward_and_zero,
+    "backward differences, zero in the first row": _zero_and_backward,
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),

@@ -1,8 +1,8 @@
-"""A time shift: the same curves so many seconds earlier or later."""
+"""A time shift: the same curves so many seconds, or one sample, earlier or later."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,6 +64,24 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
         allowed[~inside] = np.inf
         rows[row] = (found[row], allowed)
     yield Hypothesis("shift", words, rows, 1, 2.0, whole=True)
+
+
+SAMPLES: Mapping[str, Callable[[Array], Array]] = {
+    "one sample late, the first one twice": lambda x: np.concatenate([x[:1], x[:-1]]),
+    "one sample early, the last one twice": lambda x: np.concatenate([x[1:], x[-1:]]),
+    "one sample late, the last one first": lambda x: np.roll(x, 1, axis=0),
+    "one sample early, the first one last": lambda x: np.roll(x, -1, axis=0),
+}
+"""In words, and what is then given of numbers."""
+
+
+def one_sample_off(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Every number stands in the row after or before its own."""
+    for words, moved in SAMPLES.items():
+        # Rows that agree as well, so that it is known whether they would under the fault.
+        looked = (*evidence.wrong, *evidence.beside)
+        rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in looked}
+        yield Hypothesis(words, words, rows, cost=1.2)
 
 
 def _longer_motion(evidence: Evidence, shift: float, pad: float) -> Motion | None:
