@@ -117,6 +117,7 @@ class Evidence:
         allowed: how far a given number may be from the one that it is held to, likewise.
         wrong: the rows that disagree.
         over_time: whether the instants are times; else rows of a file, of inputs or travels.
+        other_cars: whether the instants are those of the scene, so that other cars are solved there.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
         units: of rows that have another than their quantity, such as of derivatives.
@@ -133,6 +134,7 @@ class Evidence:
     solved: Solved
     in_our_units: bool = True
     over_time: bool = True
+    other_cars: bool = True
     own: Rows = field(default_factory=dict)
     known: Mapping[str, Array] = field(default_factory=dict)
     units: Mapping[Row, str] = field(default_factory=dict)

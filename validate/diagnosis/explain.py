@@ -82,7 +82,7 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
         return ()
     quick = [kind for kind in KINDS if not kind.solves and not kind.last]
     found = list(_supposed(evidence, quick))
-    if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
+    if evidence.other_cars and _open(evidence, found, mostly=True) and _elsewhere(evidence):
         solving = [kind for kind in KINDS if kind.solves]
         deep = list(_supposed(evidence, [kind for kind in solving if kind.first]))
         if _open(evidence, deep):

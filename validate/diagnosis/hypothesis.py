@@ -51,7 +51,7 @@ class Kind:
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
         last: whether it is tried only on what nothing else explains, because it says little.
-        of_time: whether it makes sense of numbers over time only, or of a car whose inputs are known.
+        of_time: whether it makes sense of numbers over time only.
         neighbours: whether it takes numbers from the rows beside, so that some rows alone do not show it.
     """
 

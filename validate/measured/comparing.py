@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import QUANTITIES
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
 from validate.diagnosis.evidence import Evidence, Solved
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.mapping import Measured
+from validate.measured.mapping import ARCSINE, Measured
 from validate.measured.meanings import PLACES, TIME
 from validate.measured.poses import Driven, poses_of
 from validate.measured.supposed import meant, meant_otherwise
@@ -27,11 +27,13 @@ from validate.tables.errors import FileError
 from validate.tables.units import named
 
 Array = NDArray[np.float64]
+Rows = NDArray[np.intp]
 Row = tuple[str, str]
 
 TOO_COARSE = (
     "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
 )
+FEWEST = 5  # rows that other cars are solved at
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ def compare_results(
     notes = (*notes, *([f"{coarse} is not tested: {TOO_COARSE}"] if coarse else []), *faults)
     outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
-    explanations = _explained(scene, measured, by_row, ours, wrong, factor)
+    explanations = _explained(poses.driven, scene, measured, by_row, ours, wrong, factor)
     if wrong:
         found = meant_otherwise(scene, measured, held, accuracy, factor, poses.driven)
         names = tuple(map(".".join, wrong))
@@ -183,6 +185,7 @@ def _too_few(measured: Measured, driven: Driven, held: Sequence[Held], compared:
 
 
 def _explained(
+    driven: Driven,
     scene: Scene,
     measured: Measured,
     by_row: dict[Row, list[Held]],
@@ -201,7 +204,11 @@ def _explained(
     }
     if not whole.keys() & wrong:
         return ()
-    told = np.all([np.isfinite(h.gap) for columns in whole.values() for h in columns], axis=0)
+    told = np.flatnonzero(np.all([np.isfinite(h.gap) for columns in whole.values() for h in columns], axis=0))
+    over_time = measured.independent[0].meaning.kind == TIME
+    there = _on_the_grid(scene, measured.instants[told]) if over_time else None
+    if not over_time and not any(h.series.definition == ARCSINE for c in whole.values() for h in c):
+        told, there = _by_rows(driven, [s.values for s in measured.independent], told)
 
     def of(number: Callable[[Held], Array]) -> dict[Row, Array]:
         stacked = {
@@ -209,19 +216,18 @@ def _explained(
         }
         return {row: a[:, 0] if _of_car(row) else a for row, a in stacked.items()}
 
-    over_time = measured.independent[0].meaning.kind == TIME
-    times = measured.instants[told] if over_time else np.arange(float(told.sum()))
-    there = _on_the_grid(scene, times) if over_time else scene
+    times = measured.instants[told] if over_time else np.arange(float(len(told)))
     theirs = {row: unit for row, columns in whole.items() if (unit := _given_in(columns))}
     evidence = Evidence(
-        scene=there,
-        times=times if there is scene else there.instants,
+        scene=there or scene,
+        times=there.instants if there else times,
         given=of(lambda h: h.series.values),
         held=of(lambda h: h.ours),
         allowed=of(lambda h: factor * (h.swing + h.bound) + SMALLEST),
         wrong=tuple(row for row in whole if row in wrong),
-        solved=Solved(there),
+        solved=Solved(there or scene),
         over_time=over_time,
+        other_cars=over_time or there is not None,
         own=of(lambda h: factor * (h.tolerance - h.swing - h.bound)),
         units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
         theirs=theirs,
@@ -248,14 +254,41 @@ def _given_in(columns: Sequence[Held]) -> tuple[str, float] | None:
     return (unit, factor) if (unit := named(factor, ours)) else None
 
 
-def _on_the_grid(scene: Scene, times: Array) -> Scene:
+def _on_the_grid(scene: Scene, times: Array) -> Scene | None:
     """The scene at a file's instants, where these are evenly apart: other cars are solved there."""
     if len(times) < 2:
-        return scene
+        return None
     ends = {"start": float(times[0]), "stop": float(times[-1]), "samples": len(times)}
     there = scene.model_copy(update={"time": scene.time.model_copy(update=ends)})
     even = np.abs(there.instants - times).max() <= 1e-12 * float(np.ptp(times))
-    return there if times[-1] > times[0] and even else scene
+    return there if times[-1] > times[0] and even else None
+
+
+def _by_rows(driven: Driven, values: Sequence[Array], rows: Rows) -> tuple[Rows, Scene | None]:
+    """Some rows of a file as a motion, one at each whole second, and their order in it.
+
+    From row to row what they are taken by goes along smoothly, so rows are put in order where they are not.
+    """
+    if len(values) > 1 or len(rows) < FEWEST:
+        return rows, None
+    steps = np.diff(values[0][rows])
+    if not ((steps >= 0.0).all() or (steps <= 0.0).all()):
+        rows = rows[np.argsort(values[0][rows], kind="stable")]
+    inputs, _ = driven.inputs([values[0][rows]])
+    times = np.arange(float(len(rows))).tolist()
+    laws = {
+        name: {"table": {"times": times, "values": value.tolist()}}
+        if np.ptp(value)
+        else {"constant": float(value[0])}
+        for name, value in inputs.items()
+    }
+    content = driven.scene.model_dump(exclude_none=True, exclude={"points"})
+    effects = [
+        name for name in driven.scene.effects if not EFFECTS[name].derivative and not EFFECTS[name].way
+    ]
+    time = {"start": 0.0, "stop": times[-1], "samples": len(rows)}
+    content |= {"inputs": laws, "time": time, "effects": effects}
+    return rows, Scene.from_mapping(content, driven.scene.title or "scene")
 
 
 def _solution(measured: Measured, by_row: dict[Row, list[Held]]) -> Solution:

@@ -350,9 +350,11 @@ def poses_of(scene: Scene, measured: Measured) -> OverTime | OverMap:
 
 def asked_scene(scene: Scene, measured: Measured) -> Scene:
     """The scene with the effects that a file's columns need, and with all points."""
-    effects = dict.fromkeys(scene.effects)
+    effects, available = dict.fromkeys(scene.effects), scene.mechanism.effects
     for s in measured.numbers:
-        effects |= {effect.name: None for effect in EFFECTS.values() if _gives(effect, s.meaning)}
+        giving = [effect.name for effect in EFFECTS.values() if _gives(effect, s.meaning)]
+        # Where the car has none of them, one says what is missing.
+        effects |= dict.fromkeys([name for name in giving if name in available] or giving)
     content = scene.model_dump(exclude_none=True, exclude={"points"})
     return Scene.from_mapping(content | {"effects": tuple(effects)}, scene.title or "scene")
 

@@ -33,10 +33,10 @@ KINDS = (
     Kind("differences", differences, of_time=True),
     Kind("per input", rates_per_input, opens=True, of_time=True),
     Kind("sample", one_sample_off, opens=True, neighbours=True),
-    Kind("closure", other_closures, solves=True, first=True, of_time=True),
+    Kind("closure", other_closures, solves=True, first=True),
     Kind("input", wrong_inputs, solves=True, first=True, of_time=True),
-    Kind("branch", other_assemblies, solves=True, of_time=True),
-    Kind("hardpoint", misread_hardpoints, solves=True, of_time=True),
+    Kind("branch", other_assemblies, solves=True),
+    Kind("hardpoint", misread_hardpoints, solves=True),
     Kind("time shift", shifted_in_time, solves=True, of_time=True),
     Kind("factor", factors, last=True),
 )

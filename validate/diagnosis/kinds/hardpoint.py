@@ -8,15 +8,15 @@ as the tie rod's inner end does for the rack's centre, is misread with it or alo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import combinations, islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, sweep
 from pointcoord.linkage.car_axes import Direction
-from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.evidence import Evidence, Row, kind_of
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import LIKELY, fitted
 
@@ -27,9 +27,12 @@ Chosen = tuple[Coordinate, ...]
 
 STEP = 0.05  # mm, of the differences
 MOST_INSTANTS = 25  # that amounts are found from
+ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
 LIKELIEST = 4  # of each number of coordinates
 # How many times what the best choice leaves another may leave.
 POORER = 30.0
+# By what rounder amounts may leave more than the found ones, of so many decimals at most, mm.
+CLOSE, DECIMALS = 1.1, 5
 # Of the car's size: what is read wrongly by more is another car, and whether it closes takes long to find.
 FARTHEST = 0.1
 TOO: Mapping[Direction, str] = {
@@ -43,9 +46,29 @@ TOO: Mapping[Direction, str] = {
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The likeliest, with more coordinates only where fewer do not do."""
+    """The likeliest; and where no drawing gives every number that is looked at, one that gives all but one.
+
+    A number that has a fault of its own hides what the others say.
+    """
+    looked, done = evidence.first_wrong, False
+    for one in _misread(evidence, looked, 3):
+        yield one
+        done |= _gives(evidence, one, looked)
+    if done or len(looked) < ENOUGH_NUMBERS or any(kind_of(row) != "car" for row in looked):
+        return
+    for left_out in looked:
+        others = tuple(row for row in looked if row != left_out)
+        yield from (one for one in _misread(evidence, others, 1) if _gives(evidence, one, others))
+
+
+def _gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:
+    return all(evidence.left(row, *one.rows[row]) <= 1.0 for row in rows)
+
+
+def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> Iterator[Hypothesis]:
+    """The likeliest by some numbers, with more coordinates, `most` at most, only where fewer do not do."""
     scene, every = evidence.solved.fine, evidence.scene.instants
-    looked, some = evidence.first_wrong, np.arange(0, len(every), -(-len(every) // MOST_INSTANTS))
+    some = np.arange(0, len(every), -(-len(every) // MOST_INSTANTS))
     if not np.isin(every[some], evidence.times).all():
         return
     time = scene.time.model_copy(update={"stop": float(every[some[-1]]), "samples": len(some)})
@@ -61,7 +84,7 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
     names, slopes = [n for n, use in zip(names, usable, strict=True) if use], slopes[usable]
     farthest = FARTHEST * float(np.ptp([*scene.mechanism.points.values()], axis=0).max())
-    for choices in _likeliest(names, slopes, theirs - ours, farthest):
+    for choices in islice(_likeliest(names, slopes, theirs - ours, farthest), most):
         found = []
         for chosen in choices:
 
@@ -71,8 +94,8 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
 
             amounts = fitted(moved, [0.0] * len(chosen), STEP, theirs)
             if amounts is not None and np.abs(amounts).max() < farthest:
-                (numbers,) = moved(amounts[None])
-                found.append((float(np.linalg.norm(theirs - numbers)), chosen, amounts))
+                left, amounts = _as_round_as_may_be(amounts, lambda sets: moved(sets) - theirs)
+                found.append((left, chosen, amounts))
         done = False
         for left, chosen, amounts in found:
             if left > POORER * min(rest for rest, _, _ in found):
@@ -81,10 +104,19 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
             if rows:
                 said = (_said(evidence, c, a) for c, a in zip(chosen, amounts.tolist(), strict=True))
                 count = len(chosen)
-                yield Hypothesis(chosen, " and ".join(said), rows, count, 1.5 + count, whole=True)
-                done |= all(evidence.left(row, *rows[row]) <= 1.0 for row in looked)
+                one = Hypothesis(chosen, " and ".join(said), rows, count, 1.5 + count, whole=True)
+                yield one
+                done |= _gives(evidence, one, looked)
         if done:
             return
+
+
+def _as_round_as_may_be(amounts: Array, gaps: Callable[[Array], Array]) -> tuple[float, Array]:
+    """What amounts leave, and these: least squares of printed digits miss what was read by a little."""
+    sets = np.stack([*(np.round(amounts, decimals) for decimals in range(DECIMALS)), amounts])
+    left = np.linalg.norm(gaps(sets), axis=1)
+    first = int(np.argmax(left <= CLOSE * left[-1]))
+    return float(left[first]), sets[first]
 
 
 def _coordinates(scene: Scene) -> list[Coordinate]:

@@ -1,0 +1,159 @@
+"""Tables over wheel travel or rack of a car with a fault: the fault is named, and nothing else is."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from curve_files import compared
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate
+
+Array = NDArray[np.float64]
+Table = dict[str, Array]
+Content = dict[str, Any]
+
+RANGES = {"wheel_travel": (-50.0, 50.0), "rack": (-25.0, 25.0)}
+COLUMNS = {"wheel_travel": "travel.wheel_centre", "rack": "input.rack"}
+ROWS = 21
+
+
+def asked(name: str, over: str) -> Scene:
+    """A built-in car that stands as drawn but for what goes from end to end."""
+    scene = Scene.load(name)
+    content = scene.model_dump(exclude_none=True)
+    steered = "rack" in scene.inputs
+    content["inputs"] = {"wheel_travel": {"constant": 0.0}} | ({"rack": {"constant": 0.0}} if steered else {})
+    content["inputs"][over] = {"sweep": list(RANGES[over])}
+    content["time"] = {"start": 0.0, "stop": 1.0, "samples": ROWS}
+    angles = ("wheel_angles", "toe", "caster")
+    content["effects"] = [n for n in angles if n in scene.mechanism.effects] or ["camber", "toe"]
+    return Scene.from_mapping(content, name)
+
+
+def moved(scene: Scene, **coordinates: float) -> Scene:
+    """The same car, drawn with some coordinates (point__axis) so much more."""
+    content = scene.model_dump(exclude_none=True)
+    points = {name: list(place) for name, place in content["mechanism"]["points"].items()}
+    for name, amount in coordinates.items():
+        point, _, axis = name.rpartition("__")
+        points[point]["xyz".index(axis)] += amount
+        if point == "tie_rod_inner":  # the rack is drawn where its end is
+            points["rack_centre"]["xyz".index(axis)] += amount
+    content["mechanism"]["points"] = points
+    return Scene.from_mapping(content, "moved")
+
+
+def explained(
+    scene: Scene, solved: Scene, over: str, digits: int, change: Callable[[Table], Table]
+) -> list[str]:
+    """What explains the table of a solved car, of so many decimals, beside the scene's."""
+    wheel = simulate(solved).numbers["wheel"]
+    table = change({over: np.linspace(*RANGES[over], ROWS), **{n: np.degrees(a) for n, a in wheel.items()}})
+    lines = [",".join(table)]
+    for row in zip(*table.values(), strict=True):
+        lines.append(",".join(f"{v:.1f}" if i == 0 else f"{v:.{digits}f}" for i, v in enumerate(row)))
+    columns: Content = {n: {"is": f"wheel.{n}", "unit": "deg"} for n in wheel}
+    columns[over] = {"is": COLUMNS[over], "unit": "mm"}
+    found = compared("\n".join(lines), {"columns": columns}, scene).outcome
+    assert not found.agreed
+    return [one.words for one in found.explanations]
+
+
+def same(table: Table) -> Table:
+    return table
+
+
+def toe_out(table: Table) -> Table:
+    return table | {"toe": -table["toe"]}
+
+
+def late(table: Table) -> Table:
+    first, *angles = table
+    return {first: table[first]} | {n: np.concatenate([table[n][:1], table[n][:-1]]) for n in angles}
+
+
+@pytest.mark.parametrize(
+    ("name", "coordinate", "amount", "over", "words"),
+    [
+        (
+            "double-wishbone",
+            "upper_arm_front__y",
+            -3.0,
+            "wheel_travel",
+            "upper_arm_front.y drawn 3 mm too far in",
+        ),
+        ("double-wishbone", "tie_rod_inner__z", 5.0, "wheel_travel", "tie_rod_inner.z drawn 5 mm too high"),
+        ("double-wishbone", "tie_rod_inner__z", 5.0, "rack", "tie_rod_inner.z drawn 5 mm too high"),
+        (
+            "hmmwv-front",
+            "upper_ball_joint__x",
+            4.0,
+            "wheel_travel",
+            "upper_ball_joint.x drawn 4 mm too far back",
+        ),
+        ("bmw-e90-strut", "strut_top__x", 6.0, "wheel_travel", "strut_top.x drawn 6 mm too far back"),
+        ("five-link", "toe_inner__z", 2.0, "wheel_travel", "toe_inner.z drawn 2 mm too high"),
+        ("semi-trailing-arm", "pivot_inner__z", 3.0, "wheel_travel", "pivot_inner.z drawn 3 mm too high"),
+    ],
+)
+def test_a_misread_hardpoint_is_named_with_its_amount_on_every_car(
+    name: str, coordinate: str, amount: float, over: str, words: str
+) -> None:
+    scene = asked(name, over)
+    (said,) = explained(scene, moved(scene, **{coordinate: amount}), over, 4, same)
+    assert words in said
+
+
+def test_two_misread_hardpoints_are_named_both() -> None:
+    scene = asked("double-wishbone", "wheel_travel")
+    other = moved(scene, upper_arm_front__z=2.0, tie_rod_outer__x=-3.0)
+    (said,) = explained(scene, other, "wheel_travel", 5, same)
+    assert "upper_arm_front.z drawn 2 mm too high" in said
+    assert "tie_rod_outer.x drawn 3 mm too far forward" in said
+
+
+def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own() -> None:
+    scene = asked("double-wishbone", "wheel_travel")
+    hardpoint, sign = explained(scene, moved(scene, tie_rod_inner__z=5.0), "wheel_travel", 4, toe_out)
+    assert "tie_rod_inner.z drawn 5 mm too high" in hardpoint
+    assert sign == "toe: the other sign"
+
+
+def test_rows_in_any_order_have_their_misread_hardpoint() -> None:
+    scene = asked("double-wishbone", "wheel_travel")
+    order = np.random.default_rng(2).permutation(ROWS)
+
+    def shuffled(table: Table) -> Table:
+        return {name: values[order] for name, values in table.items()}
+
+    (said,) = explained(scene, moved(scene, tie_rod_outer__z=1.0), "wheel_travel", 4, shuffled)
+    assert "tie_rod_outer.z drawn 1 mm too high" in said
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (late, "camber, kingpin, toe, caster: one sample late, the first one twice"),
+        (toe_out, "toe: the other sign"),
+        (lambda t: t | {"camber": 1.03 * t["camber"]}, "camber: 1.03 times ours"),
+    ],
+)
+def test_a_fault_of_the_numbers_alone_is_named(change: Callable[[Table], Table], words: str) -> None:
+    scene = asked("double-wishbone", "wheel_travel")
+    assert explained(scene, scene, "wheel_travel", 4, change) == [words]
+
+
+def test_noise_on_one_number_has_no_explanation() -> None:
+    scene = asked("double-wishbone", "wheel_travel")
+    noise = 1e-2 * np.random.default_rng(1).standard_normal(ROWS)
+    assert explained(scene, scene, "wheel_travel", 4, lambda t: t | {"toe": t["toe"] + noise}) == []
+
+
+def test_another_closure_is_named() -> None:
+    scene = asked("off-axis-strut", "wheel_travel")
+    content = scene.model_dump(exclude_none=True)
+    content["mechanism"]["closure"] = "collinear"
+    (said,) = explained(scene, Scene.from_mapping(content, "collinear"), "wheel_travel", 4, same)
+    assert "the car is closed as collinear, where the scene asks for drawn" in said
