@@ -234,6 +234,7 @@ def _seconds(
         for kind in KINDS:
             if not kind.closes or kind.name == first.name:
                 continue
+            second = {two.key: two for two in _merged(kind, evidence)}
             for two in _merged(kind, after):
                 both = replace(
                     two,
@@ -244,15 +245,20 @@ def _seconds(
                     looser=False,
                 )
                 carried = _carried(evidence, both)
-                if carried is not None and _needed(evidence, one, carried):
+                singly = [single for single in (one, second.get(two.key)) if single is not None]
+                if carried is not None and _needed(evidence, singly, carried):
                     found[one.key, (kind.name, two.key)] = carried
     return found
 
 
-def _needed(evidence: Evidence, one: Hypothesis, both: _Found) -> bool:
-    """Whether the second of two faults adds to what the first alone explains of the rows."""
-    alone = max(evidence.left(row, *one.rows[row]) for row in both.rows)
-    return both.leftover <= 1.0 or alone >= WORTH * both.leftover
+def _needed(evidence: Evidence, singly: Sequence[Hypothesis], both: _Found) -> bool:
+    """Whether each of two faults adds to what the other one alone explains of the rows."""
+    alone = (
+        max(evidence.left(row, *one.rows[row]) for row in both.rows)
+        for one in singly
+        if set(both.rows) <= one.rows.keys()
+    )
+    return both.leftover <= 1.0 or all(left >= WORTH * both.leftover for left in alone)
 
 
 def _ranked(found: Iterable[_Found]) -> list[_Found]:
