@@ -33,6 +33,7 @@ def plain_mechanism(
     side: str = "left",
     closure: str = "drawn",
     wheel_radius: object = None,
+    car: Mapping[str, object] | None = None,
 ) -> dict[str, Any]:
     """A shipped file and a drawing, mm, flattened."""
     tables = _tables(name)
@@ -66,6 +67,7 @@ def plain_mechanism(
         "right": right,
         "side": side,
         "wheel_radius": wheel_radius,
+        "car": car or {},
     }
 
 

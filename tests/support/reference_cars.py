@@ -32,6 +32,13 @@ TABLE_1 = {
     "tie_rod_inner": (570, 60, 90),
     "wheel_centre": (452, -410, 20),
 }
+FRONT_AXLE = {
+    "axle": "front",
+    "wheelbase": 2600,
+    "centre_of_gravity_height": 540,
+    "brake_share": Fraction(5, 8),
+    "drive_share": Fraction(1, 4),
+}
 OFF_AXIS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
 
 
@@ -51,6 +58,7 @@ class ReferenceCar:
     side: str = "left"
     frame: Mapping[str, Vector] = field(default_factory=dict)
     wheel_radius: Fraction = Fraction(290)
+    car: Mapping[str, object] = field(default_factory=lambda: FRONT_AXLE)
 
     @property
     def kind(self) -> dict[str, Any]:
@@ -60,6 +68,7 @@ class ReferenceCar:
             "closure": self.closure,
             "side": self.side,
             "wheel_radius": self.wheel_radius,
+            "car": self.car,
             **self.frame,
         }
 

@@ -370,7 +370,8 @@ class _Held:
         for name, effect in wanted.items():
             number = effect.evaluate(cars[effect.along])
             claim = np.abs(slope_of(number)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(number))
-            found[name] = self.unit**effect.power * np.where(np.isfinite(claim), claim, 0.0)
+            # A number that does not exist here is a rounding over a rounding to a model that gives one.
+            found[name] = np.where(np.isfinite(claim), self.unit**effect.power * claim, NOTHING)
         return found
 
     def _car(

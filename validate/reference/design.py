@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, ctx
 
+from validate.reference.car_data import car_data
 from validate.reference.chassis import ChassisMotion
 from validate.reference.equations import Equations, equations_in
 from validate.reference.errors import BadInputError
@@ -107,6 +108,7 @@ class Design:
         up: direction of z.
         right: direction of y.
         outboard: +1 where outboard is `right`, -1 where it is the opposite.
+        car: what is given of the car as a whole, see `car_data`.
         chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
     """
 
@@ -118,6 +120,7 @@ class Design:
     up: Vector
     right: Vector
     outboard: int
+    car: Mapping[str, Fraction]
     chosen: tuple[int, ...]
 
     @classmethod
@@ -126,7 +129,8 @@ class Design:
 
         Raises:
             BadInputError: a point is unknown, a number is not finite, `up` and `right` are not unit vectors
-                at right angles, a rod or a body has no extent, or freedoms and inputs are not as many.
+                at right angles, a number of the car cannot be, a rod or a body has no extent, or freedoms and
+                inputs are not as many.
         """
         given = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
         if not given:
@@ -138,7 +142,7 @@ class Design:
             raise BadInputError("up and right", (plain["up"], plain["right"]), "at right angles, to 1e-12")
         if plain["side"] not in ("left", "right"):
             raise BadInputError("side", plain["side"], "'left' or 'right'")
-        first = next(iter(given))
+        car, first = car_data(plain), next(iter(given))
         unit, origin = _unit(given, first), given[first]
         table = {n: times(minus(p, origin), 1 / unit) for n, p in given.items()}
         exact = {**plain, "up": z, "right": y}
@@ -149,7 +153,7 @@ class Design:
                         raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(table)}")
         mechanism = compiled(exact, table, unit)
         outboard = -1 if plain["side"] == "left" else 1
-        return cls(exact, mechanism, table, origin, unit, z, y, outboard, _chosen(mechanism, table))
+        return cls(exact, mechanism, table, origin, unit, z, y, outboard, car, _chosen(mechanism, table))
 
     @property
     def names(self) -> tuple[str, ...]:

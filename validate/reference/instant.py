@@ -24,7 +24,8 @@ Triple = tuple[mpf, mpf, mpf]
 Expected = Callable[[Sequence[arb]], bool]
 
 UNDEFINED = (
-    "cannot be proven in this pose, where it is 0/0, or jumps by a whole turn, or the wheel does not travel"
+    "cannot be proven in this pose, where it is 0/0, or jumps by a whole turn, or the wheel does not travel, "
+    "or an instant centre is at infinity"
 )
 
 
@@ -41,9 +42,10 @@ class Instant:
         acceleration: every point, mm/s^2.
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
-        effects: those that were asked for, by name, see `effects.registry`; rad, mm, and these per mm.
+        effects: those that were asked for, by name, see `effects.registry`; rad, mm, these per mm, and %.
         left_out: those of them that there are none of, and why: the car lacks what they need, or they are
-            undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel).
+            undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
+            infinity).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.

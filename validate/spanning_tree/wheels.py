@@ -57,6 +57,7 @@ class Wheels:
                 side=_side(plain, roles, directions["right"]),
                 wheel_radius=None if radius is None else radius / tree.unit,
                 origin=_vector(-tree.origin / tree.unit),
+                data={},  # no number that is made of positions alone takes any
                 number=float,
             )
             for prefix, roles in parts.items()

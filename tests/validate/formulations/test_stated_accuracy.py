@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cars_in_closed_form import VARIANTS, Linkage
+from mechanism_files import scene_file
 from plain_solvers import closed_form, less_exact
 
 from pointcoord import Scene
@@ -14,7 +15,7 @@ from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
 from validate.formulations.protocol import Solution
 from validate.formulations.relative_coordinates import model_of
-from validate.formulations.stated_accuracy import claims_for
+from validate.formulations.stated_accuracy import NOTHING, claims_for
 from validate.hard.cars import scene_content
 from validate.studies.claims import scene_rows
 from validate.studies.study import Task
@@ -110,6 +111,23 @@ def test_nearer_a_fold_than_the_accuracy_nothing_is_tested(car) -> None:
     outcome = check(closed_form, near_the_end(car, 1e-7), 1e-2)
     assert {row.verdict for row in outcome.rows if row.difference > 1e-300} == {"not tested"}
     assert not outcome.disagreements
+
+
+def test_of_a_number_that_does_not_exist_at_an_instant_nothing_is_said_there() -> None:
+    content = scene_file("semi-trailing-arm")
+    # Of the three instants at the second the pivot is right above the wheel centre, which goes along the car.
+    pivots = {"pivot_inner": [1350, -420, 420], "pivot_outer": [1350, -620, 420]}
+    content["mechanism"]["points"] |= pivots
+    content |= {
+        "effects": ["camber", "toe_by_travel", "roll_centre"],
+        "inputs": {"arm_turn": {"polynomial": [-0.125, 0.125]}},
+        "time": {"start": 0.0, "stop": 2.0, "samples": 3},
+    }
+    claims = claims_for(Scene.from_mapping(content, "arm"), 1e-9)
+    assert claims["wheel"]["camber"].max() < 1e-10
+    for claim in (claims["dimension"]["roll_centre_height"], claims["angle_gradient"]["toe_by_travel"]):
+        assert claim[1] == NOTHING
+        assert claim[[0, 2]].max() < 1e-5
 
 
 MODELS = ("absolute", "relative", "mujoco", "exudyn")

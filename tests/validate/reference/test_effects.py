@@ -14,6 +14,7 @@ from mpmath import mpf
 from reference_cars import CARS, Inputs, ReferenceCar
 
 from validate.reference import Instant
+from validate.reference.car_data import LENGTHS
 from validate.reference.dual import Dual, angle
 from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.registry import EFFECTS
@@ -66,7 +67,8 @@ def test_effects_do_not_see_heave_or_motion_and_lengths_grow_with_the_car(car: R
     plain = solved(car, car.inputs)
     assert same(plain, solved(car, {**car.still, "heave": (1000, 0, 0)}))
     points = {name: tuple(3 * x for x in p) for name, p in car.points.items()}
-    thrice = replace(car, points=points, wheel_radius=3 * car.wheel_radius)
+    data = {**car.car, **{name: 3 * car.car[name] for name in LENGTHS}}
+    thrice = replace(car, points=points, wheel_radius=3 * car.wheel_radius, car=data)
     assert same(plain, solved(thrice, {**car.still, "rack": (3 * car.inputs["rack"][0], 0, 0)}), scale=3)
 
 
@@ -172,7 +174,7 @@ def car_with(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) ->
 
     start = balls((0, 0, 0))
     lines = {n: Line.between(start, balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))}
-    drawn = DrawnCar({}, lines, balls(UP), balls(FORWARD), balls((0, out, 0)), None, start)
+    drawn = DrawnCar({}, lines, balls(UP), balls(FORWARD), balls((0, out, 0)), None, start, {})
     return Car(drawn, lines, lines)
 
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from flint import arb, arb_mat
 
+from validate.reference.car_data import LENGTHS
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.dual import Dual, value_of
@@ -33,6 +34,7 @@ def drawn_car(design: Design, number: Callable[[Fraction], Scalar]) -> DrawnCar:
         side=design.outboard,
         wheel_radius=None if radius is None else radius / design.unit,
         origin=times(design.origin, -1 / design.unit),
+        data={key: one / design.unit if key in LENGTHS else one for key, one in design.car.items()},
         number=number,
     )
 
@@ -50,6 +52,7 @@ def drivers(design: Design) -> dict[str, str]:
 def provided(design: Design) -> frozenset[str]:
     """What effects may need and the car has, of `effect.NEEDS`."""
     has = {role for role in LINES if design.role(role) is not None} | set(drivers(design))
+    has |= set(design.car)
     if design.wheel_radius is not None:
         has.add(RADIUS)
     if design.role(KNUCKLE) in design.mechanism.frames:
@@ -79,7 +82,7 @@ def car_at(
 def effects_at(
     design: Design, known: Known, enclosure: Sequence[arb], inverse: arb_mat, names: Iterable[str]
 ) -> dict[str, arb]:
-    """Those of some effects that the car can have, in balls, rad and mm.
+    """Those of some effects that the car can have, in balls, rad, mm and %.
 
     Gradients are those of the pose y(q): C(y, w(q)) = 0 differentiated by one driven input q, which is the
     velocity of a motion that drives it at unit rate.

@@ -59,6 +59,7 @@ class DrawnCar:
         outboard: unit vector, away from the car's middle.
         wheel_radius: None if it is not given.
         origin: where the user's coordinates have theirs, a point of the car's middle plane.
+        data: what is given of the car as a whole, see `car_data`.
     """
 
     ends: Mapping[str, tuple[str, str]]
@@ -68,6 +69,7 @@ class DrawnCar:
     outboard: Vector
     wheel_radius: Scalar | None
     origin: Vector
+    data: Mapping[str, Scalar]
 
     @classmethod
     def of(
@@ -79,6 +81,7 @@ class DrawnCar:
         side: int,
         wheel_radius: Scalar | None,
         origin: Vector,
+        data: Mapping[str, Fraction],
         number: Callable[[Fraction], Scalar],
     ) -> DrawnCar:
         """A drawing.
@@ -102,6 +105,7 @@ class DrawnCar:
             outboard=each(number, times(right, side)),
             wheel_radius=None if wheel_radius is None else number(wheel_radius),
             origin=each(number, origin),
+            data={key: number(one) for key, one in data.items()},
         )
 
     @property
@@ -137,6 +141,11 @@ class Car:
     def forward(self) -> Vector:
         """Unit vector, up x right."""
         return self.drawn.forward
+
+    @property
+    def rearward(self) -> Vector:
+        """Unit vector, right x up."""
+        return times(self.forward, -1)
 
     @property
     def outboard(self) -> Vector:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
+from validate.reference.car_data import AXLE, BRAKE_SHARE, DRIVE_SHARE, HEIGHT, WHEELBASE
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car
 from validate.reference.vectors import Scalar
 
@@ -18,9 +19,14 @@ NEEDS = {
     RADIUS: "a wheel_radius, mm",
     TRAVEL: "exactly one driven input that is not the travel of a slide",
     RACK: "exactly one driven input that is the travel of a slide",
+    AXLE: "the car's axle, 'front' or 'rear'",
+    WHEELBASE: "the car's wheelbase, mm",
+    HEIGHT: "the car's centre_of_gravity_height, mm",
+    BRAKE_SHARE: "the car's brake_share, 0 to 1",
+    DRIVE_SHARE: "the car's drive_share, 0 to 1",
 }
 
-POWERS = {"rad": 0, "mm": 1, "rad/mm": -1, "mm/mm": 0}
+POWERS = {"rad": 0, "mm": 1, "rad/mm": -1, "mm/mm": 0, "%": 0}
 
 
 @dataclass(frozen=True)

@@ -4,19 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 
-from validate.reference.effects import damper, roll_centre, steering_axis, wheel_angles, wheel_travel
+from validate.reference.effects import (
+    anti_features,
+    damper,
+    instant_centres,
+    roll_centre,
+    steering_axis,
+    wheel_angles,
+    wheel_travel,
+)
 from validate.reference.effects.effect import RACK, TRAVEL, Effect
 from validate.reference.effects.gradients import by_rack, by_travel
 from validate.reference.errors import BadInputError
 
 _OF_POSITIONS = (*wheel_angles.NUMBERS, *wheel_travel.NUMBERS, *steering_axis.NUMBERS, *damper.NUMBERS)
+_OF_MOTION = (*roll_centre.NUMBERS, *instant_centres.NUMBERS, *anti_features.NUMBERS)
 
 EFFECTS: dict[str, Effect] = {
     effect.name: effect
     for effect in (
         *_OF_POSITIONS,
         *(gradient(effect) for effect in _OF_POSITIONS for gradient in (by_travel, by_rack)),
-        *roll_centre.NUMBERS,
+        *_OF_MOTION,
     )
 }
 
@@ -25,8 +34,6 @@ ANGLES = tuple(effect.name for effect in wheel_angles.NUMBERS)
 
 OF_POSITIONS = tuple(effect.name for effect in _OF_POSITIONS)
 """Those that positions tell; the others take a derivative of the pose."""
-
-_OF_MOTION = tuple(effect.name for effect in roll_centre.NUMBERS)
 
 
 def named(names: Iterable[str]) -> dict[str, Effect]:
@@ -38,7 +45,8 @@ def named(names: Iterable[str]) -> dict[str, Effect]:
     wanted = tuple(names)
     for name in wanted:
         if name not in EFFECTS:
-            ways = f"each of these also with _{TRAVEL} or _{RACK}; {', '.join(_OF_MOTION)}"
+            others = ", ".join(effect.name for effect in _OF_MOTION)
+            ways = f"each of these also with _{TRAVEL} or _{RACK}; {others}"
             raise BadInputError("effect", name, f"one of {', '.join(OF_POSITIONS)}, {ways}")
     return {name: EFFECTS[name] for name in wanted}
 

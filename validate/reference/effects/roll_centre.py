@@ -7,26 +7,17 @@ coordinates, (c . outboard) (v . outboard) / (v . up) above c.
 
 from __future__ import annotations
 
-from validate.reference.dual import slope_of, value_of
 from validate.reference.effects.car import KNUCKLE, RADIUS, WHEEL, Car
 from validate.reference.effects.effect import TRAVEL, Effect
-from validate.reference.jet import Jet
-from validate.reference.kinematics import body_rates
-from validate.reference.vectors import Scalar, cross, dot, each, minus, plus
+from validate.reference.effects.knuckle import KnuckleMotion
+from validate.reference.vectors import Scalar, dot, minus
 
 
 def _roll_centre_height(car: Car) -> Scalar:
     """(c . outboard) (v . outboard) / (v . up), above c."""
-    assert car.knuckle is not None
-    c, centre = each(value_of, car.contact), car.wheel.end
-    turning, _ = body_rates(*(each(_moving, vector) for vector in car.knuckle))
-    v = plus(each(slope_of, centre), cross(turning, minus(c, each(value_of, centre))))
-    out = dot(minus(c, car.drawn.origin), car.outboard)
+    motion = KnuckleMotion.of(car)
+    v, out = motion.of_contact, dot(minus(motion.contact, car.drawn.origin), car.outboard)
     return out * dot(v, car.outboard) / dot(v, car.up)
-
-
-def _moving(number: Scalar) -> Jet:
-    return Jet(value_of(number), slope_of(number))
 
 
 NUMBERS = (

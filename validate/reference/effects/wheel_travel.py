@@ -31,11 +31,14 @@ def _drawn_contact(car: Car) -> Vector:
     return contact_of(car.drawn, car.drawn.lines[WHEEL])
 
 
+CONTACT_TRAVEL = Effect(
+    "contact_travel", "mm", "the contact point has gone up", (WHEEL, RADIUS), _contact_travel
+)
 TRAVELLED = Effect("travel", "mm", "the wheel centre is above its drawn place", (WHEEL,), _travel)
 
 NUMBERS = (
     TRAVELLED,
-    Effect("contact_travel", "mm", "the contact point has gone up", (WHEEL, RADIUS), _contact_travel),
+    CONTACT_TRAVEL,
     Effect("half_track_change", "mm", "the track is wider", (WHEEL, RADIUS), _half_track_change),
     Effect("recession", "mm", "the contact point has gone rearward", (WHEEL, RADIUS), _recession),
 )
