@@ -1,6 +1,5 @@
 """The table of a comparison shows what its columns say, whichever number is closest to its tolerance."""
 
-import math
 from dataclasses import replace
 
 import pytest
@@ -72,14 +71,6 @@ def test_a_fault_that_is_smaller_than_another_point_s_rounding_is_named(heaving:
     where, difference, _, _, used, _, verdict = lines_of(wrong)["position"]
     assert (where, difference, used) == ("wheel_centre", "1.0e-03 mm", "70 times")
     assert verdict == "DISAGREES, 7.0e+01 times: strut_top"
-
-
-def test_what_is_not_given_takes_no_place_from_what_is(heaving: Outcome) -> None:
-    lost = of_position(
-        heaving, strut_top=(math.nan, math.nan, "not given"), wheel_centre=(2e-13, 0.25, "agrees")
-    )
-    where, difference, _, _, used, _, verdict = lines_of(lost)["position"]
-    assert (where, difference, used, verdict) == ("wheel_centre", "2.0e-13 mm", "25%", "not given")
 
 
 @pytest.mark.parametrize("scene", STEERED_CARS)

@@ -1,7 +1,6 @@
 """Somebody else's project, installed in its own environment, tests its solver with the plugin."""
 
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -55,7 +54,7 @@ def test_a_wrong_solver_fails_and_hears_what_is_wrong_by_how_much_where_and_why(
     assert "disagree with pointcoord" in said[0]
     assert said[1].startswith("camber: difference ")
     assert " rad, tolerance " in said[1]
-    assert " rad at t = " in said[1]
+    assert " rad at " in said[1]
     assert said[2] == "what would explain it: camber: the other sign"
     # The message is all: not where in the harness it was found.
     assert "assertion.py" not in done.stdout
@@ -124,9 +123,3 @@ def test_workers_and_another_way_to_import_tests_change_nothing(
     done = environment.run(*run, cwd=project)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "what would explain it: camber: the other sign" in done.stdout
-
-
-def test_the_environment_runs_the_copy_that_it_was_given(environment: Environment, tmp_path: Path) -> None:
-    program = "import pointcoord, validate, wishbone_solver as w; print(pointcoord.__file__, w.__file__)"
-    done: subprocess.CompletedProcess[str] = environment.run("-c", program, cwd=tmp_path)
-    assert [Path(p).parents[1] for p in done.stdout.split()] == [environment.site] * 2, done.stderr

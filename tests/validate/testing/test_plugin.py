@@ -156,17 +156,6 @@ def test_of_something_else(): ...
     assert "Traceback" not in said
 
 
-def test_at_collection_a_wrong_mark_is_a_line_without_a_traceback(
-    tmp_path: Path,
-) -> None:
-    done = run(tmp_path, "import pytest\n@pytest.mark.suspension_scenes('bunce')\ndef test_one(scene): ...\n")
-    said = done.stdout + done.stderr
-    assert "did you mean 'bounce'?" in said
-    assert "pluggy" not in said.partition("ERRORS")[2]
-    assert "pytest_plugin.py" not in said
-    assert done.returncode == pytest.ExitCode.INTERRUPTED
-
-
 def test_hard_scenes_are_nearer_where_asked_for() -> None:
     some = [scenes_to_try(["arm-highest-held"], near=near) for near in (1e-1, 1e-9)]
     assert [list(one) for one in some] == [["arm-highest-held at 0.1"], ["arm-highest-held at 1e-09"]]
