@@ -161,11 +161,10 @@ def until(page: Page, what: str) -> None:
     )
 
 
-def test_the_page_is_there_after_few_seconds_of_work(report: Opened) -> None:
+def test_the_page_is_there_after_few_seconds_of_work_and_drawn_without_a_complaint_or_a_request(
+    report: Opened,
+) -> None:
     assert 0.0 < report.work < LOAD
-
-
-def test_all_of_the_page_is_drawn_without_a_complaint_or_a_request(report: Opened) -> None:
     settled(report.page, folded=99)
     assert report.page.locator("[data-plot] .main-svg").count() > 20
     assert report.complaints == []

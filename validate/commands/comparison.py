@@ -145,10 +145,6 @@ def run(options: argparse.Namespace, console: Console, page: Page | None = None)
 
     Args:
         page: is made of the run, if there is one; that of --report if not given.
-    Raises:
-        UsageError: the options do not go together, or a folder, a baseline or a formulation cannot be used.
-        MissingPackage: a formulation's packages are not there.
-        OutputError: the results cannot be written.
     """
     page = page or Page.of(options)
     # Most runs compare no file and no table.

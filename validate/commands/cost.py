@@ -90,14 +90,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Measure what the file of rows does not hold yet, and report.
-
-    Raises:
-        UsageError: the options do not go together, or the file of rows cannot be used.
-        SceneError, UnknownName: a scene is wrong, or there is no such way.
-        MissingPackage: the reference or matplotlib is not there.
-        OutputError: something cannot be written.
-    """
+    """Measure what the file of rows does not hold yet, and report."""
     require_input_once(options.scenes)
     if options.rows == STANDARD_INPUT or not options.rows.strip():
         raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")

@@ -37,15 +37,7 @@ NO_BASELINE = (
 
 
 def run(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
-    """Compare a file with a scene's car.
-
-    Raises:
-        UsageError: the options do not go together.
-        FileError: the file, or the map of its columns, is wrong.
-        SceneError: the scene is wrong; PointcoordError: it cannot be solved.
-        MissingPackage: Parquet needs pyarrow, a page its own packages.
-        OutputError: the results or the page cannot be written.
-    """
+    """Compare a file with a scene's car."""
     refuse(options, ("--first", "--second"), "is not given with --data, which is compared with pointcoord")
     refuse(options, OF_SCENES, "is about scenes that are solved; leave it out with --data")
     refuse(options, BASELINES, NO_BASELINE)

@@ -90,12 +90,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Returns:
         NO_VERDICT if least squares did not end.
-    Raises:
-        UsageError: the options do not go together, the target has no name for a scene, or a coordinate is
-            there twice.
-        FileError, UnknownName: the file, its map or an option is wrong.
-        SceneError: the scene is wrong; PointcoordError: it cannot be solved.
-        OutputError: a result cannot be written.
     """
     require_files(options)
     limits = options.bounds, options.prior, options.accuracy

@@ -32,13 +32,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Try the cases; each is said, and written as JSON, as soon as it is done.
-
-    Raises:
-        UsageError: no case has such a name, or no file.
-        MissingPackage: the reference, or a formulation, is not there.
-        OutputError: the results cannot be written.
-    """
+    """Try the cases; each is said, and written as JSON, as soon as it is done."""
     # The reference needs packages that the solvers do without.
     from validate.hard import catalogue
     from validate.hard import report as hard_report

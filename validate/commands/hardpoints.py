@@ -80,11 +80,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Returns:
         DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
-    Raises:
-        UsageError: the scene has no name, or another ending than .toml; or axes are none.
-        SceneError, FileError, UnknownName: the file or an option is wrong.
-        AssemblyError: the points cannot be put together.
-        OutputError: the scene cannot be written.
     """
     target: str | None = None if options.output == "-" else options.output
     result = {"-o": "-" if target is None else target}

@@ -59,13 +59,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Write both files.
-
-    Raises:
-        UsageError: a file of that name is there.
-        SceneError: there is no such scene, or it is wrong.
-        OutputError: a file cannot be written.
-    """
+    """Write both files."""
     name = options.name.removesuffix(".toml")
     if not name:
         raise UsageError("NAME is empty; allowed: the name of the new files, without .toml")

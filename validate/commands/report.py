@@ -56,13 +56,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Compare the scenes and write the report.
-
-    Raises:
-        UsageError: the options do not go together, or a file of hard cases or of rows cannot be used.
-        MissingPackage: a page needs the extra `report`, a formulation its own packages.
-        OutputError: the report cannot be written.
-    """
+    """Compare the scenes and write the report."""
     folder = options.folder
     # A scene in the place of the folder would make a folder of its name.
     if folder in built_in_scenes() or (folder.endswith(".toml") and not Path(folder).is_dir()):

@@ -72,12 +72,7 @@ def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Draw a scene's hardpoints.
-
-    Raises:
-        UsageError: the file has no name, or another ending than .svg. SceneError: the scene is wrong.
-        OutputError: the picture cannot be written.
-    """
+    """Draw a scene's hardpoints."""
     target = place_of_result(options, PICTURES, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     with told_as(name):
@@ -89,11 +84,7 @@ def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Say what a scene would compute, and where its drawing stands.
-
-    Raises:
-        SceneError: the scene is wrong. OutputError: standard output does not take it.
-    """
+    """Say what a scene would compute, and where its drawing stands."""
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects, unreported=scene.unreported_points)

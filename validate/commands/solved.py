@@ -131,11 +131,7 @@ def add(commands: Commands) -> None:
 
 
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Write the motion.
-
-    Raises:
-        UsageError, MissingPackage, SceneError, OutputError: as `solved`; or Parquet needs pyarrow.
-    """
+    """Write the motion."""
     target = place_of_result(options, ENDINGS, console)
     if target is not None:
         require_table(target)
@@ -160,12 +156,7 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Draw curves.
-
-    Raises:
-        UsageError, MissingPackage, SceneError, OutputError: as `solved`; or a number is not named as it must
-            be, or pictures lack matplotlib.
-    """
+    """Draw curves."""
     target = place_of_result(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
     scene, name = load_scene(options.scene), name_of(options.scene)
@@ -190,11 +181,7 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 
 def run_table(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Print a table.
-
-    Raises:
-        UsageError, SceneError, OutputError: as `solved`; or the car has no such number.
-    """
+    """Print a table."""
     target = place_of_result(options, TABLES, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     chosen = _numbers(options, scene, name)

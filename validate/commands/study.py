@@ -172,14 +172,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Work out what is not recorded yet, and say what all of it comes to.
-
-    Raises:
-        UsageError: the options do not go together, or the folder or the cluster cannot be used.
-        StudyStopped: nobody can work it out any more, or a task raised an error.
-        MissingPackage: the reference, Dask or pyarrow is not there.
-        OutputError: something cannot be written.
-    """
+    """Work out what is not recorded yet, and say what all of it comes to."""
     named, folder = STUDIES[options.study], Path(options.records or f"pointcoord-{options.study}")
     if options.records is not None and not options.records.strip():
         raise UsageError(f"--records {options.records!r} names no folder")

@@ -109,14 +109,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Solve the designs, write them as they come, and say what came of them.
-
-    Raises:
-        UsageError: the options do not go together, or a file has no name or ending.
-        MissingPackage: Parquet needs pyarrow.
-        SceneError, SweepError, UnknownName: the scene is wrong, or makes no designs.
-        OutputError: a result cannot be written.
-    """
+    """Solve the designs, write them as they come, and say what came of them."""
     target, results = options.output, {"-o": options.output, "--json": options.json}
     require_results(results, (options.scene, options.designs), options, console, {"-o": ENDINGS})
     if target not in (None, "-"):

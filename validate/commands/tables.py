@@ -24,13 +24,7 @@ NOT_WITH = (
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Compare every printed table.
-
-    Raises:
-        UsageError: an option is about scenes or files.
-        OutputError: the results cannot be written.
-        MissingPackage, FormulationError: see `compare_published`.
-    """
+    """Compare every printed table."""
     refuse(options, NOT_WITH, "is not about printed tables and their own cars; leave it out with --tables")
     if options.scenes or options.tolerance_factor != 1.0:
         what = options.scenes[0] if options.scenes else "--tolerance-factor"

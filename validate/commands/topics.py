@@ -46,12 +46,7 @@ def add(commands: Commands) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Print a page, or which there are.
-
-    Raises:
-        UsageError: there is no such topic.
-        OutputError: standard output does not take it.
-    """
+    """Print a page, or which there are."""
     console.require("it is where the page goes")
     if options.topic is None:
         console.say("\n".join(f"{n.ljust(12)}{page(n).splitlines()[0].lstrip('# ')}" for n in TOPICS))
