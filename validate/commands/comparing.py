@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -111,17 +111,6 @@ def results_of(options: argparse.Namespace) -> dict[str, str | None]:
     """The files that a run of comparisons may leave, by option."""
     names = ("json", "junit", "summary", "save_baseline")
     return {f"--{name.replace('_', '-')}": getattr(options, name) for name in names}
-
-
-def refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
-    """Refuse options that a run has no use for.
-
-    Raises:
-        UsageError: one of them is given.
-    """
-    for name in names:
-        if getattr(options, name.lstrip("-").replace("-", "_")) not in (None, False):
-            raise UsageError(f"{name} {why}")
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
-from validate.commands.comparing import Page, comparing, refuse, results_of
+from validate.commands.comparing import Page, comparing, results_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
@@ -22,6 +22,7 @@ from validate.commands.usage import (
     load_scene,
     name_of,
     positive,
+    refuse,
     require_input_once,
     require_results,
     share,

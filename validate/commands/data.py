@@ -8,11 +8,12 @@ import os
 from validate.ci.record import Record
 from validate.ci.verdict import next_step
 from validate.closed_drawing import closing_data, closing_of, warnings_of
-from validate.commands.comparing import Page, comparing, refuse, results_of
+from validate.commands.comparing import Page, comparing, results_of
 from validate.commands.usage import (
     STANDARD_INPUT,
     load_scene,
     name_of,
+    refuse,
     require_results,
     to_be_filled_in,
     told_as,
@@ -38,7 +39,8 @@ NO_BASELINE = (
 
 def run(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
     """Compare a file with a scene's car."""
-    refuse(options, ("--first", "--second"), "is not given with --data, which is compared with pointcoord")
+    why = "is no word on --data, which is compared with pointcoord; leave --first and --second out"
+    refuse(options, ("--first", "--second"), why)
     refuse(options, OF_SCENES, "is about scenes that are solved; leave it out with --data")
     refuse(options, BASELINES, NO_BASELINE)
     if len(options.scenes) != 1:

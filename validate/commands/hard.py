@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from validate.commands.comparing import Page, refuse
-from validate.commands.usage import Commands, add_json, require_results, share
+from validate.commands.comparing import Page
+from validate.commands.usage import Commands, add_json, refuse, require_results, share
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal

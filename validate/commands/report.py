@@ -10,10 +10,10 @@ from functools import partial
 from pathlib import Path
 
 from pointcoord import built_in_scenes
-from validate.commands.comparing import Page, refuse
+from validate.commands.comparing import Page
 from validate.commands.comparison import add_options
 from validate.commands.comparison import run as compare
-from validate.commands.usage import Commands
+from validate.commands.usage import Commands, refuse
 from validate.cost.report import Report
 from validate.cost.table import StoreError
 from validate.errors import UsageError

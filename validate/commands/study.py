@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import Commands, add_json, given, require_results, share, whole
+from validate.commands.usage import Commands, add_json, given, require_results, share
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -73,7 +73,7 @@ class Named:
 
 
 def _number(what: str) -> dict[str, Any]:
-    return {"metavar": "N", "type": whole(0), "help": what}
+    return {"metavar": "N", "type": int, "help": what}
 
 
 STUDIES: Mapping[str, Named] = {
@@ -157,7 +157,7 @@ def add(commands: Commands) -> None:
             "scheduler such as tcp://HOST:8786; its network is trusted, see above",
         )
         workers = "processes of this machine; one a processor if not given"
-        one.add_argument("--workers", metavar="N", type=whole(1), help=workers)
+        one.add_argument("--workers", **_number(workers))
         one.add_argument(
             "--records", metavar="FOLDER", help=f"keeps what is worked out; pointcoord-{name} if not given"
         )
@@ -176,13 +176,20 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     named, folder = STUDIES[options.study], Path(options.records or f"pointcoord-{options.study}")
     if options.records is not None and not options.records.strip():
         raise UsageError(f"--records {options.records!r} names no folder")
+    if not options.scheduler.strip():
+        raise UsageError(f"--scheduler {options.scheduler!r}: allowed: local, or an address")
+    for name, least in (("--workers", 1), *((name, 0) for name in named.options)):
+        value = getattr(options, name.lstrip("-"))
+        if isinstance(value, int) and value < least:
+            raise UsageError(f"{name} {value}: allowed: {least} or more")
     if options.workers is not None and options.scheduler != LOCAL:
         raise UsageError(
             f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
             "own; leave one of them out"
         )
     if options.from_records and (counts := given(options, *named.counts)):
-        raise UsageError(f"--from-records is about all that is recorded; leave {counts[0]} out")
+        what = "CASE" if counts[0] == "cases" else counts[0]
+        raise UsageError(f"--from-records is about all that is recorded; leave {what} out")
     require_results({"--json": options.json}, (), options, console)
     journal = Journal(options.json, Head.of(options.study, options.command, timed=True), console)
     for package in ("mpmath", "flint", "pinocchio"):

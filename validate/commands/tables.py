@@ -6,8 +6,8 @@ import argparse
 from collections.abc import Iterator, Sequence
 
 from validate.ci.record import Record
-from validate.commands.comparing import comparing, refuse, results_of
-from validate.commands.usage import require_results
+from validate.commands.comparing import comparing, results_of
+from validate.commands.usage import given, require_results
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -25,10 +25,12 @@ NOT_WITH = (
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare every printed table."""
-    refuse(options, NOT_WITH, "is not about printed tables and their own cars; leave it out with --tables")
-    if options.scenes or options.tolerance_factor != 1.0:
-        what = options.scenes[0] if options.scenes else "--tolerance-factor"
-        raise UsageError(f"--tables is about printed tables and their own cars; leave {what} out")
+    others = [*options.scenes, *given(options, *NOT_WITH)]
+    others += ["--tolerance-factor"] if options.tolerance_factor != 1.0 else []
+    if others:
+        raise UsageError(
+            f"--tables is about printed tables and their own cars; leave out {', '.join(others)}"
+        )
     require_results(results_of(options), (), options, console)
     record = Record([table.name for table in tables()])
     with comparing(options, console, record, None, "table") as compared:

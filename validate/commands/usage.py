@@ -103,6 +103,16 @@ def given(options: argparse.Namespace, *names: str) -> list[str]:
     return [name for name, value in values if value not in (None, False, [])]
 
 
+def refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
+    """Refuse options that a run has no use for.
+
+    Raises:
+        UsageError: one of them is given.
+    """
+    for name in given(options, *names):
+        raise UsageError(f"{name} {why}")
+
+
 def require_results(
     results: Mapping[str, str | None],
     read: Sequence[str | None],
@@ -135,7 +145,9 @@ def require_results(
             raise UsageError(f"{option} {target} is standard output; use {option} - for that")
         for file in read:
             if file and os.path.isfile(target) and os.path.isfile(file) and os.path.samefile(target, file):
-                raise UsageError(f"{option} {target} would overwrite what is read; give another file")
+                raise UsageError(
+                    f"{option} {target} would overwrite the scene or file that is read; give another file"
+                )
         other = places.setdefault(target if target == "-" else os.path.realpath(target), option)
         if other != option:
             raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")

@@ -128,7 +128,9 @@ def read_hard_cases(file: str) -> HardCases:
         problem = f"cannot be read ({error.strerror})"
     except ValidationError as error:
         first = error.errors()[0]
-        problem = f"holds none ({'.'.join(map(str, first['loc']))}: {first['msg']})"
-    except (ValueError, TypeError, RecursionError):
-        problem = "is no JSON of a run"
+        problem = f"holds no hard cases ({'.'.join(map(str, first['loc']))}: {first['msg']})"
+    except TypeError:
+        problem = "holds no hard cases"
+    except (ValueError, RecursionError):
+        problem = "is no JSON"
     raise UsageError(f"--hard {shown(file)}: {shown(problem)}; allowed: {ALLOWED}")

@@ -13,7 +13,6 @@ from validate.ci.record import Record
 from validate.ci.summary import markdown, summary
 from validate.comparison.compare import compare_solutions
 from validate.comparison.examined import Examined
-from validate.exit_status import ExitStatus
 
 SCENE = Scene.load("steer")
 RIGHT = compare(SCENE, "pointcoord", "absolute", "steer")
@@ -89,12 +88,3 @@ def test_a_long_run_stays_below_what_a_service_shows(monkeypatch: pytest.MonkeyP
     rows = 2 * len(scenes)
     assert f"and {rows - module.ROWS} rows more: " in text
     assert len(text.splitlines()) < 2 * module.ROWS
-
-
-def test_the_status_of_a_run_that_was_not_finished_is_its_verdict() -> None:
-    record = Record(["one", "two"])
-    record.add(Examined(name="one", outcomes=(RIGHT,)), None)
-    text = summary(record, ExitStatus.INTERRUPTED)
-    assert (
-        "**Interrupted**: 1 of 2 scenes agree; not run (the run did not come to its end): two (exit" in text
-    )

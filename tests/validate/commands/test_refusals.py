@@ -20,12 +20,12 @@ DESIGNS = {
     "name": ("strut_tip.x\n1\n", "did you mean 'strut_top'?"),
 }
 HARD = {
-    "broken": ("{", "is no JSON of a run"),
-    "deep": ("[" * 100_000, "is no JSON of a run"),
-    "list": ("[]", "is no JSON of a run"),
+    "broken": ("{", "is no JSON"),
+    "deep": ("[" * 100_000, "is no JSON"),
+    "list": ("[]", "holds no hard cases"),
     "newer": ('{"kind": "hard", "schema_version": 99, "complete": true}', "schema_version: "),
     "cut": ('{"kind": "hard", "schema_version": 2, "complete": false}', "complete: "),
-    "odd": ('{"kind": "hard", "schema_version": 2, "complete": true, "cases": [1]}', "holds none ("),
+    "odd": ('{"kind": "hard", "schema_version": 2, "complete": true, "cases": [1]}', "holds no hard cases ("),
 }
 WISHBONE = ("plot", "double-wishbone")
 # Command lines, their status, and parts of what is said. ROWS is a file of measured rows, SCENE a scene file,
@@ -52,8 +52,8 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     ("validate steer --junit OUT --summary ./OUT", 2, ["--junit and --summary are both", "of its own"]),
     ("validate steer --json - --summary -", 2, ["--json and --summary are both -", "of its own"]),
     ("validate steer --save-baseline -", 2, ["is not text"]),
-    ("validate steer --baseline FILE --json FILE", 2, ["would overwrite what is read"]),
-    ("validate SCENE --junit SCENE", 2, ["would overwrite what is read"]),
+    ("validate steer --baseline FILE --json FILE", 2, ["would overwrite"]),
+    ("validate SCENE --junit SCENE", 2, ["would overwrite"]),
     ("validate steer --summary none/x", 4, ["there is no folder"]),
     ("validate steer --save-baseline EMPTY", 4, ["Is a directory"]),
     ("validate steer --report ''", 2, ["--report '' names no folder"]),

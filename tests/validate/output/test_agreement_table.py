@@ -3,11 +3,9 @@
 from dataclasses import replace
 
 import pytest
-from built_in_cars import STEERED_CARS
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.comparison.findings import findings
 from validate.output.report import heading, outcome_text
 
 
@@ -71,16 +69,3 @@ def test_a_fault_that_is_smaller_than_another_point_s_rounding_is_named(heaving:
     where, difference, _, _, used, _, verdict = lines_of(wrong)["position"]
     assert (where, difference, used) == ("wheel_centre", "1.0e-03 mm", "70 times")
     assert verdict == "DISAGREES, 7.0e+01 times: strut_top"
-
-
-@pytest.mark.parametrize("scene", STEERED_CARS)
-def test_the_table_of_a_built_in_scene_fits_110_characters(scene: str) -> None:
-    outcome = compare(Scene.load(scene), "pointcoord", "absolute", scene)
-    lines = outcome_text(outcome).splitlines()
-    assert max(len(line) for line in lines if not line.startswith("  note: ")) <= 110
-
-
-def test_an_erratum_s_largest_difference_is_the_largest(heaving: Outcome) -> None:
-    wrong = of_position(heaving, wheel_centre=(1.0, 2.0, "disagrees"), strut_top=(1e-6, 70.0, "disagrees"))
-    (found,) = findings([wrong])
-    assert found.worst.difference == 1.0

@@ -45,10 +45,11 @@ def test_a_right_solver_passes_over_built_in_scenes_and_hard_cases(
     assert "an accuracy of 1e-06 mm says nothing of them" in skipped
 
 
+@pytest.mark.parametrize("how", [PLAIN, (*PLAIN[:-2], "-n", "2", "--import-mode=importlib")])
 def test_a_wrong_solver_fails_and_hears_what_is_wrong_by_how_much_where_and_why(
-    environment: Environment, project: Path
+    environment: Environment, project: Path, how: tuple[str, ...]
 ) -> None:
-    done = environment.run(*PLAIN, "tests/wrong.py", cwd=project)
+    done = environment.run(*how, "tests/wrong.py", cwd=project)
     assert done.returncode == 1, done.stdout + done.stderr
     said = [line.removeprefix("E").strip() for line in done.stdout.splitlines() if line.startswith("E ")]
     assert "disagree with pointcoord" in said[0]
@@ -114,12 +115,3 @@ def test_without_the_extra_the_mark_says_how_to_get_it(environment: Environment,
     done = environment.run(*PLAIN, "test_it.py", cwd=tmp_path)
     (said,) = (line for line in reported(done) if "needs the package 'flint'" in line)
     assert "pip install 'pointcoord[validate]'" in said
-
-
-def test_workers_and_another_way_to_import_tests_change_nothing(
-    environment: Environment, project: Path
-) -> None:
-    run = ("-m", "pytest", "-p", "no:cacheprovider", "-n", "2", "--import-mode=importlib", "tests/wrong.py")
-    done = environment.run(*run, cwd=project)
-    assert done.returncode == 1, done.stdout + done.stderr
-    assert "what would explain it: camber: the other sign" in done.stdout
