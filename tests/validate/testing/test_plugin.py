@@ -12,8 +12,7 @@ import pytest
 
 from pointcoord import built_in_scenes, pytest_plugin
 from validate import WrongStates, assert_refuses
-from validate.adjudication.reference_solution import reference_solution
-from validate.hard.case import HARD, Case
+from validate.hard.case import HARD
 from validate.hard.catalogue import CASES
 from validate.hard.subjects import SUBJECTS
 from validate.solvers.plain import given_to_solver
@@ -177,16 +176,6 @@ def test_every_hard_case_is_asked_or_has_a_reason_why_no_solver_can_be() -> None
         assert case.content is not None or case.name in NOT_ASKED, case.name
     for subject in SUBJECTS:
         assert (f"turned-at-random{subject.suffix}" in asked) == (subject.name not in HARD)
-
-
-# One of each family; all of them take minutes, and agree (see the study of hard cases).
-FAMILIES = {case.group: case for case in CASES if case.answered}
-
-
-@pytest.mark.parametrize("case", FAMILIES.values(), ids=lambda case: case.name)
-def test_a_hard_case_that_is_asked_has_an_answer_that_is_proven(case: Case) -> None:
-    for scene in scenes_to_try([case.name]).values():
-        assert reference_solution(scene).accuracy.proven
 
 
 @pytest.mark.parametrize("name", ["arm-lowest-beyond-wishbone", "branches-met", "start-beyond-both"])
