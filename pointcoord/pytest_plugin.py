@@ -112,14 +112,11 @@ def reference() -> Callable[[Scene | str], Any]:
     Raises, when it is called:
         SceneError: there is no such scene. NoReferenceError: an instant has no pose, or none can be proven.
     """
-    _require_installed()
-    from pointcoord import Scene
-
-    reference_solution = import_module("validate.adjudication.reference_solution").reference_solution
+    reference_solution = _ours("adjudication.reference_solution", "reference_solution")
     solved: dict[str, Any] = {}
 
     def solution(scene: Scene | str) -> Any:
-        taken = Scene.load(scene) if isinstance(scene, str) else scene
+        taken = _loaded(scene)
         key = taken.model_dump_json()
         if key not in solved:
             solved[key] = reference_solution(taken)
@@ -131,40 +128,36 @@ def reference() -> Callable[[Scene | str], Any]:
 @pytest.fixture(scope="session")
 def plain_scene() -> Callable[[Scene | str], dict[str, Any]]:
     """What a solver is given: a scene as plain data (see `validate.solvers.plain`)."""
-    _require_installed()
-    from pointcoord import Scene
-
-    given_to_solver = import_module("validate.solvers.plain").given_to_solver
-
-    def plain(scene: Scene | str) -> dict[str, Any]:
-        given: dict[str, Any] = given_to_solver(Scene.load(scene) if isinstance(scene, str) else scene)
-        return given
-
-    return _in_one_line(plain)
+    given_to_solver = _ours("solvers.plain", "given_to_solver")
+    return _in_one_line(lambda scene: given_to_solver(_loaded(scene)))
 
 
 @pytest.fixture(scope="session")
 def assert_agrees() -> Callable[..., Any]:
     """`validate.assert_agrees`; where some numbers are not tested and none disagrees, the test is skipped."""
-    _require_installed()
-    assertion = import_module("validate.testing.assertion")
+    agrees, not_tested = (_ours("testing.assertion", name) for name in ("assert_agrees", "NotTested"))
 
-    def agrees(states: Mapping[str, Any], scene: Scene | str, *arguments: Any, **options: Any) -> Any:
+    def agrees_or_skips(states: Mapping[str, Any], scene: Scene | str, *more: Any, **options: Any) -> Any:
         try:
-            return assertion.assert_agrees(states, scene, *arguments, **options)
-        except assertion.NotTested as error:
+            return agrees(states, scene, *more, **options)
+        except not_tested as error:
             reason = str(error)
         pytest.skip(reason)
 
-    return _in_one_line(agrees)
+    return _in_one_line(agrees_or_skips)
 
 
 @pytest.fixture(scope="session")
 def assert_refuses() -> Callable[..., None]:
     """`validate.assert_refuses`."""
-    _require_installed()
-    refuses: Callable[..., None] = import_module("validate.testing.assertion").assert_refuses
+    refuses: Callable[..., None] = _ours("testing.assertion", "assert_refuses")
     return _in_one_line(refuses)
+
+
+def _loaded(scene: Scene | str) -> Scene:
+    from pointcoord import Scene
+
+    return Scene.load(scene) if isinstance(scene, str) else scene
 
 
 def _in_one_line(function: Callable[P, T]) -> Callable[P, T]:
@@ -182,13 +175,14 @@ def _in_one_line(function: Callable[P, T]) -> Callable[P, T]:
     return called
 
 
-def _require_installed() -> None:
+def _ours(module: str, name: str) -> Any:
+    """What has a name in a module of `validate`; the test fails in one line where there is none."""
     try:
         _require_ours()
     except ImportError as error:
         reason = _line(error)
     else:
-        return
+        return getattr(import_module(f"validate.{module}"), name)
     pytest.fail(reason, pytrace=False)
 
 

@@ -22,14 +22,14 @@ form."""
 
 COMMANDS = {
     "validate": "comparison",
-    "simulate": "motion",
+    "simulate": "solved",
     "sweep": "sweep",
     "plan": "scenes",
     "scenes": "scenes",
     "new": "new",
-    "draw": "draw",
-    "plot": "plot",
-    "table": "table",
+    "draw": "scenes",
+    "plot": "solved",
+    "table": "solved",
     "hard": "hard",
     "cost": "cost",
     "import": "hardpoints",
@@ -59,11 +59,7 @@ def _run(words: list[str], console: Console) -> ExitStatus:
 
 
 def _parsed(words: list[str]) -> argparse.Namespace:
-    """The options of a command line, whatever order they and the names of scenes stand in.
-
-    Raises:
-        UsageError: it is wrong. Answer: only a text is asked for.
-    """
+    """The options of a command line, whatever order they and the names of scenes stand in."""
     top = parser(words[:1])
     try:
         return top.parse_args(words)

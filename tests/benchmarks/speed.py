@@ -39,7 +39,7 @@ from validate.cost.parts.growth import CHAIN_INSTANTS
 from validate.cost.scenes import study_instants
 from validate.cost.ways.absolute import in_bodies
 from validate.cost.ways.registry import ways_named
-from validate.output.motion_tables import write_csv
+from validate.output.columns import write_csv
 
 Array = NDArray[np.float64]
 Work = Callable[[], object]

@@ -43,7 +43,7 @@ from validate.hardpoint_files.axes import Axes
 from validate.html.folder import require_folder
 from validate.html.hard_cases import read_hard_cases
 from validate.measured.reading import columns_of_text
-from validate.output.motion_tables import write_motion
+from validate.output.columns import write_motion
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
 from validate.reference.certificate import certify

@@ -175,6 +175,38 @@ class Baseline:
         return replace(found, words=words)
 
 
+def baseline_data(baseline: Baseline, found: Sequence[Since], gone: Sequence[str]) -> dict[str, Any]:
+    """A run against its baseline as plain data."""
+    return {
+        "file": baseline.target,
+        "program": baseline.program,
+        "scenes": [
+            {
+                "scene": since.scene,
+                "standing": since.standing,
+                "words": since.words,
+                "exit_status": since.status.value,
+                "moves": [
+                    {
+                        "formulation": move.formulation,
+                        "quantity": move.row.quantity,
+                        "name": move.row.name,
+                        "unit": move.row.unit,
+                        "moved": move.row.difference,
+                        "bound": move.row.tolerance,
+                        "share": move.row.share,
+                        "instant": move.row.instant,
+                        "verdict": move.verdict,
+                    }
+                    for move in since.moves
+                ],
+            }
+            for since in found
+        ],
+        "gone": list(gone),
+    }
+
+
 def _moves(
     name: str, scene: Scene, then: Sequence[Solution], outcomes: Sequence[Outcome], factor: float
 ) -> Iterator[Move]:

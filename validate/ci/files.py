@@ -1,4 +1,4 @@
-"""The files that a run of comparisons leaves: found to be writable before it, and written when it ends.
+"""The files that a run of comparisons leaves, written when it ends.
 
 Test results and the summary are written however the run ends. A baseline is what later runs are held to, so
 that one of a run that was interrupted does not take the place of a whole one.
@@ -19,7 +19,7 @@ from validate.comparison.compare import Outcome
 from validate.exit_status import ExitStatus
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.document import Ending, at_the_end
-from validate.output.files import OutputError, require_writable
+from validate.output.files import OutputError
 
 
 @dataclass(frozen=True)
@@ -35,16 +35,6 @@ class Files:
         """Take in a scene for the baseline, if there is to be one."""
         if self.baseline is not None:
             self.recorder.add(name, scene, outcomes)
-
-    def require_writable(self) -> None:
-        """Refuse what cannot be written, before anything is solved.
-
-        Raises:
-            OutputError: it cannot be.
-        """
-        for target in (self.junit, self.summary, self.baseline):
-            if target is not None and target != "-":
-                require_writable(target)
 
     def closing(self, record: Record, console: Console) -> AbstractContextManager[Ending]:
         """Write the files when a block ends, however it ends, if there is anything to write.

@@ -31,7 +31,7 @@ from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.formulations.refusals import Refusal
-from validate.output.report import about, held_to, used, when
+from validate.output.report import about, held_to, told_row, when
 from validate.plain_text import shown
 
 UNUSABLE = "cannot be used"
@@ -122,11 +122,7 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         return _Case(name, "skipped", row.verdict, f"not tested: {row.why}", out)
     if row.verdict == "agrees":
         return _Case(name, out=out)
-    message = (
-        f"{row.first} and {row.second} disagree: the largest difference is {_told(row.difference, row.unit)} "
-        f"at {when(row)}, the tolerance there {_told(row.tolerance, row.unit)}; "
-        f"at most {used(row.share)}{_held(outcome.factor)}"
-    )
+    message = f"{row.first} and {row.second} disagree: {told_row(row)}{_held(outcome.factor)}"
     why = tuple(f"what would explain it: {words}" for words in outcome.explained(row))
     return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
@@ -187,14 +183,12 @@ def _since(since: Since, factor: float) -> Iterator[_Case]:
 
 def _moved(move: Move, factor: float, lost: bool) -> _Case:
     row = move.row
-    moved, allowed = _told(row.difference, row.unit), _told(row.tolerance, row.unit)
     words = {
         "agrees": "",
         "new": "new: the baseline has no such numbers",
         "gone": "gone: the baseline has such numbers, and this run has none",
         "not tested": "not tested: one error bound is too wide to test the other",
-        "moved": f"moved by {moved} at {when(row)}, where both error bounds together allow {allowed}; "
-        f"at most {used(row.share)}{_held(factor)}",
+        "moved": f"moved by more than both error bounds together: {told_row(row)}{_held(factor)}",
     }
     kind = "failure" if lost or move.verdict == "moved" else "" if move.verdict == "agrees" else "skipped"
     out = () if move.verdict in ("new", "gone") else _numbers(row, "moved", "bound")

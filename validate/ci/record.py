@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pointcoord import Scene
-from validate.ci.baseline import Baseline, Since
-from validate.ci.moves import baseline_data
+from validate.ci.baseline import Baseline, Since, baseline_data
 from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding, findings

@@ -8,9 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from validate.ci.moves import moves_table, told_apart
 from validate.ci.record import Record
-from validate.ci.verdict import agreement, by_scene, complaints, disagreements, sentence, undecided
+from validate.ci.verdict import (
+    agreement,
+    by_scene,
+    complaints,
+    disagreements,
+    moves_table,
+    sentence,
+    told_apart,
+    undecided,
+)
 from validate.exit_status import MEANINGS, ExitStatus
 from validate.output.table import markdown
 

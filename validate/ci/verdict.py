@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import get_args
 
-from validate.ci.moves import lost_lines
+from validate.ci.baseline import Move, Since
 from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Verdict
 from validate.comparison.examined import Examined
@@ -21,15 +21,20 @@ from validate.output.report import (
     severity,
     share_of,
     silent_lines,
+    told_row,
     used,
     when,
     with_unit,
+    worst_of,
     worst_rows,
 )
-from validate.output.table import Cell, Table
+from validate.output.table import Cell, Part, Table
 from validate.plain_text import gathered, shown, some_of
 
 NAMED = 10  # scenes that a sentence names of each verdict
+NUMBERS = 8  # numbers in a sentence: the table's notes have them all
+ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
+MOVES = ("scene", "solved by", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
 NOT_TESTED = "not tested"
 # The line of a scene tells of the last verdict that any of its numbers has.
 OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
@@ -168,11 +173,7 @@ def disagreements(examined: Examined) -> Iterator[str]:
     """What does not agree, the worst first, and what would explain it."""
     for outcome in examined.outcomes:
         for row in sorted(outcome.disagreements, key=lambda row: -row.share):
-            apart, allowed = with_unit(row.difference, row.unit, 2), with_unit(row.tolerance, row.unit, 2)
-            yield (
-                f"{pair_of(outcome)}: {about(row.quantity, row.name)}: {apart} apart at {when(row, 6)}, "
-                f"tolerance there {allowed}; at most {used(row.share)}"
-            )
+            yield f"{pair_of(outcome)}: {told_row(row)}"
         yield from (line.strip() for line in explained_lines(outcome))
 
 
@@ -257,3 +258,66 @@ def _cell(row: Comparison) -> Cell:
         return Cell(row.verdict, row.name, row.verdict)
     text = f"disagrees, {used(row.share)}" if row.verdict == "disagrees" else row.verdict
     return Cell(text, f"{used(row.share)}: {row.name}, {when(row, 4)}", row.verdict)
+
+
+def since_parts(since: Since) -> tuple[Part, ...]:
+    """A scene against the baseline: a row for each formulation and quantity."""
+    if since.standing != "compared":
+        return (f"Since the baseline: {since.words}.",)
+    table = moves_table([since])
+    notes = (*((since.words,) if since.words else ()), *_alone(since))
+    lines = (f"  note: {line}" for line in notes)
+    return f"{since.scene}: since the baseline", *((table,) if table.rows else ()), *lines
+
+
+def moves_table(found: Sequence[Since], most: int | None = None) -> Table:
+    """What moved by how much: of each scene, formulation and quantity the worst."""
+    return Table(MOVES, tuple(row for since in found for row in _moved(since))[:most])
+
+
+def _moved(since: Since) -> Iterator[tuple[str | Cell, ...]]:
+    """A row for each formulation and quantity: what uses most of its bound, or exceeds it the most."""
+    compared = [move.row for move in since.moves if move.verdict not in ALONE]
+    for formulation in dict.fromkeys(row.first for row in compared):
+        for quantity, row in worst_of(row for row in compared if row.first == formulation).items():
+            yield (
+                since.scene,
+                formulation,
+                quantity,
+                row.name,
+                with_unit(row.difference, row.unit),
+                with_unit(row.tolerance, row.unit),
+                when(row, 4),
+                with_unit(row.share, ""),
+                Cell("MOVED", verdict="moved") if row.verdict == "disagrees" else row.verdict,
+            )
+
+
+def _by_formulation(moves: Iterable[Move]) -> dict[str, list[str]]:
+    """What the numbers of each formulation are, in words."""
+    return gathered((move.formulation, about(move.row.quantity, move.row.name)) for move in moves)
+
+
+def _alone(since: Since) -> Iterator[str]:
+    """Which numbers only the baseline or only this run has."""
+    shared = {move.formulation for move in since.moves if move.verdict not in ALONE}
+    for verdict, words in ALONE.items():
+        found = _by_formulation(move for move in since.moves if move.verdict == verdict)
+        for formulation, whats in found.items():
+            what = ", ".join(whats) if formulation in shared else "every number"
+            yield f"{verdict}, {words}: {what} by {formulation}"
+
+
+def lost_lines(since: Since) -> Iterator[str]:
+    """What of a scene was given then and is not now, a line for each formulation."""
+    for formulation, whats in _by_formulation(since.lost).items():
+        yield f"{since.scene}: {some_of(whats, NUMBERS)} by {formulation}"
+
+
+def told_apart(found: Iterable[Since], gone: Sequence[str]) -> Iterator[str]:
+    """What could not be held to the baseline, a line each: scenes, and numbers of scenes."""
+    for since in found:
+        if since.words:
+            yield f"scene {since.words}"
+        yield from (f"scene {since.scene}: {line}" for line in _alone(since))
+    yield from (f"scene {name} is gone: it is in the baseline and not in this run" for name in gone)

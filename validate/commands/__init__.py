@@ -1,1 +1,5 @@
-"""The commands of the program: each adds its options and is run with a console."""
+"""The commands of the program: a file each, or one for those that do nearly the same.
+
+`add` declares options; `run` reads them, calls the room that does the work and says what came of it. What it
+raises is for the one who runs the program: `validate.door` makes a line and a status of it.
+"""

@@ -11,20 +11,21 @@ from dataclasses import replace
 from pointcoord import Scene, SceneError
 from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
-from validate.ci.moves import since_parts
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
-from validate.commands.reporting import Page, add_report, page_of
+from validate.commands.comparing import Page, comparing, results_of
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
+    Commands,
     add_json,
-    add_quiet,
-    add_timings,
     load_scene,
     name_of,
     positive,
-    result_files,
+    refuse,
+    require_input_once,
+    require_results,
+    share,
 )
 from validate.comparison.examined import Examined, examine
 from validate.diagnosis import explain_outcome
@@ -33,7 +34,6 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation
 from validate.output import report
 from validate.output.console import Console
-from validate.output.document import Head, Journal
 from validate.output.progress import progress
 from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
@@ -47,6 +47,7 @@ from validate.solvers.plain import PlainSolver
 FIRST, SECOND = "pointcoord", "absolute"
 # Without names on the command line the paper's own algorithm is held to the other model too.
 FURTHER = ("pointcoord-newton", "absolute")
+OF_A_SOLVER = ("--traceback", "--solver-timeout", "--in-process")
 
 _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
@@ -59,12 +60,10 @@ formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
-        "validate",
-        help="solve scenes by two formulations and compare them",
-        description=DESCRIPTION,
+        "validate", help="solve scenes by two formulations and compare them", description=DESCRIPTION
     )
     add_options(parser)
     parser.add_argument(
@@ -73,43 +72,29 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="compare tables that other programs printed of their own cars, in place of scenes: every column "
         "with both models, to the last printed digit",
     )
-    add_report(parser)
+    share(parser, "--report")
     parser.set_defaults(run=run)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """What is compared, how, and where results go beside a report."""
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
-    parser.add_argument(
-        "--first",
-        metavar="NAME",
-        help=f"a formulation ({FIRST} if not given)",
-    )
-    parser.add_argument(
+    add = parser.add_argument
+    add("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
+    add("--first", metavar="NAME", help=f"a formulation ({FIRST} if not given)")
+    add(
         "--second",
         metavar="NAME",
         help=f"the one to compare it with ({SECOND} if not given); without --first and --second "
         f"{FURTHER[0]} is compared with {FURTHER[1]} as well",
     )
-    parser.add_argument(
-        "--data",
-        metavar="FILE",
-        help="compare a file of results (CSV, whitespace table, Parquet) with the one SCENE's car, at the "
-        "file's own times, inputs or travels, to the digits that it is written with",
-    )
-    parser.add_argument(
-        "--map",
-        metavar="FILE.toml",
-        help="what the columns of --data are; not needed for files that pointcoord simulate -o writes; one "
-        "that is not there yet is written, to be filled in",
-    )
-    parser.add_argument(
+    share(parser, "--data", "--map")
+    add(
         "--solver",
         metavar="MODULE:NAME",
         help="a solver of your own in the place of --first: a function, object or class that takes plain "
         f"data (see the README); without --second it is compared with {FIRST}",
     )
-    parser.add_argument(
+    add(
         "--accuracy",
         metavar="A",
         type=float,
@@ -117,123 +102,86 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "what is tolerated of every number is derived from it, pose by pose; or how far off the numbers of "
         "--data may be beside their digits, each in its column's unit",
     )
-    parser.add_argument(
-        "--traceback", action="store_true", help="show where in its files that solver raises an error"
-    )
-    parser.add_argument(
+    add("--traceback", action="store_true", help="show where in its files that solver raises an error")
+    add(
         "--solver-timeout",
         type=positive("time limit in s"),
         metavar="S",
         help=f"how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes longer, "
         "or crashes, has no answer there, and is made anew for the next scene",
     )
-    parser.add_argument(
+    add(
         "--in-process",
         action="store_true",
         help="call that solver in this process, for a debugger: no time limit, and a crash ends the run",
     )
-    parser.add_argument(
-        "--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path"
-    )
-    parser.add_argument(
+    add("--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path")
+    add(
         "--tolerance-factor",
         type=positive("factor"),
         default=1.0,
         metavar="F",
         help="hold differences to F times the derived tolerance; every result says so",
     )
-    parser.add_argument(
+    add(
         "--fail-fast",
         action="store_true",
         help="stop at the first scene that disagrees, has moved or is refused; what was not run is named",
     )
     add_json(parser, "the results")
-    parser.add_argument(
-        "--junit", metavar="FILE", help="write JUnit XML, a test case for each scene and quantity; - likewise"
-    )
-    parser.add_argument("--summary", metavar="FILE", help="write a summary in Markdown; - likewise")
-    parser.add_argument(
-        "--save-baseline", metavar="FILE", help="keep the solved numbers and their error bounds (npz)"
-    )
-    parser.add_argument(
+    add("--junit", metavar="FILE", help="write JUnit XML, a case for each scene and quantity; - likewise")
+    add("--summary", metavar="FILE", help="write a summary in Markdown; - likewise")
+    add("--save-baseline", metavar="FILE", help="keep the solved numbers and their error bounds (npz)")
+    add(
         "--baseline",
         metavar="FILE",
-        help="say what moved since a kept baseline by more than both error bounds",
+        help="say what moved since a kept baseline by more than both bounds",
     )
-    parser.add_argument(
-        "-v", "--verbose", action="store_true", help="print the table of every quantity of each scene"
-    )
-    add_timings(parser)
-    add_quiet(parser)
+    add("-v", "--verbose", action="store_true", help="print the table of every quantity of each scene")
+    share(parser, "--timings", "--quiet")
 
 
-def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Compare the scenes; each is said, and written as JSON, as soon as it is done.
+def run(options: argparse.Namespace, console: Console, page: Page | None = None) -> ExitStatus:
+    """Compare scenes, a file or tables; each is said, and written as JSON, as soon as it is done.
 
-    Raises:
-        UsageError: the options do not go together, or a folder, a baseline or a formulation cannot be used.
-        MissingPackage: a formulation's packages are not there.
-        OutputError: the results cannot be written.
+    Args:
+        page: is made of the run, if there is one; that of --report if not given.
     """
-    if options.tables:
-        # Most runs compare no table.
+    page = page or Page.of(options)
+    # Most runs compare no file and no table.
+    if getattr(options, "tables", False):
         from validate.commands.tables import run as run_tables
 
         return run_tables(options, console)
     if options.data is not None:
-        # Most runs compare no file.
         from validate.commands.data import run as run_data
 
-        return run_data(options, console, page_of(options))
-    return compare_scenes(options, console, page_of(options))
+        return run_data(options, console, page)
+    return _compare_scenes(options, console, page)
 
 
-def compare_scenes(
-    options: argparse.Namespace, console: Console, page: Page | None, brief: bool = False
-) -> ExitStatus:
-    """Compare scenes, with all that the options ask for.
-
-    Args:
-        page: is made of the run, if there is one.
-        brief: whether nothing is said but the verdict in a sentence, and where the page is.
-    Raises:
-        UsageError, MissingPackage, OutputError: see `run`.
-    """
-    if options.map is not None:
-        raise UsageError("--map is about a file of results; give it with --data FILE")
-    all_of_ours = not options.scenes and options.scenes_dir is None
-    names = _names(options)
-    _require_solver_options(options)
-    pairs = _pairs(options)
-    if names.count(STANDARD_INPUT) > 1:
-        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
-    files = result_files(options, names, console)
-    mute, console.mute = console.mute, console.mute or brief
+def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
+    refuse(options, ("--map",), "is about a file of results; give it with --data FILE")
+    names, pairs = _names(options), _pairs(options)
+    require_input_once(names)
+    if options.save_baseline == "-":
+        raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
+    # A baseline may take the place of the one that it was compared with.
+    kept = {None, options.save_baseline} if options.baseline == options.save_baseline else {None}
+    require_results(results_of(options), [*names, *({options.baseline} - kept)], options, console)
     for name in dict.fromkeys(name for pair in pairs for name in pair if name != shown(options.solver or "")):
         formulation(name)  # found before any scene is read
     baseline = None if options.baseline is None else read_baseline(options.baseline)
-    shown_names = [name_of(name) for name in names]
-    record = Record(shown_names, options.tolerance_factor, baseline)
-    files.require_writable()
-    if page is not None:
-        page.require()
-    drawings = None if page is None else page.drawings(len(names))
-    head = Head.of("validate", options.command, options.timings)
-    journal = Journal(options.json, head, console)
-
-    def finished() -> str:
-        return f"{len(record.examined)} of {counted_as(len(names), 'scene')}"
-
+    shown_names = [*map(name_of, names)]
+    record, width = Record(shown_names, options.tolerance_factor, baseline), max(map(len, shown_names))
     with (
         _solver(options) as own,
-        journal.closing(record.data, lambda: record.examined, finished) as ending,
-        files.closing(record, console),
-        progress(console, "scenes", total=len(names), lines=brief) as told,
+        comparing(options, console, record, page) as compared,
+        progress(console, "scenes", total=len(names), lines=page is not None and page.brief) as told,
     ):
         loaded = _loaded(names, console)
-        width = max(map(len, shown_names))
-        compared = "; ".join(" and ".join(pair) for pair in pairs)
-        console.say(f"{compared}: {counted_as(len(names), 'scene')}\n")
+        told_pairs = "; ".join(" and ".join(pair) for pair in pairs)
+        console.say(f"{told_pairs}: {counted_as(len(names), 'scene')}\n")
         if not options.verbose:
             console.say(verdict.scene_head(width))
         for place, (name, scene) in enumerate(loaded):
@@ -242,42 +190,19 @@ def compare_scenes(
             if isinstance(scene, Scene):
                 printed = name in PAPER_SCENES and not own
                 examined = explained(scene, examine(name, scene, pairs, printed, record.factor, own))
-                files.keep(examined.name, scene, examined.outcomes)
                 if baseline is not None:
                     since = baseline.since(examined.name, scene, examined.outcomes, record.factor)
             else:
                 examined = scene
-            read = scene if isinstance(scene, Scene) else None
-            record.add(examined, since, read)
-            _say(
-                examined,
-                since,
-                time.monotonic() - began,
-                options.verbose,
-                console,
-                max(map(len, shown_names)),
-            )
-            if drawings is not None:
-                drawings.add(examined, read)
-            journal.keep(record.data, finished())
+            _say(examined, since, time.monotonic() - began, options.verbose, console, width)
+            compared.add(examined, since, scene if isinstance(scene, Scene) else None)
             if options.fail_fast and ends_the_run(examined, since) and place + 1 < len(names):
                 record.stopped = f"--fail-fast ended the run at {examined.name}"
                 break
-        if all_of_ours and not own and not record.not_run:
+        if not own and not record.not_run and not options.scenes and options.scenes_dir is None:
             record.paper = compare_with_paper()
         _say_at_the_end(record, options.verbose, console)
-        ending.status = record.status
-        if page is not None and drawings is not None:
-            # Most runs make no page.
-            from validate.html.run import Run
-
-            told("the page", len(names))
-            whole = page.write(Run(head, record, drawings.kept), console)
-            ending.status = whole.status
-            if brief:
-                console.mute = mute
-                console.say(f"{whole.sentence}\n{page.place}")
-    return ending.status
+    return compared.ending.status
 
 
 def explained(scene: Scene, examined: Examined) -> Examined:
@@ -288,11 +213,7 @@ def explained(scene: Scene, examined: Examined) -> Examined:
 
 @contextmanager
 def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
-    """The solver of one's own by its name, as long as the run needs it; none if there is none.
-
-    Raises:
-        NoSolver: it cannot be found, or its accuracy is none.
-    """
+    """The solver of one's own by its name, as long as the run needs it; none if there is none."""
     if options.solver is None:
         yield {}
         return
@@ -306,18 +227,6 @@ def _solver(options: argparse.Namespace) -> Iterator[Mapping[str, PlainSolver]]:
         yield {name: PlainSolver(name, solver, accuracy)}
 
 
-def _require_solver_options(options: argparse.Namespace) -> None:
-    if options.solver is not None and options.first is not None:
-        raise UsageError("--solver and --first are both given; the solver takes the place of --first")
-    for option in ("--accuracy", "--traceback", "--solver-timeout", "--in-process"):
-        given = getattr(options, option.strip("-").replace("-", "_"))
-        if options.solver is None and given not in (None, False):
-            also = ", or about a file: --data FILE" if option == "--accuracy" else ""
-            raise UsageError(f"{option} is about a solver of your own: give --solver MODULE:NAME{also}")
-    if options.in_process and options.solver_timeout is not None:
-        raise UsageError("--in-process has no time limit; leave --solver-timeout out, or --in-process")
-
-
 def _names(options: argparse.Namespace) -> list[str]:
     """The scenes that are named, then those of a folder; where neither is given, all built-in ones."""
     folder = [] if options.scenes_dir is None else list(scenes_below(options.scenes_dir))
@@ -327,21 +236,30 @@ def _names(options: argparse.Namespace) -> list[str]:
 
 
 def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
-    if options.solver is not None:
-        if options.second == "":
-            raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
-        return ((shown(options.solver), options.second or FIRST),)
-    first, second = options.first or FIRST, options.second or SECOND
-    if options.first == "" or options.second == "":
+    """Which formulations are compared."""
+    if "" in (options.first, options.second):
         raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
+    if options.solver is not None:
+        refuse(options, ("--first",), "is given, and --solver, which takes its place; leave one of them out")
+        if options.in_process:
+            refuse(options, ("--solver-timeout",), "is no limit of --in-process; leave one of them out")
+        return ((shown(options.solver), options.second or FIRST),)
+    refuse(options, OF_A_SOLVER, "is about a solver of your own: give --solver MODULE:NAME")
+    refuse(
+        options,
+        ("--accuracy",),
+        "is about a solver or a file: give --solver MODULE:NAME or --data FILE",
+    )
+    if options.first is None and options.second is None:
+        return (FIRST, SECOND), FURTHER
+    first, second = options.first or FIRST, options.second or SECOND
     if first == second:
         others = ", ".join(name for name in NAMES if name != first)
         raise UsageError(
             f"{first!r} is to be compared with itself, which tells nothing; "
             f"give another --first or --second: {others}"
         )
-    alone = options.first is None and options.second is None
-    return ((first, second), FURTHER) if alone else ((first, second),)
+    return ((first, second),)
 
 
 def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | Examined]]:
@@ -371,26 +289,18 @@ def _say(
         parts = (report.agreement_line(outcome),) if brief else report.outcome_parts(outcome)
         console.show((*parts, *notes, ""))
     if since is not None and (verbose or since.status is not ExitStatus.AGREE):
-        console.show((*since_parts(since), ""))
+        console.show((*verdict.since_parts(since), ""))
 
 
 def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
     """What all scenes have in common, the verdict, and what to do next."""
     for warning in verdict.by_scene(record, lambda one: iter(() if one.complaint else one.warnings)):
         console.warn(warning)
-    printed = [one for one in record.examined if one.printed is not None]
-    unprinted = [(one.name, one.unprinted) for one in record.examined if one.unprinted is not None]
     if verbose:
-        if record.findings:
-            table = report.findings_table(record.findings)
-            console.show((table.caption, table, ""))
-        elif printed:
-            console.say(f"The paper's printed formulas agree in {', '.join(one.name for one in printed)}.\n")
-        for name, why in unprinted:
-            console.say(f"The paper's formulas as printed cannot solve {name}: {why.message}\n")
+        console.show((*report.printed_parts(record.examined, record.findings), ""))
         if record.paper:
             console.show((*report.paper_parts(record.paper), ""))
-    elif printed or unprinted:
+    elif any(one.printed is not None or one.unprinted is not None for one in record.examined):
         wrong = counted_as(len(record.findings), "wrong result")
         console.say(
             f"\nThe paper's formulas as printed give {wrong} in these scenes; -v says which, and why."
@@ -401,8 +311,8 @@ def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
     if console.quiet and record.status is ExitStatus.NO_VERDICT:
         for one in record.examined:
             # A complaint has said it of the others.
-            if not one.complaint and (told := verdict.silence(one)):
-                console.complain(f"{one.name}: {told}")
+            if not one.complaint and (why := verdict.silence(one)):
+                console.complain(f"{one.name}: {why}")
         for since in record.since:
             if since.status is ExitStatus.NO_VERDICT:
                 words = since.words or f"{since.scene}: not every number is tested"

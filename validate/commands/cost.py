@@ -11,16 +11,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pointcoord import UnknownName
-from validate.commands.reporting import Page
+from validate.commands.comparing import Page
 from validate.commands.usage import (
     SCENE_HELP,
     STANDARD_INPUT,
+    Commands,
     add_json,
-    add_quiet,
-    leave_output_to,
     load_scene,
     name_of,
-    require_target,
+    require_input_once,
+    require_results,
+    share,
     told_as,
     write_result,
 )
@@ -31,8 +32,9 @@ from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.files import require_writable, write_content
+from validate.output.files import write_content
 from validate.output.progress import progress
+from validate.output.report import counted_as
 
 if TYPE_CHECKING:
     from validate.cost.study import Study
@@ -51,18 +53,13 @@ What is measured is kept in a Parquet file, a row for each number: a run that is
 with the scene that it was in, and --from-rows makes the report again without measuring."""
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
-        "cost",
-        help="measure and show what accuracy costs in time",
-        description=DESCRIPTION,
+        "cost", help="measure and show what accuracy costs in time", description=DESCRIPTION
     )
     parser.add_argument(
-        "scenes",
-        nargs="*",
-        metavar="SCENE",
-        help=f"{SCENE_HELP}; none: the scenes of the study",
+        "scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: the scenes of the study"
     )
     parser.add_argument("--list", action="store_true", help="name the ways, scenes and parts, and end")
     parser.add_argument(
@@ -86,44 +83,37 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     add_json(parser, "everything")
     parser.add_argument("--csv", metavar="FILE", help="write every row as CSV; - for standard output")
-    parser.add_argument(
-        "--report",
-        metavar="FOLDER",
-        help="write a page of HTML that needs no network, pictures (SVG, PNG), the full tables as Markdown "
-        "and CSV, and the rows as JSON into a folder",
-    )
-    add_quiet(parser)
+    pictures = ", pictures (SVG, PNG), all tables as Markdown and CSV, and the rows as JSON into a folder"
+    share(parser, "--report", help=f"write a page of HTML that needs no network{pictures}")
+    share(parser, "--quiet")
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Measure what the file of rows does not hold yet, and report.
-
-    Raises:
-        UsageError: the options do not go together, or the file of rows cannot be used.
-        SceneError, UnknownName: a scene is wrong, or there is no such way.
-        MissingPackage: the reference or matplotlib is not there.
-        OutputError: something cannot be written.
-    """
-    _check_options(options)
-    advice = "use --quiet, with --json FILE, --csv FILE or --report FOLDER"
-    leave_output_to((options.json, options.csv), options, console, advice)
+    """Measure what the file of rows does not hold yet, and report."""
+    require_input_once(options.scenes)
+    if options.rows == STANDARD_INPUT or not options.rows.strip():
+        raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
+    results, read = {"--json": options.json, "--csv": options.csv}, [*options.scenes]
+    if options.from_rows or options.list:
+        read.append(options.rows)
+    else:
+        results["--rows"] = options.rows
+    require_results(results, read, options, console)
     if options.list:
         console.say(_listing())
         return ExitStatus.AGREE
     parts = _parts(options)
     if options.report is not None:
-        _require_folder(options.report)
-    if options.csv not in (None, "-"):
-        require_writable(options.csv)
+        needed("--report", "matplotlib", "plot")
+        Page(options.report).require()
     needed("cost", "pyarrow")
     journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
         status = _told(report, options, console)
-        journal.close(report.data, status, True, _rows(len(report.rows)))
+        journal.close(report.data, status, True, counted_as(len(report.rows), "row"))
         return status
-    require_writable(options.rows)
     study = _study(options, parts)
     try:
         store = Store(Path(options.rows), measured_here(shlex.join(options.command)))
@@ -143,19 +133,6 @@ def _listing() -> str:
     return "\n".join([*lines, *(f"  {name}" for name in scenes), f"parts: {', '.join(PARTS)}"])
 
 
-def _check_options(options: argparse.Namespace) -> None:
-    scenes = tuple(options.scenes)
-    for target, option in ((options.json, "--json"), (options.csv, "--csv")):
-        require_target(target, option, (*scenes, options.rows))
-    if options.json == options.csv == "-":
-        raise UsageError("--json - and --csv - both take standard output; give one of them a file")
-    if options.rows == STANDARD_INPUT or not options.rows.strip():
-        raise UsageError(f"--rows {options.rows!r} names no file; allowed: the path of a file")
-    require_target(options.rows, "--rows", scenes)
-    if scenes.count(STANDARD_INPUT) > 1:
-        raise UsageError("standard input (-) is given as a scene more than once; it can be read once")
-
-
 def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
     """The parts that are asked for, in their order."""
     if options.effects:
@@ -173,11 +150,7 @@ def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
 
 
 def _chosen(words: str, option: str, what: str, allowed: Sequence[str]) -> list[str]:
-    """Names that an option lists.
-
-    Raises:
-        UsageError: it lists none. UnknownName: one is not allowed.
-    """
+    """Names that an option lists."""
     names = [word.strip() for word in words.split(",") if word.strip()]
     if not names:
         raise UsageError(f"{option} {words!r} names nothing; there are: {', '.join(allowed)}")
@@ -220,7 +193,9 @@ def _measured(
 
     rows: list[Row] = []
     try:
-        with journal.closing(lambda: report(rows).data(), lambda: rows, lambda: _rows(len(rows))) as ending:
+        with journal.closing(
+            lambda: report(rows).data(), lambda: rows, lambda: counted_as(len(rows), "row")
+        ) as ending:
             try:
                 with progress(console, "what accuracy costs") as told:
                     rows += needed("cost", "validate.cost.study").measure(study, store, told)
@@ -230,7 +205,7 @@ def _measured(
                 raise
             ending.status = _told(report(rows), options, console)
     finally:
-        console.written.insert(0, f"{options.rows} holds {_rows(len(store.rows))}")
+        console.written.insert(0, f"{options.rows} holds {counted_as(len(store.rows), 'row')}")
     return ending.status
 
 
@@ -242,7 +217,8 @@ def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
         raise UsageError(f"--rows {error}") from None
     rows = [row for row in report.rows if row.part in parts]
     if options.scenes:
-        names, there = [name_of(name) for name in options.scenes], _names(row.scene for row in rows)
+        names = [name_of(name) for name in options.scenes]
+        there = [*dict.fromkeys(row.scene for row in rows if row.scene)]
         # A part of a scene's effects is named after a comma.
         about = {name: [one for one in there if f"{one}, ".startswith(f"{name}, ")] for name in names}
         for name in names:
@@ -250,14 +226,10 @@ def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
                 raise UnknownName(f"scene of the rows in {options.rows}", name, there)
         rows = [row for row in rows if any(row.scene in about[name] for name in names)]
     if options.ways is not None:
-        there = _names(row.way for row in rows if row.part != "loading")
+        there = [*dict.fromkeys(row.way for row in rows if row.way and row.part != "loading")]
         asked = _chosen(options.ways, "--ways", f"way in the rows of {options.rows}", there)
         rows = [row for row in rows if row.way in asked or row.part == "loading"]
     return replace(report, rows=tuple(rows))
-
-
-def _names(names: Iterable[str]) -> list[str]:
-    return list(dict.fromkeys(name for name in names if name))
 
 
 def _told(report: Report, options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -269,46 +241,23 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     if options.report:
         # Most runs write no page.
         from validate.html.folder import make_folder
-
-        make_folder(options.report)
-        for name, content in report.files():
-            write_content(os.path.join(options.report, name), content)
         from validate.html.run import Run
 
+        make_folder(options.report)
+        for name, written in report.files():
+            write_content(os.path.join(options.report, name), written)
         Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
     elif not options.from_rows and not console.quiet and not console.mute:
-        _picture(report, Path(options.rows).with_suffix(".svg"), console)
+        place = Path(options.rows).with_suffix(".svg")
+        try:
+            content = report.headline()
+        except ImportError:
+            content = None
+            console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
+        if content is not None:
+            write_content(str(place), content)
+            console.written.append(f"{place} holds the picture")
+            console.say(f"the picture: {place}")
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
-
-
-def _picture(report: Report, place: Path, console: Console) -> None:
-    """The one picture, beside the rows."""
-    try:
-        content = report.headline()
-    except ImportError:
-        console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
-        return
-    if content is not None:
-        write_content(str(place), content)
-        console.written.append(f"{place} holds the picture")
-        console.say(f"the picture: {place}")
-
-
-def _rows(count: int) -> str:
-    return f"{count} row{'' if count == 1 else 's'}"
-
-
-def _require_folder(folder: str) -> None:
-    """See that the folder takes files, and that there is a painter, before anything is measured.
-
-    Raises:
-        UsageError: it has no name, or holds another's page.
-        MissingPackage: matplotlib, or what a page needs, is not there.
-        OutputError: the folder cannot be had.
-    """
-    needed("--report", "matplotlib", "plot")
-    Page(folder).require()
-    if os.path.isdir(folder):
-        require_writable(os.path.join(folder, "report.md"))

@@ -6,21 +6,20 @@ import argparse
 import os
 import shlex
 
-from validate.commands.to_fill_in import to_be_filled_in
+from validate.commands.data import require_files
 from validate.commands.usage import (
-    STANDARD_INPUT,
+    TOML,
+    Commands,
     add_json,
     add_output,
-    add_quiet,
-    add_scene,
-    leave_output_to,
     load_scene,
     name_of,
-    require_target,
+    require_results,
+    share,
+    to_be_filled_in,
     told_as,
     write_result,
 )
-from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates, require_limits
 from validate.fitting.record import corrected_text, data_of, table_of
@@ -28,11 +27,9 @@ from validate.fitting.words import text_of, warnings_of_fit
 from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text
-from validate.output.files import require_known_ending, require_writable
 from validate.output.progress import progress
 from validate.plain_text import shown
 
-ENDINGS = (".toml",)
 HOLDS = {"-o": "the corrected scene", "--json": "the fit", "--csv": "the corrections"}
 
 DESCRIPTION = """\
@@ -43,19 +40,12 @@ answer is one of many: the likeliest if every coordinate is off by --prior or so
 moves the fewest hardpoints. Where you know which points are in doubt, name them by --free."""
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command with its options."""
     parser = commands.add_parser("fit", help="fit hardpoints to measured curves", description=DESCRIPTION)
-    add_scene(parser)
-    parser.add_argument(
-        "--data",
-        metavar="FILE",
-        required=True,
-        help="a file of results (CSV, whitespace table, Parquet), as for validate --data",
-    )
-    parser.add_argument(
-        "--map", metavar="FILE.toml", help="what the columns of --data are; a new one is written"
-    )
+    share(parser, "scene")
+    share(parser, "--data", required=True, help="a file of results, as for validate --data")
+    share(parser, "--map")
     parser.add_argument(
         "--free",
         metavar="POINT.AXIS",
@@ -91,7 +81,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.add_argument(
         "--csv", metavar="FILE", help="write the coordinates and their corrections as a table; - likewise"
     )
-    add_quiet(parser)
+    share(parser, "--quiet")
     parser.set_defaults(run=run)
 
 
@@ -100,18 +90,12 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Returns:
         NO_VERDICT if least squares did not end.
-    Raises:
-        UsageError: the options do not go together, the target has no name for a scene, or a coordinate is
-            there twice.
-        FileError, UnknownName: the file, its map or an option is wrong.
-        SceneError: the scene is wrong; PointcoordError: it cannot be solved.
-        OutputError: a result cannot be written.
     """
-    if STANDARD_INPUT in (options.data, options.map):
-        raise UsageError("--data and --map read files; standard input (-) can be the scene only")
+    require_files(options)
     limits = options.bounds, options.prior, options.accuracy
     require_limits(*limits, mark="--")
-    targets = _targets(options, console)
+    targets = {"-o": options.output, "--json": options.json, "--csv": options.csv}
+    require_results(targets, (options.scene, options.data, options.map), options, console, {"-o": TOML})
     scene, name = load_scene(options.scene), name_of(options.scene)
     if options.map is not None and not os.path.exists(options.map):
         return to_be_filled_in(options.map, map_to_fill_in(options.data, scene), console)
@@ -135,7 +119,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         "--csv": lambda: table_of(fit),
     }
     for option, target in targets.items():
-        write_result(target, texts[option](), HOLDS[option], console)
+        if target is not None:
+            write_result(target, texts[option](), HOLDS[option], console)
     if options.output not in (None, "-"):
         console.say(f"{shown(options.output)} is written; try: {_next(options)}")
     return status
@@ -149,28 +134,3 @@ def _next(options: argparse.Namespace) -> str:
     if options.accuracy:
         words += ["--accuracy", f"{options.accuracy:g}"]
     return shown(shlex.join([*words, options.output]))
-
-
-def _targets(options: argparse.Namespace, console: Console) -> dict[str, str]:
-    """Where results go, each to a place of its own; standard output is left to one that is to go there.
-
-    Raises:
-        UsageError, OutputError: see `run`.
-    """
-    given = {"-o": options.output, "--json": options.json, "--csv": options.csv}
-    targets = {option: target for option, target in given.items() if target is not None}
-    files = tuple(file for file in (options.scene, options.data, options.map) if file is not None)
-    by_place: dict[str, str] = {}
-    for option, target in targets.items():
-        require_target(target, option, files)
-        other = by_place.setdefault(target if target == "-" else os.path.realpath(target), option)
-        if other != option:
-            raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
-    advice = "use --quiet with -o FILE, --json FILE or --csv FILE"
-    leave_output_to(targets.values(), options, console, advice)
-    for option, target in targets.items():
-        if target != "-":
-            if option == "-o":
-                require_known_ending(target, ENDINGS)
-            require_writable(target)
-    return targets

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from validate.commands.reporting import add_report, page_of
-from validate.commands.usage import add_json, add_quiet, leave_output_to, require_target
-from validate.errors import UsageError
+from validate.commands.comparing import Page
+from validate.commands.usage import Commands, add_json, refuse, require_results, share
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -19,49 +18,39 @@ digits and proven: it must be right within its error bound, or refused with a re
 `pointcoord study hard` does the same by several processes or machines, and keeps records."""
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
-        "hard",
-        help="try the cases that are known to be hard",
-        description=DESCRIPTION,
+        "hard", help="try the cases that are known to be hard", description=DESCRIPTION
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
     add_json(parser, "every trial, or the list,")
     parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
-    add_report(parser)
-    add_quiet(parser)
+    share(parser, "--report", "--quiet")
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Try the cases; each is said, and written as JSON, as soon as it is done.
-
-    Raises:
-        UsageError: no case has such a name, or no file.
-        MissingPackage: the reference, or a formulation, is not there.
-        OutputError: the results cannot be written.
-    """
-    require_target(options.json, "--json")
+    """Try the cases; each is said, and written as JSON, as soon as it is done."""
     # The reference needs packages that the solvers do without.
     from validate.hard import catalogue
     from validate.hard import report as hard_report
     from validate.hard import run as hard_run
 
     cases = catalogue.chosen(options.cases)
-    leave_output_to((options.json,), options, console, "use --quiet, or --quiet --json FILE")
-    page = page_of(options)
-    if page is not None and options.list:
-        raise UsageError("--report is about cases that are tried; leave it out with --list")
-    if page is not None:
-        page.require()
+    if options.list:
+        refuse(options, ("--report",), "is about cases that are tried; leave it out with --list")
+    require_results({"--json": options.json}, (), options, console)
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     journal = Journal(options.json, head, console)
     if options.list:
         console.say(hard_report.listing(cases))
         journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")
         return ExitStatus.AGREE
+    page = Page.of(options)
+    if page is not None:
+        page.require()
     results: list[hard_run.Examined] = []
     headings: list[str] = []
 

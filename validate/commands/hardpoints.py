@@ -7,18 +7,21 @@ import os
 from dataclasses import fields
 
 from validate.closed_drawing import warnings_of
-from validate.commands.to_fill_in import to_be_filled_in
-from validate.commands.usage import add_output, require_target, write_result
+from validate.commands.usage import (
+    TOML,
+    Commands,
+    add_output,
+    require_results,
+    to_be_filled_in,
+    write_result,
+)
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
 from validate.hardpoint_files.importing import PARTS, SIDES, Choices, Imported, import_hardpoints, names_of
 from validate.output.console import Console
-from validate.output.files import require_known_ending, require_writable
 from validate.plain_text import shown
 from validate.tables.units import LENGTHS
-
-ENDINGS = (".toml",)
 
 DESCRIPTION = """\
 Make a scene from a file of hardpoints of another program. Points get our names, axes and unit;
@@ -29,7 +32,7 @@ formats:
 """ + "\n".join(f"  {one.name.ljust(8)}  {one.words}" for one in formats().values())
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
         "import", help="make a scene from another program's hardpoints", description=DESCRIPTION
@@ -77,19 +80,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     Returns:
         DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
-    Raises:
-        UsageError: the scene has no name, or another ending than .toml; or axes are none.
-        SceneError, FileError, UnknownName: the file or an option is wrong.
-        AssemblyError: the points cannot be put together.
-        OutputError: the scene cannot be written.
     """
-    target = None if options.output == "-" else options.output
-    require_target(target, "-o", (options.file,))
-    if target is None:
-        console.require("use -o FILE")
-    else:
-        require_known_ending(target, ENDINGS)
-        require_writable(target)
+    target: str | None = None if options.output == "-" else options.output
+    result = {"-o": "-" if target is None else target}
+    require_results(result, (options.file,), options, console, {"-o": TOML}, says=False)
+    console.mute = False
     if options.names is not None and not os.path.exists(options.names):
         text = names_of(options.file, options.format, options.suspension)
         return to_be_filled_in(options.names, text, console)

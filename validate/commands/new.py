@@ -5,18 +5,17 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from functools import partial
 from pathlib import Path
-from typing import IO
 
 from pointcoord import Scene, SceneError, built_in_scenes
 from pointcoord.mechanism.file import MECHANISMS, is_path, shipped
 from pointcoord.scene.scene_file import SCENES
 from pointcoord.toml_text import parsed, read_file
+from validate.commands.usage import Commands
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.files import require_writable, write_whole
+from validate.output.files import require_writable, write_content
 from validate.plain_text import shown
 
 DESCRIPTION = """\
@@ -43,7 +42,7 @@ MECHANISM_NOTE = """\
 """
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command with its options."""
     parser = commands.add_parser(
         "new", help="write a scene and its mechanism file to start from", description=DESCRIPTION
@@ -60,18 +59,13 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Write both files.
-
-    Raises:
-        UsageError: a file of that name is there.
-        SceneError: there is no such scene, or it is wrong.
-        OutputError: a file cannot be written.
-    """
+    """Write both files."""
     name = options.name.removesuffix(".toml")
     if not name:
         raise UsageError("NAME is empty; allowed: the name of the new files, without .toml")
     Scene.load(options.scene)
-    written, folder = _scene_text(options.scene)
+    source = SCENES / f"{options.scene}.toml" if options.scene in built_in_scenes() else Path(options.scene)
+    written = read_file(source, "a scene")
     of_type = parsed(written, options.scene)["mechanism"].get("type")
     files = {}
     text = written.decode("utf-8-sig")
@@ -80,7 +74,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         text, count = TYPE.subn(lambda found: f'{found[1]}"{own}"', text)
         if count != 1:
             raise SceneError(options.scene, "mechanism.type", "is not written as one line type = ...")
-        source = folder / of_type if is_path(of_type) else MECHANISMS / f"{of_type}.toml"
+        source = source.parent / of_type if is_path(of_type) else MECHANISMS / f"{of_type}.toml"
         files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + read_file(source, ", ".join(shipped())).decode()
     files = {f"{name}.toml": SCENE_NOTE.format(name=name) + text, **files}
     for target in files:
@@ -88,19 +82,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             raise UsageError(f"{shown(target)} is there already; allowed: a name of its own")
         require_writable(target)
     for target, content in files.items():
-        write_whole(target, partial(_written, content))
+        write_content(target, content)
     console.written = [f"{' and '.join(files)} hold the scene"]
     console.say(f"{' and '.join(map(shown, files))} written; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
-
-
-def _scene_text(scene: str) -> tuple[bytes, Path]:
-    """A scene's text and the folder that its paths are counted from."""
-    if scene in built_in_scenes():
-        return (SCENES / f"{scene}.toml").read_bytes(), SCENES
-    return read_file(scene, f"a path, or one of {', '.join(built_in_scenes())}"), Path(scene).parent
-
-
-def _written(content: str, stream: IO[bytes]) -> None:
-    """Text into a file."""
-    stream.write(content.encode())

@@ -1,4 +1,4 @@
-"""`pointcoord plan` and `pointcoord scenes`: what a scene would compute, and which scenes there are."""
+"""`pointcoord plan`, `draw` and `scenes`: what is known of a scene before it is solved."""
 
 from __future__ import annotations
 
@@ -7,73 +7,112 @@ import argparse
 import numpy as np
 
 from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, standing
-from pointcoord.drawing_stands import End, Standing
+from pointcoord.drawing_stands import Standing
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.joints import bodies, joints
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart
-from pointcoord.simulation import Effort, effort
-from validate.closed_drawing import warnings_of
-from validate.commands.usage import add_scene, load_scene, name_of, told_as
+from pointcoord.simulation import effort
+from validate.closed_drawing import closed_drawing, warnings_of
+from validate.commands.usage import (
+    Commands,
+    add_output,
+    load_scene,
+    name_of,
+    place_of_result,
+    share,
+    told_as,
+    write_result,
+)
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
+from validate.output.picture import svg
 from validate.plain_text import shown
 
+PICTURES = (".svg",)
 SOLVED = ("positions", "positions and velocities", "positions, velocities and accelerations")
 
-DESCRIPTION = """\
+PLAN = """\
 Say what a scene makes the program compute and what it leaves out; then, of its drawing, the
 value of each input, how far each can go from there, the wheel's angles, and how far the
 drawing is from closing. Whether by series in time or by a map of the inputs, and what the asked
 accuracy takes, is found by building these; the motion itself is not computed."""
+DRAW = """\
+Draw a scene's hardpoints from behind, from the left and from above, so that a wrong sign,
+axis or side is seen before anything is solved. Where the drawing does not close, it is drawn
+a second time as it is solved."""
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add both commands."""
+def add(commands: Commands) -> None:
+    """Add the three commands."""
     plan = commands.add_parser(
-        "plan",
-        help="say what a scene would compute, and where its drawing stands",
-        description=DESCRIPTION,
+        "plan", help="say what a scene would compute, and where its drawing stands", description=PLAN
     )
-    add_scene(plan)
+    share(plan, "scene")
     plan.set_defaults(run=run_plan)
+    draw = commands.add_parser("draw", help="make a picture of a scene's hardpoints (SVG)", description=DRAW)
+    share(draw, "scene")
+    add_output(draw, "FILE.svg", "where to; standard output if not given, or for -")
+    draw.set_defaults(run=run_draw)
     scenes = commands.add_parser(
         "scenes", help="list the built-in scenes", description="List the built-in scenes with their titles."
     )
     scenes.set_defaults(run=run_scenes)
 
 
-def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Say what a scene would compute.
+def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """List the built-in scenes with their titles."""
+    console.require("it is where the list goes")
+    names = built_in_scenes()
+    width = max(map(len, names))
+    console.say("\n".join(f"{name.ljust(width)}  {Scene.load(name).title}" for name in names))
+    return ExitStatus.AGREE
 
-    Raises:
-        SceneError: the scene is wrong.
-        OutputError: standard output does not take it.
-    """
+
+def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Draw a scene's hardpoints."""
+    target = place_of_result(options, PICTURES, console)
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    with told_as(name):
+        drawing = closed_drawing(scene)
+    for warning in warnings_of(scene, drawing.closing):
+        console.warn(f"{name}: {warning}")
+    write_result(target, svg(drawing), "the picture", console)
+    return ExitStatus.AGREE
+
+
+def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Say what a scene would compute, and where its drawing stands."""
     console.require("it is where a plan goes")
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects, unreported=scene.unreported_points)
-    part, name = scene.mechanism, name_of(options.scene)
+    part, name, silent = scene.mechanism, name_of(options.scene), scene.unreported_points
+    gradients = [effect for effect in plan.left_out if EFFECTS[effect].base]
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
         f"mechanism: {part.name}, {part.side} side; inputs: {', '.join(scene.inputs)}",
         *_mechanism(part),
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
         *(f"computed: {effect.gives}" for effect in ALWAYS),
-        *_reported(scene),
-        *(f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects),
-        *(
-            f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
-            for effect in plan.left_out
-            if not EFFECTS[effect].base
-        ),
-        *_gradients_left_out(plan),
-        *_work(plan, part.topology),
-        *_effort(scene, plan),
     ]
-    console.say("\n".join(lines))
+    if silent:
+        lines.append(
+            f"of the points: {', '.join(scene.reported_points)}; add {', '.join(silent)} to points to have "
+            "them"
+        )
+    lines += [f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects]
+    lines += [
+        f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
+        for effect in plan.left_out
+        if effect not in gradients
+    ]
+    if gradients:
+        lines.append(
+            f"left out: what these change by per mm of travel and of rack; add one of {', '.join(gradients)}"
+        )
+    console.say("\n".join([*lines, *_work(plan, part.topology), *_effort(scene, plan)]))
     return _say_where_it_stands(scene, name, console)
 
 
@@ -99,24 +138,6 @@ def _mechanism(part: MechanismPart) -> list[str]:
             "held to at every answer"
         )
     return lines
-
-
-def _reported(scene: Scene) -> list[str]:
-    """Of which points, if not of all."""
-    left_out = scene.unreported_points
-    if not left_out:
-        return []
-    return [
-        f"of the points: {', '.join(scene.reported_points)}; add {', '.join(left_out)} to points to have them"
-    ]
-
-
-def _gradients_left_out(plan: Plan) -> list[str]:
-    """In a line: there are two for each effect of the car."""
-    names = [effect for effect in plan.left_out if EFFECTS[effect].base]
-    if not names:
-        return []
-    return [f"left out: what these change by per mm of travel and of rack; add one of {', '.join(names)}"]
 
 
 def _work(plan: Plan, topology: Topology) -> list[str]:
@@ -147,7 +168,13 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
         series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
         if found.method == "map":
             series += " in the inputs, each proven on a patch of their way,"
-        lines += _unknowns(found)
+        unknowns = [f"{found.moving} unknowns"]
+        if found.still:
+            unknowns.append(f"{found.still} more stand still and are solved once")
+        if found.not_needed:
+            unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
+        where = "on each patch" if found.method == "map" else "at each step"
+        lines.append(f"solved {where}: {'; '.join(unknowns)}")
         lines.append(
             f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
             f"factorisations, {found.start.factorisations} of them to assemble the start"
@@ -155,17 +182,6 @@ def _effort(scene: Scene, plan: Plan) -> list[str]:
     if not found.status.complete:
         lines.append(f"up to t = {found.stop:.6g} s, where the motion stops")
     return lines
-
-
-def _unknowns(found: Effort) -> list[str]:
-    """How many coordinates are solved for, and what of the car is not, or only once."""
-    parts = [f"{found.moving} unknowns"]
-    if found.still:
-        parts.append(f"{found.still} more stand still and are solved once")
-    if found.not_needed:
-        parts.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
-    where = "on each patch" if found.method == "map" else "at each step"
-    return [f"solved {where}: {'; '.join(parts)}"]
 
 
 def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:
@@ -179,7 +195,11 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
     units, topology = scene.mechanism.topology.input_units, scene.mechanism.topology
     lines = ["as drawn:"]
     for one, value in stands.inputs.items():
-        low, high = (_end(end, units[one]) for end in stands.reach[one])
+        low, high = (
+            _told(end.value, units[one])
+            + (f", where it is held by {', '.join(end.limits[:3])}" if end.limits else "")
+            for end in stands.reach[one]
+        )
         lines.append(f"  {one} is {_told(value, units[one])}; the other inputs held, it reaches")
         lines += [f"    from {low}", f"    to   {high}"]
     lines += [f"  {angle} is {_degrees(value)} deg" for angle, value in stands.angles.items()]
@@ -229,21 +249,3 @@ def _degrees(angle: float) -> str:
 def _told(value: float, unit: str) -> str:
     """A value in its unit, and an angle in degrees too."""
     return f"{value:.6g} {unit}" + (f" ({np.degrees(value):.5g} deg)" if unit == "rad" else "")
-
-
-def _end(end: End, unit: str) -> str:
-    held = f", where it is held by {', '.join(end.limits[:3])}" if end.limits else ""
-    return _told(end.value, unit) + held
-
-
-def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """List the built-in scenes with their titles.
-
-    Raises:
-        OutputError: standard output does not take it.
-    """
-    console.require("it is where the list goes")
-    names = built_in_scenes()
-    width = max(len(name) for name in names)
-    console.say("\n".join(f"{name.ljust(width)}  {Scene.load(name).title}" for name in names))
-    return ExitStatus.AGREE

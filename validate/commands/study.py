@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import add_json, add_quiet, leave_output_to, require_target
+from validate.commands.usage import Commands, add_json, given, require_results, share
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -48,26 +48,27 @@ class Named:
     """A study on the command line.
 
     Attributes:
-        maker: module and function in `validate.studies` that make it.
+        module, function: of `validate.studies`, that make it.
         help, description: what it does.
         options: those of its own, as `argparse` takes them.
         counts: those of them that say which tasks; they may change from run to run.
     """
 
-    maker: tuple[str, str]
+    module: str
+    function: str
     help: str
     description: str
     options: Mapping[str, Mapping[str, Any]]
     counts: tuple[str, ...]
 
-    def made(self, given: Mapping[str, Any]) -> Study:
+    def made(self, settings: Mapping[str, Any]) -> Study:
         """The study of these options, or of settings that were recorded.
 
         Raises:
             MissingPackage: what it needs is not there.
         """
-        module, function = self.maker
-        study: Study = getattr(needed("study", f"validate.studies.{module}"), function)(**given)
+        module = needed("study", f"validate.studies.{self.module}")
+        study: Study = getattr(module, self.function)(**settings)
         return study
 
 
@@ -77,7 +78,8 @@ def _number(what: str) -> dict[str, Any]:
 
 STUDIES: Mapping[str, Named] = {
     "random": Named(
-        ("random_cars", "random_cars"),
+        "random_cars",
+        "random_cars",
         "random cars through both models",
         "Random cars and motions, solved by both models. What they do not agree in, what only one of them\n"
         "answers and one in twenty of the others is compared with the reference.",
@@ -92,7 +94,8 @@ STUDIES: Mapping[str, Named] = {
         ("--count",),
     ),
     "bounds": Named(
-        ("bounds", "bounds"),
+        "bounds",
+        "bounds",
         "whether proven bounds hold up to where cars lock",
         "Random poses close to the end of an input, and motions towards one: no error may be above its\n"
         "proven bound.",
@@ -104,7 +107,8 @@ STUDIES: Mapping[str, Named] = {
         ("--poses", "--motions"),
     ),
     "claims": Named(
-        ("claims", "claims"),
+        "claims",
+        "claims",
         "whether the error bounds that a model states hold",
         "Random cars and motions, solved by one model: every number of every instant is compared with\n"
         "the reference, and its error with its bound.",
@@ -120,7 +124,8 @@ STUDIES: Mapping[str, Named] = {
         ("--count", "--first"),
     ),
     "hard": Named(
-        ("hard_cases", "hard"),
+        "hard_cases",
+        "hard",
         "the hard cases",
         "What `pointcoord hard` does, by several processes, and recorded.",
         {"cases": {"nargs": "*", "metavar": "CASE", "help": "a hard case's name; none: all cases"}},
@@ -129,7 +134,7 @@ STUDIES: Mapping[str, Named] = {
 }
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command, with a command of its own for each study."""
     parser = commands.add_parser(
         "study", help="long studies, by several processes or a cluster", description=DESCRIPTION
@@ -151,7 +156,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
             help="processes of this machine, which is what is done if not given, or a Dask cluster's "
             "scheduler such as tcp://HOST:8786; its network is trusted, see above",
         )
-        one.add_argument("--workers", **_number("processes of this machine; one a processor if not given"))
+        workers = "processes of this machine; one a processor if not given"
+        one.add_argument("--workers", **_number(workers))
         one.add_argument(
             "--records", metavar="FOLDER", help=f"keeps what is worked out; pointcoord-{name} if not given"
         )
@@ -161,22 +167,30 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
             help="say what all records in the folder come to, and work out nothing",
         )
         add_json(one, "the findings")
-        add_quiet(one)
+        share(one, "--quiet")
     parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Work out what is not recorded yet, and say what all of it comes to.
-
-    Raises:
-        UsageError: the options do not go together, or the folder or the cluster cannot be used.
-        StudyStopped: nobody can work it out any more, or a task raised an error.
-        MissingPackage: the reference, Dask or pyarrow is not there.
-        OutputError: something cannot be written.
-    """
-    _check(options)
-    leave_output_to((options.json,), options, console, "use --quiet, or --quiet --json FILE")
+    """Work out what is not recorded yet, and say what all of it comes to."""
     named, folder = STUDIES[options.study], Path(options.records or f"pointcoord-{options.study}")
+    if options.records is not None and not options.records.strip():
+        raise UsageError(f"--records {options.records!r} names no folder")
+    if not options.scheduler.strip():
+        raise UsageError(f"--scheduler {options.scheduler!r}: allowed: local, or an address")
+    for name, least in (("--workers", 1), *((name, 0) for name in named.options)):
+        value = getattr(options, name.lstrip("-"))
+        if isinstance(value, int) and value < least:
+            raise UsageError(f"{name} {value}: allowed: {least} or more")
+    if options.workers is not None and options.scheduler != LOCAL:
+        raise UsageError(
+            f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
+            "own; leave one of them out"
+        )
+    if options.from_records and (counts := given(options, *named.counts)):
+        what = "CASE" if counts[0] == "cases" else counts[0]
+        raise UsageError(f"--from-records is about all that is recorded; leave {what} out")
+    require_results({"--json": options.json}, (), options, console)
     journal = Journal(options.json, Head.of(options.study, options.command, timed=True), console)
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
@@ -185,39 +199,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.show(findings.parts)
         journal.close(lambda: findings.data, findings.status, True, "the findings")
         return findings.status
-    values = {name.lstrip("-"): _value(options, name) for name in named.options}
-    given = {name: value for name, value in values.items() if value is not None}
-    study = named.made(given)
+    values = {name.lstrip("-"): getattr(options, name.lstrip("-")) for name in named.options}
+    study = named.made({name: value for name, value in values.items() if value is not None})
     if not study.tasks:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
     return _worked_out(study, folder, options, journal, console)
-
-
-def _check(options: argparse.Namespace) -> None:
-    require_target(options.json, "--json")
-    if options.records is not None and not options.records.strip():
-        raise UsageError(f"--records {options.records!r} names no folder")
-    if options.workers is not None and options.workers < 1:
-        raise UsageError(f"--workers {options.workers}: allowed: 1 or more")
-    if not options.scheduler.strip():
-        raise UsageError(f"--scheduler {options.scheduler!r}: allowed: local, or an address")
-    if options.workers is not None and options.scheduler != LOCAL:
-        raise UsageError(
-            f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
-            "own; leave one of them out"
-        )
-    named = STUDIES[options.study]
-    for name in named.options:
-        value = _value(options, name)
-        if options.from_records and name in named.counts and value not in (None, []):
-            label = "CASE" if name == "cases" else name
-            raise UsageError(f"--from-records is about all that is recorded; leave {label} out")
-        if isinstance(value, int) and value < 0:
-            raise UsageError(f"{name} {value}: allowed: 0 or more")
-
-
-def _value(options: argparse.Namespace, name: str) -> Any:
-    return getattr(options, name.lstrip("-"))
 
 
 def _recorded(named: Named, folder: Path, name: str) -> Findings:

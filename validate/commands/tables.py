@@ -3,61 +3,43 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from validate.ci.record import Record
-from validate.commands.usage import result_files
+from validate.commands.comparing import comparing, results_of
+from validate.commands.usage import given, require_results
 from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.document import Head, Journal
 from validate.output.report import counted_as, with_unit
 from validate.output.table import Cell, Part, Table
 from validate.published.tables import MODELS, NOT_HELD, Column, Published, compare_published, tables
 
 # Options that are about scenes or files.
 NOT_WITH = (
-    *("first", "second", "data", "map", "solver", "accuracy", "traceback", "solver_timeout", "in_process"),
-    *("scenes_dir", "fail_fast", "save_baseline", "baseline", "report"),
+    *("--first", "--second", "--data", "--map", "--solver", "--accuracy", "--traceback", "--solver-timeout"),
+    *("--in-process", "--scenes-dir", "--fail-fast", "--save-baseline", "--baseline", "--report"),
 )
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Compare every printed table.
-
-    Raises:
-        UsageError: an option is about scenes or files.
-        OutputError: the results cannot be written.
-        MissingPackage, FormulationError: see `compare_published`.
-    """
-    given = [
-        f"--{name.replace('_', '-')}" for name in NOT_WITH if getattr(options, name) not in (None, False)
-    ]
-    if options.tolerance_factor != 1.0:
-        given.append("--tolerance-factor")
-    if options.scenes or given:
-        what = ", ".join((*options.scenes, *given))
-        raise UsageError(f"--tables is about printed tables and their own cars; leave out {what}")
-    targets = result_files(options, (), console)
-    targets.require_writable()
+    """Compare every printed table."""
+    others = [*options.scenes, *given(options, *NOT_WITH)]
+    others += ["--tolerance-factor"] if options.tolerance_factor != 1.0 else []
+    if others:
+        raise UsageError(
+            f"--tables is about printed tables and their own cars; leave out {', '.join(others)}"
+        )
+    require_results(results_of(options), (), options, console)
     record = Record([table.name for table in tables()])
-    journal = Journal(options.json, Head.of("validate", options.command, options.timings), console)
-
-    def finished() -> str:
-        return f"{len(record.examined)} of {counted_as(len(record.names), 'table')}"
-
-    with (
-        journal.closing(record.data, lambda: record.examined, finished) as ending,
-        targets.closing(record, console),
-    ):
+    with comparing(options, console, record, None, "table") as compared:
         found = compare_published()
         for one in found:
-            record.add(Examined(one.table.name, one.table.title, one.outcomes, solved=MODELS))
+            compared.add(Examined(one.table.name, one.table.title, one.outcomes, solved=MODELS))
             console.show((*_parts(one), ""))
         console.say(_sentence([column for one in found for column in one.columns]))
-        ending.status = record.status
-    return ending.status
+    return compared.ending.status
 
 
 def _parts(one: Published) -> Iterator[Part]:
@@ -83,7 +65,7 @@ def _cells(column: Column) -> Iterator[str | Cell]:
     yield Cell(word, verdict=column.verdict)
 
 
-def _sentence(columns: list[Column]) -> str:
+def _sentence(columns: Sequence[Column]) -> str:
     held = [column for column in columns if not column.open]
     wrong = [f"{column.rows[0].first}, {column.name}" for column in held if column.verdict == "disagrees"]
     parts = [f"{len(held) - len(wrong)} of {counted_as(len(held), 'printed column')} agree to the last digit"]

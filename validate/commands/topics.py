@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pointcoord
 import validate
+from validate.commands.usage import Commands
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
@@ -33,7 +34,7 @@ TOPICS = {
 """Every topic: the package and the folder in it whose page it is."""
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+def add(commands: Commands) -> None:
     """Add the command."""
     topics = commands.add_parser(
         "help",
@@ -45,15 +46,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Print a page, or which there are.
-
-    Raises:
-        UsageError: there is no such topic.
-        OutputError: standard output does not take it.
-    """
+    """Print a page, or which there are."""
     console.require("it is where the page goes")
     if options.topic is None:
-        console.say("\n".join(f"{name.ljust(12)}{_title(name)}" for name in TOPICS))
+        console.say("\n".join(f"{n.ljust(12)}{page(n).splitlines()[0].lstrip('# ')}" for n in TOPICS))
     elif options.topic in TOPICS:
         console.say(page(options.topic).rstrip())
     else:
@@ -65,7 +61,3 @@ def page(topic: str) -> str:
     """The page of a topic, Markdown."""
     package, folder = TOPICS[topic]
     return (Path(str(package.__file__)).parent / folder / PAGE).read_text(encoding="utf-8")
-
-
-def _title(topic: str) -> str:
-    return page(topic).splitlines()[0].lstrip("# ")

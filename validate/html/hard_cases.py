@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ValidationError
 
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.hard.answer import Answer
-from validate.output.document import SCHEMA_VERSION
 from validate.output.report import counted_as
 from validate.plain_text import shown, some_of
 
@@ -78,6 +77,9 @@ class HardCases(BaseModel):
     """
 
     document: Mapping[str, Any]
+    kind: Literal["hard"]
+    schema_version: Literal[2]
+    complete: Literal[True]
     command_line: str
     started: str | None
     cases: tuple[Case, ...]
@@ -121,24 +123,14 @@ def read_hard_cases(file: str) -> HardCases:
         UsageError: it holds none.
     """
     try:
-        document = json.loads(Path(file).read_bytes())
+        return HardCases.of(json.loads(Path(file).read_bytes()))
     except OSError as error:
-        raise _unusable(file, f"cannot be read ({error.strerror})") from None
-    except (ValueError, RecursionError):
-        raise _unusable(file, "is no JSON") from None
-    if not isinstance(document, dict) or document.get("kind") != "hard":
-        raise _unusable(file, "holds no hard cases")
-    if document.get("schema_version") != SCHEMA_VERSION:
-        version = shown(str(document.get("schema_version")))
-        raise _unusable(file, f"is of schema version {version}, and this program reads {SCHEMA_VERSION}")
-    if document.get("complete") is not True:
-        raise _unusable(file, "is of a run that did not come to its end")
-    try:
-        return HardCases.of(document)
+        problem = f"cannot be read ({error.strerror})"
     except ValidationError as error:
-        place = ".".join(map(str, error.errors()[0]["loc"]))
-        raise _unusable(file, f"is damaged ({shown(place)}: {error.errors()[0]['msg']})") from None
-
-
-def _unusable(file: str, problem: str) -> UsageError:
-    return UsageError(f"--hard {shown(file)}: {problem}; allowed: {ALLOWED}")
+        first = error.errors()[0]
+        problem = f"holds no hard cases ({'.'.join(map(str, first['loc']))}: {first['msg']})"
+    except TypeError:
+        problem = "holds no hard cases"
+    except (ValueError, RecursionError):
+        problem = "is no JSON"
+    raise UsageError(f"--hard {shown(file)}: {shown(problem)}; allowed: {ALLOWED}")

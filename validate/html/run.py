@@ -104,7 +104,6 @@ class Run:
         record: what its scenes come to. drawn: those of them that the page draws.
         published: printed tables of other programs.
         hard: hard cases. cost: what accuracy costs in time.
-        left_out: what else a report can hold, and the command that adds it.
     """
 
     head: Head
@@ -113,7 +112,6 @@ class Run:
     published: tuple[Published, ...] = ()
     hard: HardCases | None = None
     cost: Report | None = None
-    left_out: tuple[tuple[str, str], ...] = ()
 
     @property
     def status(self) -> ExitStatus:

@@ -18,6 +18,8 @@ STANDARD_OUTPUT = "standard output"
 class Console:
     """Standard output and standard error of one run.
 
+    Whatever writes on standard output raises OutputError where that does not take it.
+
     Attributes:
         quiet: whether only results that were asked for and errors are said.
         mute: whether standard output belongs to a result, so that nothing else is said there.
@@ -43,21 +45,13 @@ class Console:
             raise OutputError(STANDARD_OUTPUT, f"is closed; {what_else}")
 
     def say(self, text: str) -> None:
-        """Lines for people; nothing if the run is quiet or mute.
-
-        Raises:
-            OutputError: standard output does not take them.
-        """
+        """Lines for people; nothing if the run is quiet or mute."""
         if not self.quiet and not self.mute:
             self.write(text + "\n")
             self.flush()
 
     def show(self, parts: Sequence[Part]) -> None:
-        """Lines and tables for people, laid out for a terminal that is one; nothing if quiet or mute.
-
-        Raises:
-            OutputError: standard output does not take them.
-        """
+        """Lines and tables for people, laid out for a terminal that is one; nothing if quiet or mute."""
         if self.quiet or self.mute or not is_terminal(sys.stdout):
             self.say(text_of(parts))
         else:
@@ -69,9 +63,6 @@ class Console:
 
         Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
         are wanted all the same.
-
-        Raises:
-            OutputError: standard output does not take it.
         """
         if self.progress is not None:
             self.progress.pause()
@@ -86,11 +77,7 @@ class Console:
         return len(text)
 
     def put(self, target: str, content: str | bytes) -> None:
-        """Write a result whole to its file, or to standard output for `-`.
-
-        Raises:
-            OutputError: it cannot be written.
-        """
+        """Write a result whole to its file, or to standard output for `-`."""
         if target == "-":
             self.write(content if isinstance(content, str) else content.decode())
             self.flush()
@@ -98,11 +85,7 @@ class Console:
             write_content(target, content)
 
     def flush(self) -> None:
-        """Bring what was written to its reader.
-
-        Raises:
-            OutputError: standard output does not take it.
-        """
+        """Bring what was written to its reader."""
         if self._reader_gone or sys.stdout is None:
             return
         try:

@@ -50,11 +50,8 @@ def degrees_of(unit: str) -> tuple[float, str]:
 def used(share: float) -> str:
     """How much of its tolerance a number uses: 37% of its tolerance, 18,000 times its tolerance."""
     told = share_of(share)
-    return (
-        f"{told} {'of its tolerance' if told.endswith('%') else 'its tolerance'}"
-        if math.isfinite(share)
-        else told
-    )
+    words = " of its tolerance" if told.endswith("%") else " its tolerance"
+    return told + words if math.isfinite(share) else told
 
 
 def share_of(share: float) -> str:
@@ -80,6 +77,17 @@ def about(quantity: str, name: str) -> str:
     """What a number is, in words, such as position of a point; an angle of the wheel by its name."""
     given = QUANTITIES[quantity]
     return name if given.of == "car" else f"{given.words} of {name}"
+
+
+def told_row(row: Comparison) -> str:
+    """What a comparison says of a number, in a sentence: in a list, in test results, in a failed test."""
+    what = about(row.quantity, row.name)
+    if not math.isfinite(row.difference):
+        return f"{what}: not a number at {when(row)}"
+    return (
+        f"{what}: difference {row.difference:.3g} {row.unit}, tolerance {row.tolerance:.3g} {row.unit} at "
+        f"{when(row)}; at most {used(row.share)}"
+    )
 
 
 def pair_of(outcome: Outcome) -> str:
@@ -250,6 +258,18 @@ def findings_table(findings: Sequence[Finding]) -> Table:
     )
     head = ("scene", "wrong quantity", "largest difference", "erratum")
     return Table(head, rows, caption="The paper's formulas as printed, against the mended ones.")
+
+
+def printed_parts(examined: Sequence[Examined], findings: Sequence[Finding]) -> Iterator[Part]:
+    """What the paper's formulas as printed get wrong, and which scenes they cannot solve."""
+    if findings:
+        table = findings_table(findings)
+        yield from (table.caption, table)
+    elif tried := [one.name for one in examined if one.printed is not None]:
+        yield f"The paper's formulas as printed agree in {', '.join(tried)}."
+    for one in examined:
+        if one.unprinted is not None:
+            yield f"The paper's formulas as printed cannot solve {one.name}: {one.unprinted.message}"
 
 
 def paper_tables(rows: Sequence[PaperRow]) -> Iterator[Table]:

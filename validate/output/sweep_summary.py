@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from pointcoord import Sweep
 from pointcoord.effects.registry import ALWAYS, QUANTITIES
 from pointcoord.sweeping.swept import Failure, Noted, merged
+from validate.output.report import counted_as, degrees_of
+from validate.output.table import Part, Table
 
 Array = NDArray[np.float64]
 
@@ -31,25 +33,11 @@ class Extremes:
     highest: float
     design_of_highest: int
 
-    @classmethod
-    def of(cls, numbers: Array, first: int) -> Extremes | None:
-        """Those of numbers of consecutive designs, (D, ...); None if there are none."""
-        flat = numbers.reshape(len(numbers), -1)
-        if not np.isfinite(flat).any():
-            return None
-        low, high = (int(place(flat, axis=None)) // flat.shape[1] for place in (np.nanargmin, np.nanargmax))
-        return cls(float(np.nanmin(flat)), first + low, float(np.nanmax(flat)), first + high)
-
     def with_more(self, other: Extremes) -> Extremes:
         """Of both."""
         low = self if self.lowest <= other.lowest else other
         high = self if self.highest >= other.highest else other
         return Extremes(low.lowest, low.design_of_lowest, high.highest, high.design_of_highest)
-
-    @property
-    def data(self) -> dict[str, float | int]:
-        """As plain data."""
-        return dict(vars(self))
 
 
 Label = tuple[str, str]
@@ -63,6 +51,7 @@ class Summary:
     Attributes:
         total: how many designs were asked for.
         told: the point whose place is told.
+        failures: by reason how many designs, and the first of them.
     """
 
     total: int
@@ -71,7 +60,6 @@ class Summary:
     instants: int = 0
     failed: list[int] = field(default_factory=list)
     failures: dict[str, tuple[int, Failure]] = field(default_factory=dict)
-    count_failed: int = 0
     notes: tuple[Noted, ...] = ()
     varied: dict[str, Extremes] = field(default_factory=dict)
     as_drawn: dict[Label, Extremes] = field(default_factory=dict)
@@ -81,7 +69,6 @@ class Summary:
         """Take in a block."""
         self.tried += len(block)
         self.instants = len(block.times)
-        self.count_failed += len(block.failures)
         self.failed += list(block.failures)[: LISTED - len(self.failed)]
         for failure in block.failures.values():
             count, first = self.failures.get(failure.reason, (0, failure))
@@ -97,26 +84,29 @@ class Summary:
     @property
     def solved(self) -> int:
         """How many designs were solved."""
-        return self.tried - self.count_failed
+        return self.tried - sum(count for count, _ in self.failures.values())
 
-    def lines(self) -> list[str]:
+    def failed_lines(self) -> list[str]:
+        """Why designs failed, the most frequent reason first."""
+        return [
+            f"{count} of {self.tried} designs failed, {reason}; design {first.design} for one: {first.error}"
+            for reason, (count, first) in sorted(self.failures.items(), key=lambda item: -item[1][0])
+        ]
+
+    def parts(self) -> tuple[Part, ...]:
         """For people, angles in degrees."""
         said = [
             f"varied: {name} from {one.lowest:.6g} to {one.highest:.6g} mm"
             for name, one in self.varied.items()
         ]
-        said.append(f"solved: {self.solved} of {self.tried} designs, at {_counted(self.instants)} each")
-        for reason, (count, first) in sorted(self.failures.items(), key=lambda item: -item[1][0]):
-            said.append(f"failed: {count}, {reason}; design {first.design} for one: {first.error}")
-        labels = [label for label in self.in_motion if label in self.as_drawn]
-        labels += [label for label in self.in_motion if label not in self.as_drawn]
-        if labels:
-            rows = [
-                (_name(one), _range(self.as_drawn.get(one), one), _range(self.in_motion[one], one))
-                for one in labels
-            ]
-            said += _table([("", "as drawn", "over the motion"), *rows])
-        return said
+        instants = counted_as(self.instants, "instant")
+        said += [f"solved: {self.solved} of {self.tried} designs, at {instants} each", *self.failed_lines()]
+        labels = sorted(self.in_motion, key=lambda label: label not in self.as_drawn)
+        rows = tuple(
+            (_name(one), _range(self.as_drawn.get(one), one), _range(self.in_motion[one], one))
+            for one in labels
+        )
+        return (*said, *([Table(("", "as drawn", "over the motion"), rows)] if rows else ()))
 
     def data(self) -> dict[str, Any]:
         """As plain data, angles in rad."""
@@ -125,7 +115,7 @@ class Summary:
             "instants": self.instants,
             "tried": self.tried,
             "solved": self.solved,
-            "varied": {name: one.data for name, one in self.varied.items()},
+            "varied": {name: dict(vars(one)) for name, one in self.varied.items()},
             "failures": [
                 {
                     "reason": reason,
@@ -146,8 +136,10 @@ class Summary:
                     "quantity": quantity,
                     "name": name,
                     "unit": QUANTITIES[quantity].unit,
-                    "as_drawn": _data(self.as_drawn.get((quantity, name))),
-                    "in_motion": _data(self.in_motion.get((quantity, name))),
+                    **{
+                        when: dict(vars(some[quantity, name])) if (quantity, name) in some else None
+                        for when, some in (("as_drawn", self.as_drawn), ("in_motion", self.in_motion))
+                    },
                 }
                 for quantity, name in dict.fromkeys((*self.as_drawn, *self.in_motion))
             ],
@@ -160,53 +152,36 @@ def _told(block: Sweep, point: str) -> Iterator[tuple[Label, Array]]:
         for name, array in channel.items():
             if channel.quantity.of == "car":
                 yield (quantity, name), array
-            elif channel.quantity.of == "body":
-                yield (quantity, f"size of {name}"), np.linalg.norm(array, axis=-1)
             elif name == point and quantity == PLACE:
                 for i, axis in enumerate("xyz"):
                     yield (quantity, f"{name}.{axis}"), array[..., i]
-            elif name == point:
+            elif channel.quantity.of == "body" or name == point:
                 yield (quantity, f"size of {name}"), np.linalg.norm(array, axis=-1)
 
 
 def _extend(found: dict[Any, Extremes], key: object, values: Array, first: int) -> None:
-    more = Extremes.of(values, first)
-    if more is not None:
+    """Take in numbers of consecutive designs, (D, ...); nothing if there are none."""
+    flat = values.reshape(len(values), -1)
+    if np.isfinite(flat).any():
+        low, high = (int(place(flat)) for place in (np.nanargmin, np.nanargmax))
+        one, other = (first + place // flat.shape[1] for place in (low, high))
+        more = Extremes(float(flat.flat[low]), one, float(flat.flat[high]), other)
         found[key] = found[key].with_more(more) if key in found else more
-
-
-def _data(extremes: Extremes | None) -> Mapping[str, float | int] | None:
-    return None if extremes is None else extremes.data
 
 
 def _name(label: Label) -> str:
     quantity, name = label
-    unit = QUANTITIES[quantity].unit
     what = name if quantity == ANGLES else f"{QUANTITIES[quantity].words}, {name}"
-    return f"{what} [{'deg' if unit == 'rad' else unit}]"
+    return f"{what} [{degrees_of(QUANTITIES[quantity].unit)[1]}]"
 
 
 def _range(extremes: Extremes | None, label: Label) -> str:
     if extremes is None:
         return ""
-    factor = 180.0 / np.pi if QUANTITIES[label[0]].unit == "rad" else 1.0
-    low, high = (_number(factor * value) for value in (extremes.lowest, extremes.highest))
+    factor, _ = degrees_of(QUANTITIES[label[0]].unit)
+    # Adding 0 turns a rounded -0 into 0.
+    low, high = (f"{round(factor * one, 4) + 0.0:.6g}" for one in (extremes.lowest, extremes.highest))
     if low == high:
         # As far as it is shown; which of them is lowest is rounding.
         return f"{low} in all designs"
     return f"{low} (design {extremes.design_of_lowest}) to {high} (design {extremes.design_of_highest})"
-
-
-def _number(value: float) -> str:
-    return f"{round(value, 4) + 0.0:.6g}"
-
-
-def _counted(instants: int) -> str:
-    return "1 instant" if instants == 1 else f"{instants} instants"
-
-
-def _table(rows: list[tuple[str, str, str]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(3)]
-    return [
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-    ]

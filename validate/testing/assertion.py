@@ -11,11 +11,11 @@ import numpy as np
 
 from pointcoord import PointcoordError, Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.comparison.compare import Comparison, Outcome, compare, compare_solutions
+from validate.comparison.compare import Outcome, compare, compare_solutions
 from validate.diagnosis import explain_outcome
 from validate.extras import MissingPackage
 from validate.formulations.protocol import Formulation, FormulationError, Solution
-from validate.output.report import about
+from validate.output.report import about, told_row
 from validate.reference import InfeasibleError, NoReferenceError
 from validate.solvers.check import ACCURACY, AGAINST, required_accuracy
 from validate.solvers.plain import NoSolver, PlainSolver, as_function, given_to_solver
@@ -167,7 +167,7 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
     lines = [
         f"{WHO} disagree with {other} in {outcome.scene!r}: {len(wrong)} of {len(wrong) + agree} numbers "
         f"that are tested are off by more than an accuracy of {accuracy:g} mm makes of them",
-        *(_row(row) for row in wrong[:MOST_ROWS]),
+        *(f"  {told_row(row)}" for row in wrong[:MOST_ROWS]),
     ]
     if len(wrong) > MOST_ROWS:
         lines.append(f"  and {len(wrong) - MOST_ROWS} more")
@@ -175,16 +175,6 @@ def _disagreement(scene: Scene, outcome: Outcome, accuracy: float) -> str:
     lines += [f"  what would explain it: {one.words}" for one in explained]
     lines += [f"  note: {note}" for note in outcome.notes]
     return "\n".join(lines)
-
-
-def _row(row: Comparison) -> str:
-    if not np.isfinite(row.difference):
-        return f"  {about(row.quantity, row.name)}: not a number at t = {row.instant:.9g} s"
-    return (
-        f"  {about(row.quantity, row.name)}: difference {row.difference:.3g} {row.unit}, tolerance "
-        f"{row.tolerance:.3g} {row.unit} at t = {row.instant:.9g} s; "
-        f"up to {row.share:.3g} times what is allowed"
-    )
 
 
 def _nothing(outcome: Outcome) -> str:

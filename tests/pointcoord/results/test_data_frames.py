@@ -14,7 +14,7 @@ from every_effect import every_effect
 
 from pointcoord import MissingLibrary, Scene, UnknownName, simulate
 from pointcoord.results.named_columns import LIBRARIES
-from validate.output.motion_tables import write_csv
+from validate.output.columns import write_csv
 
 ROOT = Path(__file__).parents[3]
 

@@ -1,7 +1,5 @@
 """`pointcoord cost` as its users meet it: options, files, interruptions and endings."""
 
-import csv
-import io
 import json
 import sys
 from collections.abc import Callable
@@ -17,7 +15,7 @@ from validate.cli import main
 from validate.cost import study as studying
 from validate.cost.scenes import STUDY_SCENES
 from validate.cost.study import Study
-from validate.cost.table import PARTS, Row, Store, frame, measured_here, read_rows
+from validate.cost.table import PARTS, Row, Store, measured_here, read_rows
 from validate.output.document import schema_text
 
 CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))
@@ -102,21 +100,6 @@ def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
     assert {one["against"] for one in data["growths"]} == {"instants", "designs", "unknowns"}
 
 
-def test_csv_is_alone_on_standard_output(store: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["cost", "--from-rows", "--rows", store, "--csv", "-"]) == 0
-    lines = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
-    assert [line["way"] for line in lines] == [row.way for row in ROWS]
-
-
-def test_quiet_says_nothing_but_writes(
-    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    target = tmp_path / "x.json"
-    assert main(["cost", "--from-rows", "--rows", store, "--quiet", "--json", str(target)]) == 0
-    assert capsys.readouterr() == ("", "")
-    assert len(document(target.read_text())["rows"]) == len(ROWS)
-
-
 @pytest.mark.parametrize(
     ("words", "ways", "scenes", "parts"),
     [
@@ -146,67 +129,6 @@ def test_scenes_ways_and_parts_choose_rows(
     assert ways is None or {row["way"] for row in rows if row["part"] != "loading"} == ways
 
 
-@pytest.mark.parametrize(
-    ("words", "parts"),
-    [
-        (["--from-rows", "--ways", "serie"], ["serie", "did you mean 'series'", "mujoco"]),
-        (["--from-rows", "bounc"], ["bounc", "did you mean 'bounce'", "double-wishbone"]),
-        (
-            ["--from-rows", "--parts", "accuracies"],
-            ["part", "accuracies", "accuracy, effects, growth, loading"],
-        ),
-        (["--from-rows", "--parts", ","], ["--parts", "names nothing", "accuracy, effects, growth, loading"]),
-        (["--from-rows", "--ways", ""], ["--ways", "names nothing", "series"]),
-        (["--from-rows", "--json", "-", "--csv", "-"], ["--json -", "--csv -", "file"]),
-        (["--from-rows", "--json", ""], ["--json", "names no file"]),
-        (["--from-rows", "--report", " "], ["--report", "names no folder"]),
-        (["--rows", "-"], ["--rows", "names no file"]),
-        (["-", "-"], ["standard input", "once"]),
-        (["no-such-scene"], ["no-such-scene", "bounce"]),
-        (["--speed"], ["--speed", "pointcoord"]),
-    ],
-)
-def test_a_wrong_command_ends_with_2_and_one_line_before_anything_is_measured(
-    words: list[str],
-    parts: list[str],
-    store: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    named = [] if "--rows" in words else ["--rows", store]
-    assert main(["cost", *words, *named]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (line,) = err.splitlines()
-    for part in parts:
-        assert part in line
-    assert {path.name for path in tmp_path.iterdir()} == {"rows.parquet"}
-
-
-@pytest.mark.parametrize("content", [b"not rows", b"", frame([]).to_parquet()])
-def test_a_broken_or_empty_file_of_rows_ends_with_2_and_is_not_touched(
-    content: bytes,
-    tmp_path: Path,
-    fake: Callable[..., None],
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    path = tmp_path / "rows.parquet"
-    path.write_bytes(content)
-    words = "holds no rows" if content[:3] == b"PAR" else "is no Parquet file of what accuracy costs"
-    assert main(["cost", "--from-rows", "--rows", str(path)]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (line,) = err.splitlines()
-    assert f"--rows {path}: {words}" in line
-    if words.startswith("is no"):
-        fake(planted(end=AssertionError("measured")))
-        assert main(["cost", "--rows", str(path)]) == 2
-    assert path.read_bytes() == content
-    assert main(["cost", "--from-rows", "--rows", str(tmp_path / "none.parquet")]) == 2
-
-
 def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rows.parquet"
     kept(path, measured("bounce", "series", "", {"position": 1e-3}, 1e-3), quick=True)
@@ -234,27 +156,6 @@ def test_pictures_without_matplotlib_are_refused_before_anything_is_measured(
     assert {path.name for path in tmp_path.iterdir()} == {"rows.parquet"}
     # All but the pictures does without.
     assert main(["cost", "--from-rows", "--rows", store]) == 0
-
-
-def test_without_what_writes_its_rows_nothing_is_measured(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert main(["cost", "--rows", str(tmp_path / "new.parquet")]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "'cost' needs the package 'pyarrow'" in line
-    assert "pip install 'pointcoord[validate]'" in line
-
-
-def test_a_folder_that_cannot_be_had_is_refused_before_anything_is_measured(
-    store: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "file").write_text("mine")
-    assert main(["cost", "--rows", str(tmp_path / "new.parquet"), "--report", str(tmp_path / "file")]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "is a file; allowed: a folder" in line
-    assert not (tmp_path / "new.parquet").exists()
-    assert (tmp_path / "file").read_text() == "mine"
 
 
 def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., list[Row]]:
@@ -295,14 +196,6 @@ def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
     out, err = told(capsys)
     assert "locked at 2 s" in out
     assert "nothing could be measured" in err[0]
-
-
-def test_rows_that_cannot_be_written_end_with_4_before_anything_is_measured(
-    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
-) -> None:
-    fake(planted(end=AssertionError("measured")))
-    assert main(["cost", "--rows", str(tmp_path / "no folder" / "rows.parquet")]) == 4
-    assert "rows.parquet: cannot be written (there is no folder" in told(capsys)[1][0]
 
 
 @pytest.mark.parametrize(
@@ -375,21 +268,3 @@ def test_a_real_run_of_one_way_goes_on_with_what_it_has(
     before = path.read_bytes()
     assert main(words) == 0
     assert path.read_bytes() == before
-
-
-def test_the_list_names_ways_scenes_and_parts(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["cost", "--list"]) == 0
-    out = capsys.readouterr().out
-    for name in (
-        "series",
-        "newton",
-        "bounce",
-        "near-toggle",
-        "accuracy, effects, growth, loading, unrelated",
-    ):
-        assert name in out
-
-
-def test_effects_and_parts_both_say_what_to_measure(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["cost", "--effects", "--parts", "growth"]) == 2
-    assert "--effects and --parts both say what to measure" in capsys.readouterr().err

@@ -336,9 +336,9 @@ def test_a_target_that_cannot_be_written_is_told_before_anything_is_solved(
     def never(*_: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("validate.commands.motion.simulate", never)
+    monkeypatch.setattr("validate.commands.solved.simulate", never)
     monkeypatch.setattr("validate.commands.comparison.examine", never)
-    monkeypatch.setattr("validate.commands.draw.closed_drawing", never)
+    monkeypatch.setattr("validate.commands.scenes.closed_drawing", never)
     command, option, target = words
     assert main([command, "bounce", option, target]) == status
     out, err = capsys.readouterr()

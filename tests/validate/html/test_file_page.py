@@ -111,25 +111,3 @@ def test_a_file_over_time_that_agrees_has_a_page_by_either_command(
     assert read.verdict[1] == said[0]
     plots = [plot for _, plot in read.plots]
     assert [plot["layout"]["xaxis"]["title"]["text"] for plot in plots] == ["time [s]"] * 4
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["validate", "--save-baseline", "b.npz"], "a file brings rows of its own"),
-        (["validate", "--baseline", "b.npz"], "without --data it is kept of SCENE"),
-        (["report", "page", "--hard", "hard.json"], "--hard is not about a file of results"),
-        (["report", "page", "--cost", "cost.parquet"], "--cost is not about a file of results"),
-    ],
-)
-def test_what_is_not_done_for_a_file_is_told_with_what_to_do(
-    words: list[str],
-    told: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert main([*words, CAR, "--data", "x.csv"]) == 2
-    assert told in capsys.readouterr().err
-    assert not any(tmp_path.iterdir())

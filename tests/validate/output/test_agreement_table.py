@@ -1,14 +1,11 @@
 """The table of a comparison shows what its columns say, whichever number is closest to its tolerance."""
 
-import math
 from dataclasses import replace
 
 import pytest
-from built_in_cars import STEERED_CARS
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.comparison.findings import findings
 from validate.output.report import heading, outcome_text
 
 
@@ -72,24 +69,3 @@ def test_a_fault_that_is_smaller_than_another_point_s_rounding_is_named(heaving:
     where, difference, _, _, used, _, verdict = lines_of(wrong)["position"]
     assert (where, difference, used) == ("wheel_centre", "1.0e-03 mm", "70 times")
     assert verdict == "DISAGREES, 7.0e+01 times: strut_top"
-
-
-def test_what_is_not_given_takes_no_place_from_what_is(heaving: Outcome) -> None:
-    lost = of_position(
-        heaving, strut_top=(math.nan, math.nan, "not given"), wheel_centre=(2e-13, 0.25, "agrees")
-    )
-    where, difference, _, _, used, _, verdict = lines_of(lost)["position"]
-    assert (where, difference, used, verdict) == ("wheel_centre", "2.0e-13 mm", "25%", "not given")
-
-
-@pytest.mark.parametrize("scene", STEERED_CARS)
-def test_the_table_of_a_built_in_scene_fits_110_characters(scene: str) -> None:
-    outcome = compare(Scene.load(scene), "pointcoord", "absolute", scene)
-    lines = outcome_text(outcome).splitlines()
-    assert max(len(line) for line in lines if not line.startswith("  note: ")) <= 110
-
-
-def test_an_erratum_s_largest_difference_is_the_largest(heaving: Outcome) -> None:
-    wrong = of_position(heaving, wheel_centre=(1.0, 2.0, "disagrees"), strut_top=(1e-6, 70.0, "disagrees"))
-    (found,) = findings([wrong])
-    assert found.worst.difference == 1.0

@@ -66,19 +66,6 @@ def test_what_a_kill_left_half_written_goes_with_the_next_run_and_what_is_being_
     assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
 
 
-def test_the_new_content_appears_at_once(tmp_path: Path) -> None:
-    target = tmp_path / "x.json"
-    target.write_bytes(b"old")
-
-    def write(stream: BinaryIO) -> None:
-        stream.write(b"new")
-        stream.flush()
-        assert target.read_bytes() == b"old"
-
-    write_whole(str(target), write)
-    assert target.read_bytes() == b"new"
-
-
 def test_the_content_is_on_the_disk_before_it_has_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -151,8 +138,3 @@ def test_asking_whether_a_file_can_be_written_changes_nothing(tmp_path: Path) ->
     require_writable(str(target))
     assert target.read_bytes() == b"old"
     assert target.stat().st_mtime_ns == before.st_mtime_ns
-
-
-def test_a_full_device_is_told_with_what_to_do() -> None:
-    with pytest.raises(OutputError, match=r"/dev/full: cannot be written \(No space left.*make room"):
-        write_whole("/dev/full", put(b"new" * 10000))

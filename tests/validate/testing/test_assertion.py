@@ -40,7 +40,7 @@ def test_one_coordinate_off_at_one_instant_is_named_with_its_size_and_its_time(s
     assert "1 of " in first
     assert "an accuracy of 1e-06 mm" in first
     assert row.strip().startswith("position of tie_rod_outer: difference 0.001 mm, tolerance ")
-    assert f"at t = {SCENE.instants[17]:.9g} s" in row
+    assert f"at {SCENE.instants[17]:.9g} s" in row
     # A fault of one number has no explanation, and none is made up.
     assert not any("what would explain it" in line for line in rest)
 
@@ -76,7 +76,7 @@ def test_a_nan_is_told_with_its_time_and_how_many_there_are(states) -> None:
     with pytest.raises(AssertionError) as caught:
         assert_agrees({"camber": camber}, SCENE)
     said = str(caught.value)
-    assert f"camber: not a number at t = {SCENE.instants[4]:.9g} s" in said
+    assert f"camber: not a number at {SCENE.instants[4]:.9g} s" in said
     assert f"not a number at 2 of {len(SCENE.instants)} instants" in said
 
 

@@ -10,7 +10,7 @@ from validate.ci.record import Record
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, marks, panel
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
-from validate.output.report import findings_table, paper_sentence, paper_tables
+from validate.output.report import paper_sentence, paper_tables, printed_parts
 from validate.output.table import Table
 from validate.paper.errata import errata
 from validate.paper.figures import Figure, figures
@@ -24,7 +24,7 @@ DASHES = ("solid", "dash")
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    return [*(_of_paper(run.record.paper) if run.record.paper else ()), *_by_scene(run.record)]
+    return [*(_of_paper(run.record.paper) if run.record.paper else ()), *_printed(run.record)]
 
 
 def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
@@ -68,16 +68,14 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
             yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
 
 
-def _by_scene(record: Record) -> Iterator[Block]:
+def _printed(record: Record) -> Iterator[Block]:
     """What the formulas as printed get wrong."""
-    tried = [one.name for one in record.examined if one.printed is not None]
-    if record.findings:
-        yield findings_table(record.findings)
-    elif tried:
-        yield Paragraph(f"The paper's printed formulas agree in {', '.join(tried)}.")
-    for one in record.examined:
-        if one.unprinted is not None:
-            yield Paragraph(f"The formulas as printed cannot solve {one.name}: {one.unprinted.message}")
+    for part in printed_parts(record.examined, record.findings):
+        # A table has its caption itself.
+        if isinstance(part, Table):
+            yield part
+        elif not record.findings or not part.endswith("against the mended ones."):
+            yield Paragraph(part)
 
 
 SECTION = Section("paper", "The paper", 60, _blocks, folded=True)

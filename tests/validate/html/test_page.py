@@ -1,0 +1,594 @@
+"""The page of a run: it says what the data beside it say, takes all text as text, and loads nothing."""
+
+import csv
+import json
+import sys
+from base64 import b64encode
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from hashlib import sha256
+from html import unescape
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import made_rows
+import numpy as np
+import pytest
+from page_read import Read
+from page_runs import run_of
+from program import PAST_ITS_END, short_scene
+
+import validate.published
+from pointcoord import Scene, simulate
+from validate.ci.record import Record
+from validate.cli import main
+from validate.comparison.examined import Examined, examine
+from validate.cost.report import Report
+from validate.cost.ways.registry import WAYS
+from validate.html.data import data_files
+from validate.html.hard_cases import HardCases
+from validate.html.page import page
+from validate.html.plot import fewer
+from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
+from validate.html.sections import sections
+from validate.output.document import Head, schema_text
+from validate.output.report import worst_rows
+from validate.paper.scenes import DEFAULT_SCENES
+from validate.paper.tables import TABLE_2, TABLE_3
+from validate.published.tables import compare_published
+
+NASTY = "<script>alert('x')</script><b onload=alert(1)>"
+FILES = {"results.json": "the run", "comparisons.csv": "its lines"}
+
+
+def head(kind: str = "validate") -> Head:
+    return Head.of(kind, ("pointcoord", kind))
+
+
+def read(run: Run) -> Read:
+    return Read(page(run, FILES))
+
+
+def read_file(folder: Path) -> Read:
+    return Read((folder / "index.html").read_text(encoding="utf-8"))
+
+
+def checked(file: Path) -> dict[str, Any]:
+    """A document that keeps to the schema."""
+    document: dict[str, Any] = json.loads(file.read_text())
+    jsonschema.validate(document, json.loads(schema_text()))
+    return document
+
+
+def told(name: str, scene: Scene) -> Drawn:
+    return Drawn(examine(name, scene, (("pointcoord", "absolute"),), False), scene, simulate(scene))
+
+
+@pytest.fixture(scope="module")
+def bounce() -> Drawn:
+    return told("bounce", Scene.load("bounce"))
+
+
+def spoiled(examined: Examined) -> Examined:
+    """The same with one comparison that disagrees."""
+    outcomes = tuple(
+        replace(one, rows=(replace(one.rows[0], share=7.0, verdict="disagrees"), *one.rows[1:]))
+        for one in examined.outcomes
+    )
+    return replace(examined, outcomes=outcomes)
+
+
+# What the page says.
+
+
+@pytest.fixture(scope="module")
+def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The report of all built-in scenes."""
+    folder = tmp_path_factory.mktemp("report")
+    assert main(["report", "-q", str(folder)]) == 0
+    return folder
+
+
+def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it_names(
+    built_in: Path,
+) -> None:
+    shown, document = read_file(built_in), checked(built_in / "results.json")
+    checked(built_in / "hard.json")
+    assert 4e6 < (built_in / "index.html").stat().st_size < 8e6
+    there = [given["id"] for tag, given in shown.tags if tag == "section"]
+    # That of a file of results has nothing to say here.
+    assert there == [section.name for section in sections() if section.name != "file"]
+    details = ["scenes", "differences", "paper", "hard", "published", "left-out", "machine"]
+    assert there == ["verdict", "agreement", "motion", "cost", *details]
+    assert [section.name for section in sections() if section.folded] == details
+    links = [given["href"] or "" for tag, given in shown.tags if tag == "a"]
+    files = {link for link in links if not link.startswith("#")}
+    assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
+    assert document["exit_status"] == 0
+    assert shown.verdict[1].startswith(f"{len(DEFAULT_SCENES)} of {len(DEFAULT_SCENES)} scenes agree; ")
+    assert shown.verdict[1].endswith("all as expected.")
+    text = unescape((built_in / "index.html").read_text(encoding="utf-8"))
+    assert all(f">{Scene.load(name).title}</td>" in text for name in DEFAULT_SCENES)
+    # A line for each printed number: 11 rows of 4 angles, 21 of 2.
+    with (built_in / "published.csv").open(newline="") as stream:
+        assert len(list(csv.DictReader(stream))) == 11 * (5 + 5) + 21 * 6 + 10 + (11 + 17) * 3
+    for finding in document["printed_formulas"]:
+        size, unit = finding["worst"]["difference"], finding["worst"]["unit"]
+        number = "not a number" if size is None else f"{size:.1e} {unit}"
+        lines = [r for r in shown.cells if r[0] == finding["scene"] and r[-1] == finding["erratum"]]
+        assert any(row[2].startswith(number) for row in lines), finding
+
+
+def test_the_paper_s_figures_rows_and_errata_are_on_the_page(built_in: Path) -> None:
+    shown = read_file(built_in)
+    by_number = {words.partition(":")[0]: plot["data"] for words, plot in shown.plots}
+    rows = [plot["data"] for words, plot in shown.plots if words == "wheel centre, z, over time"]
+    for number, table, (printed, computed) in zip((6, 8), (TABLE_2, TABLE_3), rows, strict=True):
+        wanted = [(row.time, row.wheel_centre[2]) for row in table]
+        curve, crosses = by_number[f"Figure {number}"]
+        for drawn in (crosses, printed):
+            assert list(zip(drawn["x"], drawn["y"], strict=True)) == wanted
+        at = np.interp(crosses["x"], curve["x"], curve["y"])
+        # The tables differ from what Table 1 gives by up to some 13 mm.
+        assert 0.5 < np.abs(at - crosses["y"]).max() < 20.0
+        assert len(computed["y"]) == len(table)
+        assert computed["y"] != printed["y"]
+    for number in (5, 7):
+        kingpin, camber = by_number[f"Figure {number}"]
+        assert (kingpin["name"], camber["name"]) == ("kingpin", "camber")
+        assert np.abs(np.diff(kingpin["y"])).max() < 5.0  # degrees, and smooth
+    place = next(i for i, row in enumerate(shown.cells) if row[0] == "no.")
+    errata = {row[0]: row[-1] for row in shown.cells[place + 1 : place + 10]}
+    assert list(errata) == [str(i) for i in range(1, 10)]
+    # Found by hand from the printed numbers.
+    for number, said in (
+        ("1", "7.94 degrees"),
+        ("1", "16.8 mm"),
+        ("2", "3.60 mm"),
+        ("3", "6.1 degrees"),
+        ("7", "computed from 1.46"),
+        ("8", "rank 1, all three components rank 2"),
+    ):
+        assert said in errata[number]
+
+
+def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> None:
+    for words in (["bounce"], ["steer", "double-wishbone"]):  # written again over its own
+        assert main(["report", "-q", str(tmp_path), *words]) == 0
+    document = checked(tmp_path / "results.json")
+    rows = [row for scene in document["scenes"] for one in scene["comparisons"] for row in one["rows"]]
+    with (tmp_path / "comparisons.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    assert len(lines) == len(rows) > 100
+    for line, row in zip(lines, rows, strict=True):
+        assert (line["scene"], line["name"], line["verdict"]) == (row["scene"], row["name"], row["verdict"])
+        assert float(line["difference"]) == row["difference"]
+    shown = read_file(tmp_path)
+    assert shown.verdict[1] == "2 of 2 scenes agree."
+    cells = [row for row in shown.cells if len(row) > 3 and row[1].endswith(" and absolute")]
+    assert len(cells) == 4
+    assert all(cell.startswith(("agrees", "not asked for")) for row in cells for cell in row[2:])
+
+
+def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Drawn) -> None:
+    other = replace(bounce, examined=replace(bounce.examined, name="other"))
+    run = run_of(replace(bounce, examined=spoiled(bounce.examined)), other)
+    shown = read(run)
+    assert shown.verdict[1] == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
+    coloured = [given for tag, given in shown.tags if tag == "td" and given.get("class") == "disagrees"]
+    # The quantity's own cell, and that of the scene.
+    assert len(coloured) == 2
+    assert sum(cell.startswith("disagrees") for row in shown.cells for cell in row) == 2
+    assert run.document["verdict"] == "disagree"
+
+
+def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(solver: Path) -> None:
+    words = ["validate", "-q", "--solver", "made_solver:off_by_a_bit", "steer", "--report", str(solver)]
+    assert main([*words, "--json", str(solver.parent / "run.json")]) == 1
+    document, same = checked(solver / "results.json"), json.loads((solver.parent / "run.json").read_text())
+    assert (document["exit_status"], document["verdict"]) == (1, "disagree")
+    assert same | {"written": None} == document | {"written": None}
+    shown = read_file(solver)
+    assert shown.verdict == (
+        "verdict disagrees",
+        "0 of 1 scene agrees; disagrees: steer; 1 of 34 numbers compared, 33 not given.",
+    )
+    assert ("disagrees", "disagrees") in [(kind, text[:9]) for kind, text in shown.of("steer")[0]]
+    assert "position of tie_rod_inner: difference 0.001 mm, tolerance " in shown.text
+    assert [words for words, _ in shown.plots if words.startswith("position of tie_rod_inner: disagrees")]
+
+
+def test_scenes_that_are_refused_or_broken_have_their_reason_beside_them_and_are_drawn_as_far_as_they_go(
+    tmp_path: Path,
+) -> None:
+    far = short_scene(tmp_path, "too far.toml", samples="131", **PAST_ITS_END)
+    (tmp_path / "broken.toml").write_text("no scene")
+    assert main(["report", "-q", str(tmp_path / "out"), "--scenes-dir", str(tmp_path)]) == 2
+    shown = read_file(tmp_path / "out")
+    assert shown.verdict[0] == "verdict not-tested"
+    for why, name in (("(refused)", "too far.toml"), ("(wrong input)", "broken.toml")):
+        assert name in shown.verdict[1].partition(why)[2].partition(";")[0]
+    assert "Exit status 2: wrong input" in shown.text
+    for name, said in (("too far.toml", "cannot pass a singular pose"), ("broken.toml", "is not TOML")):
+        row = next(row for row in shown.rows if row and name in row[0][1])
+        assert row[2][0] == "not-tested"
+        assert said in row[2][1]
+    with (tmp_path / "out" / "comparisons.csv").open(newline="") as stream:
+        assert not list(csv.DictReader(stream))
+    assert main(["validate", far, "-q", "--report", str(tmp_path / "one")]) == 3
+    alone = read_file(tmp_path / "one")
+    (motion,) = alone.motions
+    assert "Stopped: the motion cannot pass a singular pose" in alone.text
+    # The arm meets its dead point at 152.013 degrees.
+    end = (np.radians(152.013) - 0.8) / 0.8
+    assert end - 0.03 < max(motion["times"]) <= end
+    assert all([line["name"] for line in plot["data"]] == ["pointcoord"] for _, plot in alone.plots)
+
+
+def test_a_verdict_tells_disagreements_first_and_each_reason_once_with_its_scenes(solver: Path) -> None:
+    names = ("steer", "double-wishbone", "bounce")
+    main(["report", "-q", str(solver), "--in-process", "--solver", "made_solver:rack_only", *names])
+    text = (solver / "index.html").read_text(encoding="utf-8")
+    parts = text.partition('<section id="agreement"')[0].split("<p>")[1:]
+    lines = [part.partition("</p>")[0] for part in parts if "need JavaScript" not in part]
+    assert "position of tie_rod_inner: difference 128 mm, tolerance " in lines[0]
+    assert len({line.partition(": ")[2] for line in lines}) == len(lines)
+    given = [line for line in lines if line.endswith("not given: made_solver:rack_only gives no velocity")]
+    assert {name for line in given for name in line.partition(": ")[0].split(", ")} == {*names}
+    (closing,) = [line for line in lines if "closing the drawing moves wheel_centre" in line]
+    assert closing.startswith("steer, bounce: ")
+
+
+def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_small() -> None:
+    content, count = Scene.load("double-wishbone").model_dump(exclude_none=True), 400
+    content["effects"] = ["velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"]
+    content["time"] = content["time"] | {"samples": 301}
+    scene = Scene.from_mapping(content)
+    wide = examine("wide", scene, (("pointcoord", "absolute"), ("pointcoord-newton", "absolute")), False)
+    names = [f"a folder of mine/with a long name of a scene {i:03d}.toml" for i in range(count)]
+    record, drawings = Record(names), Drawings(count)
+    for i, name in enumerate(names):
+        examined = replace(spoiled(wide) if i % 20 == 13 else wide, name=name)
+        if broken := i % 50 == 20:
+            examined = Examined(name=name, problem=f"{name}: is broken at line {i}")
+        there = None if broken else scene
+        record.add(examined, scene=there)
+        drawings.add(examined, there)
+    run = Run(head(), record, drawings.kept)
+    text = page(run, {})
+    assert len(text.encode()) < 8e6
+    drawn = [int(one.examined.name[-8:-5]) for one in run.drawn]
+    assert drawn == [*range(FIRST), *range(13, 13 + 20 * FURTHER, 20)]
+    # The numbers of the others are let go: hundreds of scenes fit into memory.
+    assert not any(solution.numbers for outcome in record.outcomes for solution in outcome.solutions)
+    shown = Read(text)
+    assert f"Drawn are {FIRST + FURTHER} of {count} scenes" in shown.text
+    assert len(shown.motions) == FIRST + FURTHER
+    # What does not agree has its row and its reason, however far down it stands.
+    for i in (13, 393):
+        rows = shown.of(names[i])
+        assert [cell for row in rows for cell in row if cell[0] == "disagrees" and "disagrees" in cell[1]]
+    (broken_row,) = shown.of(names[370])
+    assert broken_row[2][0] == "not-tested"
+    assert "is broken at line 370" in broken_row[2][1]
+    assert shown.verdict == ("verdict disagrees", run.sentence)
+    assert "and 10 more" in run.sentence
+    assert len(run.document["scenes"]) == count
+    assert len(data_files(run)["comparisons.csv"].splitlines()) > count
+
+
+def test_what_a_page_does_not_hold_is_named_with_the_command_that_adds_it(bounce: Drawn) -> None:
+    rows = read(run_of(bounce)).words
+    place = next(i for i, row in enumerate(rows) if row[0] == "not in this page")
+    lacking = {row[0]: row[1] for row in rows[place + 1 : place + 5]}
+    assert lacking == {
+        "hard cases": "pointcoord hard --report DIR",
+        "accuracy against time": "pointcoord cost --report DIR",
+        "the paper's figures, tables and errata": "pointcoord report DIR",
+        "other programs' tables": "pointcoord report DIR",
+    }
+    for command in lacking.values():
+        assert main([command.split()[1], "--help"]) == 0
+
+
+# What it draws.
+
+
+def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Drawn) -> None:
+    shown = [(words, one) for words, one in read(run_of(bounce)).plots if "of its tolerance" in words]
+    worst = worst_rows(bounce.examined.outcomes[0])
+    assert len(shown) == len(worst) > 5
+    for row, (_, one) in zip(worst, shown, strict=True):
+        held, gap = (np.array(trace["y"], dtype=float) for trace in one["data"])
+        assert np.nanmax(gap / held) == pytest.approx(row.share, rel=2e-3, abs=1e-300)
+        assert one["layout"]["yaxis"]["type"] == "log"
+        assert row.unit in one["layout"]["yaxis"]["title"]["text"]
+
+
+def test_of_very_many_instants_the_worst_is_drawn() -> None:
+    weight = np.zeros(100_000)
+    weight[[123, 77_777]] = 1.0, 2.0
+    places = fewer(weight, 600)
+    assert len(places) <= 600
+    assert {0, 123, 77_777, 99_999} <= set(places)
+
+
+def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Drawn) -> None:
+    shown = [one for words, one in read(run_of(bounce)).plots if words.startswith("wheel travel")]
+    assert len(shown) >= 2
+    for one in shown:
+        line, dots = one["data"]
+        assert set(zip(dots["x"], dots["y"], strict=True)) <= set(zip(line["x"], line["y"], strict=True))
+        assert max(line["y"]) - min(line["y"]) > 10.0
+
+
+def test_the_drawing_that_moves_has_the_places_of_both_models_those_drawn_and_those_closed(
+    bounce: Drawn,
+) -> None:
+    read_page, scene, closing = read(run_of(bounce)), bounce.scene, bounce.examined.closing
+    assert scene is not None
+    assert closing is not None
+    (shown,) = read_page.motions
+    for solution, model in zip(bounce.examined.outcomes[0].solutions, shown["models"], strict=True):
+        assert model["name"] == solution.formulation
+        at = [int(np.argmin(np.abs(solution.times - time))) for time in shown["times"]]
+        for name, places in solution.position.items():
+            got = np.array([frame[shown["points"].index(name)] for frame in model["frames"]])
+            assert np.abs(got - places[at]).max() < 0.006
+    drawn, closed = (dict(zip(shown["points"], shown[key], strict=True)) for key in ("drawn", "closed"))
+    for name, place in scene.mechanism.points.items():
+        assert drawn[name] == pytest.approx(list(place), abs=0.006)
+    assert {shown["points"][i] for i in shown["chassis"]} == set(scene.mechanism.topology.chassis)
+    assert closing["largest"] == pytest.approx(16.8, abs=0.05)  # of Table 1
+    rows = [row for row in read_page.cells if row[0] == "bounce"]
+    for name, movement in closing["movements"].items():
+        assert np.linalg.norm(np.subtract(closed[name], drawn[name])) == pytest.approx(movement, abs=0.02)
+        words = f"{movement:.3g}" if movement > 1e-6 else "rounding"
+        assert any(words in row for row in rows)
+    wishbone = told("double-wishbone", Scene.load("double-wishbone"))
+    text = read(run_of(wishbone)).text
+    assert "it closes, no point moves by more than rounding" in text
+    assert "closing it moves" not in text
+
+
+SOLVER = """
+import numpy as np
+from pointcoord import Scene, simulate
+def rack_only(given):
+    x, y, z = given["points"]["rack_centre"]
+    return {"position": {"tie_rod_inner": [[x, y + s, z] for s in given["inputs"]["rack"]["position"]]}}
+def off_by_a_bit(given):
+    x, y, z = given["points"]["rack_centre"]
+    inner = np.array([[x, y - s, z] for s in given["inputs"]["rack"]["position"]])
+    inner[3, 1] += 1e-3
+    return {"position": {"tie_rod_inner": inner}}
+def tilted(given):
+    return {"camber": simulate(Scene.load("steer")).wheel["camber"] + 0.5}
+"""
+
+
+@pytest.fixture
+def solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder for a report, with solvers that can be imported."""
+    (tmp_path / "made_solver.py").write_text(SOLVER)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    sys.modules.pop("made_solver", None)
+    return tmp_path / "out"
+
+
+def test_the_line_of_a_curve_is_the_solver_that_was_given_and_the_dots_are_whom_it_is_held_to(
+    solver: Path,
+) -> None:
+    main(["report", "-q", str(solver), "--solver", "made_solver:tilted", "--in-process", "steer"])
+    shown = read_file(solver).by_words
+    line, dots = shown["camber over rack"]["data"]
+    assert (line["name"], dots["name"]) == ("made_solver:tilted", "pointcoord")
+    at = dict(zip(line["x"], line["y"], strict=True))
+    apart = [at[x] - y for x, y in zip(dots["x"], dots["y"], strict=True)]
+    assert apart == pytest.approx([np.degrees(0.5)] * len(apart), abs=1e-3)
+    # Of the other angle it gives nothing, and pointcoord's is no line in its place.
+    assert "kingpin angle over rack" not in shown
+
+
+def test_what_a_solver_does_not_give_is_no_curve_of_it_and_does_not_empty_the_drawing(solver: Path) -> None:
+    # Options may stand between the folder and the scenes.
+    main(["report", "-q", str(solver), "--in-process", "steer", "--solver", "made_solver:rack_only"])
+    shown = read_file(solver)
+    assert "camber over rack" not in shown.by_words
+    assert "no curves: made_solver:rack_only gives no camber and no kingpin angle" in shown.text
+    (motion,) = shown.motions
+    points = list(Scene.load("steer").mechanism.topology.points)
+    assert motion["points"] == points
+    own, other = (model["frames"] for model in motion["models"])
+    chassis = set(motion["chassis"]) | {points.index("tie_rod_inner")}
+    assert all({i for i, place in enumerate(frame) if place} == chassis for frame in own)
+    assert all(all(frame) for frame in other)
+
+
+# Hard cases, times, printed tables.
+
+
+def answer(outcome: str, error: float | None, value: float, name: str = "pointcoord") -> dict[str, Any]:
+    given = {"formulation": name, "outcome": outcome, "reason": "why", "error": error, "bound": 1e-9}
+    return given | {"share": None, "condition": None, "value": value}
+
+
+def hard_document(*answers: dict[str, Any], unexpected: Sequence[dict[str, Any]] = ()) -> dict[str, Any]:
+    case = {
+        **{"name": "near-a-fold", "group": NASTY, "why": NASTY, "parameter": NASTY, "unit": f"mm{NASTY}"},
+        **{"values": [one["value"] for one in answers], "behaviour": "right", "expected": {}, "seconds": 1.0},
+        "trials": [{"value": one["value"], "answers": [one], "facts": {}} for one in answers],
+        "unexpected": list(unexpected),
+    }
+    counts: dict[str, dict[str, int]] = {}
+    for one in answers:
+        of = counts.setdefault(one["formulation"], {})
+        of[one["outcome"]] = of.get(one["outcome"], 0) + 1
+    results = {"as_expected": not unexpected, "counts": counts, "cases": [case]}
+    return head("hard").document(results, None, complete=True)
+
+
+RIGHT = [answer("right", 1e-12 / value, value) for value in (1e-1, 1e-3, 1e-5)]
+WRONG = answer("wrong", 0.5, 1e-7)
+
+
+def test_hard_cases_are_drawn_as_errors_over_the_distance_and_a_wrong_one_is_told() -> None:
+    names = ("pointcoord", "absolute", "relative")
+    refused = [answer("refused", None, 1e-9, name) for name in names]
+    document = hard_document(*RIGHT, WRONG, *refused, unexpected=[WRONG])
+    run = Run(head("hard"), hard=HardCases.of(document))
+    assert run.status == 1
+    shown = read(run)
+    assert shown.verdict[0] == "verdict disagrees"
+    assert "near-a-fold" in shown.verdict[1]
+    told = [row[2] for row in shown.of("near-a-fold")]
+    assert any("disagrees" in kind and "wrong at 1e-07" in text for kind, text in told)
+    ((_, plot),) = shown.by_words.items()
+    right, crosses, rings, *others = plot["data"]
+    assert dict(zip(right["x"], right["y"], strict=True)) == {1e-1: 1e-11, 1e-3: 1e-9, 1e-5: 1e-7}
+    assert (crosses["x"], rings["x"], rings["y"]) == ([1e-9], [1e-7], [0.5])
+    assert {plot["layout"][name]["type"] for name in ("xaxis", "yaxis")} == {"log"}
+    # Who refuses has a row of crosses below every error. A cross is 8 pixels high, and some 150 are as many
+    # decades as the errors take, 11 of them, and half as many more.
+    heights = np.log10(sorted([1e-11, *(one["y"][0] for one in (crosses, *others))]))
+    assert [one["name"] for one in (crosses, *others)] == [f"{name} refuses" for name in names]
+    assert heights[-1] == -11.0
+    assert np.diff(heights).min() > 8 / 150 * 1.5 * 10.5
+    # Plotly reads marks in its labels.
+    assert "<" not in json.dumps(plot)
+    assert not [given for _, given in shown.tags if "onload" in given]
+
+
+def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path: Path) -> None:
+    for unexpected, status in (([], 0), ([WRONG], 1)):
+        file, out = tmp_path / "hard.json", tmp_path / f"out {status}"
+        file.write_text(json.dumps(hard_document(*RIGHT, unexpected=unexpected)))
+        assert main(["report", "-q", str(out), "steer", "--hard", str(file)]) == status
+        shown = read_file(out)
+        assert "Tried by `pointcoord hard`. 1 hard case" in shown.text
+        assert shown.verdict[0] == ("verdict disagrees" if status else "verdict agrees")
+        assert json.loads((out / "results.json").read_text())["exit_status"] == status
+        assert json.loads((out / "hard.json").read_text()) == json.loads(file.read_text())
+
+
+def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_path: Path) -> None:
+    assert main(["hard", "-q", "knuckle-in-line-wishbone", "--report", str(tmp_path)]) == 0
+    document, shown = checked(tmp_path / "results.json"), read_file(tmp_path)
+    assert (document["kind"], document["verdict"]) == ("hard", "agree")
+    assert shown.verdict[0] == "verdict agrees"
+    assert "1 hard case at " in shown.verdict[1]
+    answers = [a for case in document["cases"] for trial in case["trials"] for a in trial["answers"]]
+    with (tmp_path / "hard.csv").open(newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    for line, one in zip(lines, answers, strict=True):
+        error = "" if one["error"] is None else repr(one["error"])
+        wanted = (one["formulation"], one["outcome"], error)
+        assert (line["formulation"], line["outcome"], line["error"]) == wanted
+
+
+def test_accuracy_against_time_has_a_point_for_each_setting_and_a_look_for_each_way() -> None:
+    rows = [
+        row
+        for k, way in enumerate(WAYS)
+        for setting, error, solve in (("a", 10.0**-k, 1e-5), ("b", 10.0 ** (-k - 1), 5e-5))
+        for row in made_rows.measured(
+            "bounce", way.name, setting, {"position": error}, solve, dense=way.dense
+        )
+    ]
+    rows += made_rows.measured("bounce", f"mine{NASTY}", "a", {"position": 1e-6}, 2e-4)
+    shown = read(Run(head("cost"), cost=Report("rows", "pointcoord cost", False, tuple(rows))))
+    ((_, plot),) = shown.by_words.items()
+    assert "<" not in json.dumps(plot)
+    *ways, mine = plot["data"]
+    assert (mine["y"], len(ways)) == ([1e-6], len(WAYS))
+    for k, (way, one) in enumerate(zip(WAYS, ways, strict=True)):
+        assert one["x"] == pytest.approx([10.0, 50.0])  # us
+        assert one["y"] == pytest.approx([10.0**-k, 10.0 ** (-k - 1)])
+        assert one["name"] == way.name + "*" * way.dense
+        assert one["marker"]["symbol"].endswith("-open") != way.dense
+    lines = {(one["line"]["color"], one["line"].get("dash")) for one in ways}
+    symbols = {one["marker"]["symbol"].removesuffix("-open") for one in ways}
+    assert len(lines) == len(symbols) == len(WAYS) > 12
+    # Times are neither right nor wrong.
+    assert shown.verdict[0] == "verdict measured"
+    assert "Exit status 0: nothing compared" in shown.text
+    assert shown.of("command")[0][1][1] == "pointcoord cost"
+
+
+def test_every_printed_number_of_another_program_stands_beside_ours_and_a_wrong_one_disagrees() -> None:
+    tables = compare_published()
+    run = Run(head(), published=tables)
+    assert run.status == 0
+    shown = read(run)
+    for one in tables:
+        assert one.table.source in shown.text
+        text = (Path(validate.published.__file__).parent / f"{one.table.name}.csv").read_text()
+        for line in text.splitlines()[1:]:
+            at, *numbers = (f"{float(cell) + 0.0:.9g}" for cell in line.split(","))
+            rows = [[words for _, words in row[1:]] for row in shown.of(f"{float(at):g}")]
+            assert any(all(map(str.startswith, row, numbers)) for row in rows), line
+    bump, (first, second) = tables[0], tables[0].columns[0].rows
+    column = replace(bump.columns[0], rows=(replace(first, share=3.0, verdict="disagrees"), second))
+    outcome = replace(bump.outcomes[0], rows=(column.rows[0], *bump.outcomes[0].rows[1:]))
+    wrong = replace(bump, columns=(column, *bump.columns[1:]), outcomes=(outcome, *bump.outcomes[1:]))
+    spoilt = Run(head(), published=(wrong,))
+    assert spoilt.status == 1
+    assert bump.table.title in spoilt.sentence
+    assert ("disagrees", "disagrees") in [(k, t[:9]) for row in read(spoilt).of("verdict") for k, t in row]
+
+
+# What it must not do.
+
+
+def test_the_page_loads_nothing_and_forbids_to_and_takes_names_as_text(bounce: Drawn) -> None:
+    name = "<script>alert('x')&lt;.toml"
+    title = "</title></script><img src=x onerror=alert(1)>"
+    examined = replace(bounce.examined, name=name, title=title)
+    text = page(run_of(replace(bounce, examined=examined)), FILES)
+    assert "alert('x')" not in text
+    shown = Read(text)
+    assert any(row[0] == name for row in shown.cells)
+    assert any(title in cell for row in shown.cells for cell in row)
+    (policy,) = [given["content"] or "" for tag, given in shown.tags if given.get("http-equiv", "")]
+    assert policy.startswith("default-src 'none';")
+    assert "http" not in policy
+    assert "unsafe-eval" not in policy
+    assert len(shown.scripts) == 4  # plotly and three of our own
+    hashes = [b64encode(sha256(script.encode()).digest()).decode() for script in shown.scripts]
+    assert policy.endswith("script-src " + " ".join(f"'sha256-{one}'" for one in hashes))
+    for tag, given in shown.tags:
+        assert tag not in ("link", "iframe", "object", "embed", "base", "img")
+        assert not {"src", "onerror"} & given.keys()
+        assert tag != "a" or (given["href"] or "").startswith("#") or given["href"] in FILES
+    ids = [given["id"] for _, given in shown.tags if "id" in given]
+    assert len(set(ids)) == len(ids)
+
+
+def test_a_folder_called_as_a_scene_can_be_had_and_without_its_packages_the_extra_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with monkeypatch.context() as patch:
+        patch.setitem(sys.modules, "jinja2", None)
+        assert main(["report", "out", "steer"]) == 2
+        assert "pip install 'pointcoord[report]'" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+    assert main(["report", "-q", "./steer/", "steer"]) == 0
+    assert (tmp_path / "steer" / "index.html").is_file()
+
+
+def test_a_run_that_is_stopped_leaves_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(*words: object, **more: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("validate.commands.comparison.examine", stopped)
+    kept = tmp_path / "kept"
+    kept.mkdir()
+    for folder in (tmp_path / "new" / "report", kept):
+        with suppress(KeyboardInterrupt):
+            assert main(["report", str(folder), "bounce"]) not in (0, 1)
+    # What was there before stays.
+    assert [one.name for one in tmp_path.iterdir()] == ["kept"]
+    assert not list(kept.iterdir())

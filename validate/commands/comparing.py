@@ -1,0 +1,151 @@
+"""What every run of comparisons does: the files and the page that it leaves, however it ends."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from pointcoord import Scene
+from validate.ci.baseline import Since
+from validate.ci.files import Files
+from validate.ci.record import Record
+from validate.comparison.examined import Examined
+from validate.errors import UsageError
+from validate.extras import needed
+from validate.output.console import Console
+from validate.output.document import Ending, Head, Journal
+from validate.output.report import counted_as
+from validate.plain_text import shown
+
+# What a page is made of is imported where one is made: most runs make none.
+if TYPE_CHECKING:
+    from validate.html.run import Drawings, Run
+
+
+@dataclass(frozen=True)
+class Page:
+    """Where the page of a run goes.
+
+    Attributes:
+        with_more: adds to a run what else is computed for its page.
+        option: that names the folder, with a space behind it.
+        brief: whether nothing is said but the verdict in a sentence, and where the page is.
+    """
+
+    folder: str
+    with_more: Callable[[Run], Run] = lambda run: run
+    option: str = "--report "
+    brief: bool = False
+
+    @classmethod
+    def of(cls, options: argparse.Namespace) -> Page | None:
+        """The page that `--report` asks for, if it does."""
+        return None if options.report is None else cls(options.report)
+
+    @property
+    def place(self) -> str:
+        """The page itself, for people."""
+        from validate.html.folder import PAGE
+
+        return shown(os.path.join(self.folder, PAGE))
+
+    def require(self) -> None:
+        """Find out that there can be no page, before anything is solved.
+
+        Raises:
+            MissingPackage: a page needs the extra `report`.
+            UsageError: the folder has no name, or cannot be a report's.
+            OutputError: it cannot be written.
+        """
+        from validate.html.folder import require_folder
+
+        if not self.folder.strip():
+            raise UsageError(
+                f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
+            )
+        for package in ("jinja2", "plotly.offline"):
+            needed("report", package, "report")
+        require_folder(self.folder)
+
+    def write(self, run: Run, console: Console) -> Run:
+        """Write the page of a run; returns it with what the page holds beside it.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        from validate.html.folder import write_report
+
+        whole = self.with_more(run)
+        write_report(self.folder, whole)
+        console.written.append(f"{self.place} holds the report")
+        return whole
+
+
+@dataclass(frozen=True)
+class Comparing:
+    """A run of comparisons that goes on; `ending.status` is what it ended with."""
+
+    record: Record
+    files: Files
+    journal: Journal
+    finished: Callable[[], str]
+    drawings: Drawings | None
+    ending: Ending
+
+    def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
+        """Take in what came of a scene, and write what there is so far."""
+        if scene is not None:
+            self.files.keep(examined.name, scene, examined.outcomes)
+        self.record.add(examined, since, scene)
+        # Of a file's scene no motion is solved.
+        if self.drawings is not None and examined.name not in self.record.files:
+            self.drawings.add(examined, scene)
+        self.journal.keep(self.record.data, self.finished())
+
+
+def results_of(options: argparse.Namespace) -> dict[str, str | None]:
+    """The files that a run of comparisons may leave, by option."""
+    names = ("json", "junit", "summary", "save_baseline")
+    return {f"--{name.replace('_', '-')}": getattr(options, name) for name in names}
+
+
+@contextmanager
+def comparing(
+    options: argparse.Namespace, console: Console, record: Record, page: Page | None, noun: str = "scene"
+) -> Iterator[Comparing]:
+    """A run of comparisons; its files are written however it ends, its page if it comes to its end.
+
+    Raises:
+        MissingPackage, UsageError: there can be no page. OutputError: a result cannot be written.
+    """
+    drawings = None
+    if page is not None:
+        from validate.html.run import Drawings, Run
+
+        page.require()
+        drawings = Drawings(len(record.names))
+    head = Head.of("validate", options.command, options.timings)
+    files = Files(options.junit, options.summary, options.save_baseline)
+    journal = Journal(options.json, head, console)
+    mute, brief = console.mute, page is not None and page.brief
+    console.mute = mute or brief
+
+    def finished() -> str:
+        return f"{len(record.examined)} of {counted_as(len(record.names), noun)}"
+
+    with (
+        journal.closing(record.data, lambda: record.examined, finished) as ending,
+        files.closing(record, console),
+    ):
+        yield Comparing(record, files, journal, finished, drawings, ending)
+        ending.status = record.status
+        if page is not None and drawings is not None:
+            made = page.write(Run(head, record, drawings.kept), console)
+            ending.status = made.status
+            console.mute = mute
+            if brief:
+                console.say(f"{made.sentence}\n{page.place}")

@@ -1,0 +1,331 @@
+"""`pointcoord simulate`, `plot` and `table`: a scene solved by point coordinates, and its numbers shown."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR, READ_FIRST
+from pointcoord.method import METHODS, Method
+from pointcoord.wording import meant
+from validate.closed_drawing import warnings_of
+from validate.commands.usage import (
+    Commands,
+    add_output,
+    load_scene,
+    name_of,
+    place_of_result,
+    share,
+    told_as,
+    whole,
+    write_result,
+)
+from validate.curves.numbers import TIME, TRAVEL, Curves, Number, found, numbers_of, usual
+from validate.errors import UsageError
+from validate.exit_status import ExitStatus
+from validate.extras import needed
+from validate.output.columns import ENDINGS, require_table, write_csv, write_motion
+from validate.output.console import STANDARD_OUTPUT, Console
+from validate.output.progress import progress
+from validate.output.table import Table, csv_of
+from validate.paper.printed import PRINTED
+from validate.plain_text import shown
+
+BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
+PICTURES, TABLES = (".svg", ".png"), (".csv", ".md")
+SMOOTH = 401  # a curve of fewer instants has corners
+ROWS = 21
+DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5}
+
+SIMULATE = """\
+Solve a scene by point coordinates alone and write what it asks for: a row for each instant, a
+column for each number with its unit. A motion that stops halfway is written as far as it
+goes."""
+PLOT = f"""\
+Draw curves of a scene's motion: any number that it gives over any other. Without --x and --y
+the wheel's angles are drawn against its travel, which goes upward on the paper; against the
+one input that moves, or time, where the wheel does not go mostly up and down; and the wheel
+centre's place over time where the scene asks for no angle.
+
+A number is named by as many words of QUANTITY.NAME.COMPONENT as tell it apart: an angle or
+an input by its name, a place as POINT.z, another quantity of a point as QUANTITY.POINT.z; all
+three components are drawn if none is said. {TIME} is the time, {TRAVEL} how far the wheel centre is
+above its drawn place, measured on the chassis. What is positive is said at each axis."""
+TABLE = """\
+Solve a scene by point coordinates and print the wheel's angles and dimensions over the way of
+its inputs, with what they change by per mm of wheel travel and of rack. A sweep such as
+wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range; bump steer is toe_by_travel,
+the motion ratio damper over wheel minus damper_length_by_travel."""
+
+
+def add(commands: Commands) -> None:
+    """Add the three commands."""
+    parser = commands.add_parser(
+        "simulate", help="solve a scene by point coordinates and write its motion", description=SIMULATE
+    )
+    share(parser, "scene")
+    add_output(
+        parser, "FILE", f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given"
+    )
+    share(parser, "--instants", "--quiet")
+    parser.add_argument(
+        "--method",
+        choices=tuple(BY_NAME),
+        default="auto",
+        help="auto (if not given): series, or a map where these are too long or too rough; series: a chain "
+        "of power series in time; map: series in the inputs, on patches that cover their way; newton: "
+        "Newton's method at each instant; printed: that with the paper's formulas as printed, some of which "
+        "are wrong",
+    )
+    parser.set_defaults(run=run_simulate)
+
+    parser = commands.add_parser("plot", help="draw curves of a scene's motion (SVG, PNG)", description=PLOT)
+    share(parser, "scene")
+    add_output(
+        parser,
+        "FILE",
+        f"where to, by its ending {' or '.join(PICTURES)}; SVG on standard output if not given",
+    )
+    parser.add_argument(
+        "--y", metavar="NUMBER", action="append", help="what goes upward on the paper; may be given again"
+    )
+    parser.add_argument(
+        "--x",
+        metavar="NUMBER",
+        action="append",
+        help=f"what goes to the right ({TIME} if only --y is given); may be given again if --y is not, whose "
+        f"place {TRAVEL} takes",
+    )
+    parser.add_argument(
+        "--degrees",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="angles in degrees, as they are if nothing is said, or in radians",
+    )
+    share(parser, "--instants", help=f"points of a curve; the scene's own if not given, at least {SMOOTH}")
+    share(parser, "--quiet")
+    parser.set_defaults(run=run_plot)
+
+    parser = commands.add_parser(
+        "table", help="print a car's angles and dimensions over travel", description=TABLE
+    )
+    share(parser, "scene")
+    add_output(parser, "FILE", f"where to, by its ending {' or '.join(TABLES)}; a table in text if not given")
+    parser.add_argument(
+        "--rows",
+        metavar="N",
+        type=whole(1),
+        help=f"how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}",
+    )
+    parser.add_argument(
+        "--number", metavar="NAME", action="append", help="a column, by its name; may be given again"
+    )
+    parser.add_argument("--all", action="store_true", help="every number of the car that there is")
+    share(parser, "--quiet")
+    parser.set_defaults(run=run_table)
+
+
+def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Write the motion."""
+    target = place_of_result(options, ENDINGS, console)
+    if target is not None:
+        require_table(target)
+    method, instants = BY_NAME[options.method], options.instants
+    if instants is not None and not method.dense:
+        raise UsageError(
+            f"--instants needs the method auto, series or map; {options.method} solves at the scene's own "
+            "samples only"
+        )
+
+    def write(motion: Motion) -> str:
+        if target is None:
+            write_csv(console, motion, instants)
+            console.flush()
+        else:
+            write_motion(target, motion, instants)
+            console.written = [f"{target} holds the motion"]
+        count = instants or len(motion.times)
+        return f"{count} instant{'' if count == 1 else 's'}"
+
+    return solved(load_scene(options.scene), target, options, console, write, method)
+
+
+def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Draw curves."""
+    target = place_of_result(options, PICTURES, console)
+    needed("plot", "matplotlib", "plot")
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    numbers = numbers_of(scene)
+    chosen = _curves(options, numbers, name)
+
+    def write(motion: Motion) -> str:
+        # Imported here: matplotlib takes a second.
+        from validate.curves.picture import figure
+        from validate.output.figure import drawn
+
+        count = options.instants or max(len(motion.times), SMOOTH)
+        own = options.instants is None and count == len(motion.times)
+        samples = motion if own or len(motion.times) == 1 else next(motion.blocks(count, count))
+        curves = chosen or usual(scene, numbers, motion)
+        picture = figure(curves, motion, samples, scene.title or name, options.degrees)
+        ending = "svg" if target is None else Path(target).suffix.removeprefix(".")
+        write_result(target, drawn(picture, ending), "the picture", console)
+        return "the picture"
+
+    return solved(scene, target, options, console, write)
+
+
+def run_table(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Print a table."""
+    target = place_of_result(options, TABLES, console)
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    chosen = _numbers(options, scene, name)
+    givers = {n: effect for effect in reversed(scene.mechanism.effects) for n in EFFECTS[effect].names or ()}
+    effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in chosen))))
+    scene = scene.model_copy(update={"effects": effects})
+
+    def write(motion: Motion) -> str:
+        rows = options.rows or min(ROWS, len(motion.times))
+        write_result(target, _table(scene, motion, chosen, rows, target), "the table", console)
+        return "the table"
+
+    return solved(scene, target, options, console, write)
+
+
+def solved(
+    scene: Scene,
+    target: str | None,
+    options: argparse.Namespace,
+    console: Console,
+    write: Callable[[Motion], str],
+    method: Method = BY_NAME["auto"],
+) -> ExitStatus:
+    """Solve a scene, and write its motion or the part of it that could be solved.
+
+    Args:
+        write: writes a motion; returns what of it, in words.
+    Raises:
+        SceneError: the scene is wrong. OutputError: the result cannot be written.
+    """
+    name = name_of(options.scene)
+    problem: PointcoordError | None = None
+    try:
+        with told_as(name), progress(console, f"solving {name}", total=None, lines=False):
+            motion = simulate(scene, method)
+    except SceneError:
+        raise
+    except PointcoordError as error:
+        advice = " (--method newton)" if isinstance(error, MotionTooLong | MotionTooRough) else ""
+        if error.partial is None:
+            console.complain(f"{name}: {error}{advice}; nothing is written")
+            return ExitStatus.NO_VERDICT
+        motion, problem = error.partial, error
+    _comment(scene, name, motion, console)
+    what = write(motion)
+    if problem is None:
+        return ExitStatus.AGREE
+    where = f"on {STANDARD_OUTPUT}" if target is None else f"in {target}"
+    console.complain(
+        f"{name}: {problem}{advice}; what was solved, {what} up to t = {motion.times[-1]:.10g} s, is {where}"
+    )
+    return ExitStatus.NO_VERDICT
+
+
+def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
+    """Warn of what looks wrong with the drawing, and note what was taken for granted."""
+    warnings = warnings_of(scene, motion.closing)
+    for warning in warnings:
+        console.warn(f"{name}: {warning}")
+    notes = [note for note in motion.notes if note not in warnings]
+    if motion.closing.moves and not motion.closing.noticeable:
+        notes.append(motion.closing.words)
+    if any("wheel_axis" in EFFECTS[effect].lines for effect in scene.effects):
+        notes += scene.mechanism.defaults_taken
+    for note in notes:
+        console.note(f"{name}: {note}")
+
+
+def _curves(options: argparse.Namespace, numbers: Sequence[Number], name: str) -> Curves | None:
+    """What the command line asks for; None if it leaves that open."""
+    if options.x is None and options.y is None:
+        return None
+    across, up = (
+        _named(words, option, numbers, name)
+        for option, words in (("--x", options.x or [TIME]), ("--y", options.y or [TRAVEL]))
+    )
+    if len(across) > 1 and len(up) > 1:
+        raise UsageError(
+            f"--x are {len(across)} numbers, and --y {len(up)}; allowed: several of one of them; say which "
+            "component, x, y or z"
+        )
+    return Curves(across, up)
+
+
+def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: str) -> tuple[Number, ...]:
+    try:
+        named = [number for one in words for number in found(one, numbers)]
+    except (UsageError, PointcoordError) as error:
+        raise UsageError(f"{name}: {option} {error}") from None
+    return tuple({number.path: number for number in named}.values())
+
+
+def _numbers(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
+    """The numbers of the table's columns."""
+    had = [number for effect in scene.mechanism.effects for number in EFFECTS[effect].names or ()]
+    known = [number for number in dict.fromkeys(had) if number in NUMBERS_OF_THE_CAR]
+    if not known:
+        raise UsageError(
+            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles], or of "
+            "its parts only; pointcoord simulate writes what it gives"
+        )
+    for number in options.number or ():
+        if number not in known:
+            why = [scene.mechanism.refusal(e) for e in EFFECTS.values() if number in (e.names or ())]
+            raise UsageError(
+                f"{name}: --number {number}: {why[0]}"
+                if why
+                else f"{name}: no number of a car is called {shown(number)}"
+                f"{meant(number, NUMBERS_OF_THE_CAR)}; allowed: {', '.join(known)}"
+            )
+    if options.number:
+        return list(dict.fromkeys(options.number))
+    return known if options.all else [number for number in READ_FIRST if number in known]
+
+
+def _table(scene: Scene, motion: Motion, chosen: Sequence[str], rows: int, target: str | None) -> str:
+    """The inputs that move and the numbers, angles in degrees: CSV, or text with what is positive."""
+    first, last = motion.times[0], motion.times[-1]
+    samples = motion.at(np.linspace(first, last, rows)) if len(motion.times) > 1 else motion
+    units, laws = scene.mechanism.topology.input_units, scene.functions
+    columns: list[tuple[str, str, NDArray[np.float64]]] = [
+        (name, units[name], laws[name].series(samples.times, 0)[:, 0])
+        for name in [name for name, law in laws.items() if not law.still] or list(scene.inputs)
+    ]
+    for number in chosen:
+        quantity = NUMBERS_OF_THE_CAR[number].quantity
+        columns.append((number, quantity.unit, samples.numbers[quantity.name][number]))
+    columns = [
+        (name, unit.replace("rad", "deg", 1), np.degrees(values) if unit.startswith("rad") else values)
+        for name, unit, values in columns
+    ]
+    head = tuple(f"{name} [{unit}]" for name, unit, _ in columns)
+    lines = zip(*(values.tolist() for *_, values in columns), strict=True)
+    if target is not None and Path(target).suffix == ".csv":
+        return csv_of(head, lines)
+    digits = [DIGITS[unit] for _, unit, _ in columns]
+    table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
+    told = ((number, NUMBERS_OF_THE_CAR[number].sign) for number in chosen)
+    signs = [f"{number}: positive {sign}" for number, sign in told if sign]
+    if target is not None:
+        return "\n".join([table.markdown, "", *(f"- {sign}" for sign in signs), ""])
+    return "\n".join([table.text, "", *signs, ""])
+
+
+def _rounded(value: float, digits: int) -> str:
+    # Adding 0 turns a rounded -0 into 0.
+    return f"{round(value, digits) + 0.0:.{digits}f}" if np.isfinite(value) else "-"

@@ -1,0 +1,221 @@
+"""Named columns as files: CSV, NPZ and Parquet, written block by block.
+
+A block has some rows of every column; however many rows there are, no more memory is taken than for a block.
+Motions have a row for each instant. Sweeps have one for each design and instant, with the design's number,
+what varies in it, and whether it was solved; in NPZ they have arrays instead, (designs, instants) of numbers
+and (designs,) of what belongs to a design. The numbers of a design that could not be solved are NaN.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import islice
+from pathlib import Path
+from typing import Any, BinaryIO, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic_core import to_json
+
+from pointcoord import Motion, Sweep
+from pointcoord.results.named_columns import columns, number_columns
+from validate.extras import needed
+from validate.output.files import require_known_ending, write_whole
+
+Array = NDArray[np.float64]
+Block = Mapping[str, NDArray[Any]]
+"""By name some rows of each column, along the first axis."""
+
+ENDINGS = (".csv", ".npz", ".parquet")
+DESIGN, TIME, CLOSING, STATUS = "design", "time [s]", "closing [mm]", "status"
+SOLVED = "solved"
+# Rows that are computed or made text of together: every kind of file has the same bits, and as objects of
+# Python their numbers take some 10 MB.
+ROWS = 2048
+# Numbers of a sweep's table that are copied at a time.
+PIECE = 2**20
+# Blocks of a motion in a group of rows of Parquet, which is compressed by itself: more make smaller files.
+GROUP = 16
+
+
+class Writable(Protocol):
+    """Whatever takes text."""
+
+    def write(self, text: str, /) -> object:
+        """Take it."""
+        ...
+
+
+def require_table(target: str) -> None:
+    """Refuse a file that cannot be written by its ending, before anything is solved.
+
+    Raises:
+        UsageError: it is none of `ENDINGS`. MissingPackage: Parquet needs pyarrow.
+    """
+    require_known_ending(target, ENDINGS)
+    if Path(target).suffix == ".parquet":
+        needed(".parquet", "pyarrow.parquet", "parquet")
+
+
+def write_motion(target: str, motion: Motion, instants: int | None = None) -> None:
+    """Write a motion by the ending of the target.
+
+    Args:
+        instants: how many, evenly over the motion; its own if not given.
+    Raises:
+        UsageError, MissingPackage: see `require_table`.
+        OutputError: the file cannot be written; what was there is whole.
+        NotComputed: instants are given, and the method knows the motion at its own only.
+    """
+    _write(target, _of_motion(motion, instants), GROUP)
+
+
+def write_sweep(target: str, blocks: Iterable[Sweep]) -> None:
+    """Write a sweep by the ending of the target.
+
+    Raises:
+        UsageError, MissingPackage, OutputError: see `write_motion`. PointcoordError: as the blocks raise it.
+    """
+    _write(target, (_by_design if Path(target).suffix == ".npz" else _by_instant)(blocks), 1)
+
+
+def write_csv(stream: Writable, motion: Motion, instants: int | None = None) -> None:
+    """Write a motion as CSV; reading a number gives the same bits."""
+    for text in _csv(_of_motion(motion, instants)):
+        stream.write(text)
+
+
+def write_sweep_csv(stream: Writable, blocks: Iterable[Sweep]) -> None:
+    """Write a sweep as CSV; reading a number gives the same bits."""
+    for text in _csv(_by_instant(blocks)):
+        stream.write(text)
+
+
+def _of_motion(motion: Motion, instants: int | None) -> Iterator[Block]:
+    return (dict(columns(block)) for block in motion.blocks(instants, ROWS))
+
+
+def _of_designs(block: Sweep) -> tuple[Block, NDArray[np.str_]]:
+    """What belongs to each design of a block: its number and what varies in it; and what became of it."""
+    numbers = block.numbers_of_designs
+    found = (block.failures.get(number) for number in numbers.tolist())
+    said = np.array([SOLVED if failure is None else failure.reason for failure in found])
+    return {DESIGN: numbers, **{f"{name} [mm]": values for name, values in block.varied.items()}}, said
+
+
+def _by_instant(blocks: Iterable[Sweep]) -> Iterator[Block]:
+    """A row for each design and instant, of some designs at a time."""
+    for block in blocks:
+        instants, each, (before, said) = len(block.times), dict(number_columns(block)), _of_designs(block)
+        some = max(PIECE // (instants * max(len(each), 1)), 1)
+        for low in range(0, len(block), some):
+            here = slice(low, low + some)
+            yield {
+                **{name: np.repeat(values[here], instants) for name, values in before.items()},
+                TIME: np.tile(block.times, len(said[here])),
+                **{name: column[here].ravel() for name, column in each.items()},
+                STATUS: np.repeat(said[here], instants),
+            }
+
+
+def _by_design(blocks: Iterable[Sweep]) -> Iterator[Block]:
+    """A row for each design; the times, which they share, with the first block only."""
+    for i, block in enumerate(blocks):
+        before, said = _of_designs(block)
+        yield {
+            **before,
+            CLOSING: block.closing,
+            STATUS: said,
+            **({} if i else {TIME: block.times}),
+            **dict(number_columns(block)),
+        }
+
+
+def _write(target: str, blocks: Iterator[Block], group: int) -> None:
+    require_table(target)
+    ending = Path(target).suffix
+
+    def write(stream: BinaryIO) -> None:
+        if ending == ".csv":
+            stream.writelines(text.encode() for text in _csv(blocks))
+        elif ending == ".npz":
+            _npz(stream, blocks)
+        else:
+            _parquet(stream, blocks, group)
+
+    write_whole(target, write)
+
+
+def _csv(blocks: Iterable[Block]) -> Iterator[str]:
+    """Lines, some at a time, the names of the columns first."""
+    for i, block in enumerate(blocks):
+        if not i:
+            yield f"{','.join(block)}\r\n"
+        for low in range(0, len(next(iter(block.values()))), ROWS):
+            yield _lines([column[low : low + ROWS] for column in block.values()])
+
+
+def _lines(block: list[NDArray[Any]]) -> str:
+    """Lines of numbers, each in as few digits as give its bits back, between columns of other kinds."""
+    numbers = [i for i, column in enumerate(block) if column.dtype.kind == "f"]
+    rows = np.stack([block[i] for i in numbers], axis=-1)
+    # Python's own texts of numbers take four times as long.
+    text = to_json(rows.tolist(), inf_nan_mode="constants").decode("ascii")
+    text = text.removeprefix("[[").removesuffix("]]").replace("],[", "\r\n")
+    if not np.isfinite(rows).all():
+        text = text.replace("NaN", "nan").replace("Infinity", "inf")
+    if len(numbers) < len(block):
+        before, after = (
+            [_words(c) for c in part] for part in (block[: numbers[0]], block[numbers[-1] + 1 :])
+        )
+        text = "\r\n".join(map(",".join, zip(*before, text.split("\r\n"), *after, strict=True)))
+    return f"{text}\r\n"
+
+
+def _words(column: NDArray[Any]) -> list[str]:
+    return [f'"{word}"' if "," in word else word for word in map(str, column.tolist())]
+
+
+def _npz(stream: BinaryIO, blocks: Iterable[Block]) -> None:
+    """One member for each column, as `numpy.savez` would, which wants all of them at once.
+
+    Columns come together from block to block, and lie on disk until all of one are there.
+    """
+    parts: dict[str, list[tuple[int, np.dtype[Any], tuple[int, ...]]]] = {}
+    with zipfile.ZipFile(stream, "w", allowZip64=True) as archive, tempfile.TemporaryFile() as gathered:
+        for block in blocks:
+            for name, column in block.items():
+                parts.setdefault(name, []).append((gathered.tell(), column.dtype, column.shape))
+                gathered.write(column.tobytes())
+        for name, found in parts.items():
+            kind = np.result_type(*(dtype for _, dtype, _ in found))
+            shape = (sum(shape[0] for *_, shape in found), *found[0][2][1:])
+            header = {"descr": kind.str, "fortran_order": False, "shape": shape}
+            with archive.open(zipfile.ZipInfo(f"{name}.npy"), "w", force_zip64=True) as member:
+                np.lib.format.write_array_header_1_0(member, header)
+                for place, dtype, part in found:
+                    gathered.seek(place)
+                    read = np.frombuffer(gathered.read(dtype.itemsize * int(np.prod(part))), dtype)
+                    member.write(read.astype(kind, copy=False).tobytes())
+
+
+def _parquet(stream: BinaryIO, blocks: Iterator[Block], group: int) -> None:
+    """Columns with the names of the CSV; so many blocks make a group of rows."""
+    import pyarrow
+    import pyarrow.parquet
+
+    writer = None
+    try:
+        while some := tuple(islice(blocks, group)):
+            whole = {name: np.concatenate([block[name] for block in some]) for name in some[0]}
+            words = [name for name, column in whole.items() if column.dtype.kind == "U"]
+            table = pyarrow.table(
+                whole | {name: pyarrow.array(whole[name]).dictionary_encode() for name in words}
+            )
+            writer = writer or pyarrow.parquet.ParquetWriter(stream, table.schema, use_dictionary=words)
+            writer.write_table(table)
+    finally:
+        if writer is not None:
+            writer.close()
