@@ -79,9 +79,31 @@ class Channel(Mapping[str, Array]):
         return type(self), (self.quantity, self._arrays, self.left_out, self.unreported)
 
 
+class Named:
+    """Numbers by quantity and name; every quantity is an attribute too, such as `position`."""
+
+    numbers: Mapping[str, Channel]
+
+    def __getattr__(self, name: str) -> Channel:
+        numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
+        if name in numbers:
+            return numbers[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}; its quantities: {', '.join(numbers)}")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self.numbers})
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self._quantities}>"
+
+    @property
+    def _quantities(self) -> str:
+        return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
+
+
 @dataclass(frozen=True, repr=False)
-class Samples:
-    """What a scene asked for, at some instants; every quantity is an attribute too, such as `position`.
+class Samples(Named):
+    """What a scene asked for, at some instants.
 
     Attributes:
         times: shape (N,), s.
@@ -95,15 +117,6 @@ class Samples:
     def __post_init__(self) -> None:
         self.times.setflags(write=False)
         object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
-
-    def __getattr__(self, name: str) -> Channel:
-        numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
-        if name in numbers:
-            return numbers[name]
-        raise AttributeError(f"{type(self).__name__} has no {name!r}; its quantities: {', '.join(numbers)}")
-
-    def __dir__(self) -> list[str]:
-        return sorted({*super().__dir__(), *self.numbers})
 
     def __reduce__(self) -> tuple[type[Samples], tuple[object, ...]]:
         # A read-only view of a dictionary does not pickle.
@@ -121,10 +134,6 @@ class Samples:
             return f"at {self.times:.6g} s"
         count = "1 instant" if self.times.size == 1 else f"{self.times.size} instants"
         return f"{count} from {self.times.min():.6g} to {self.times.max():.6g} s"
-
-    @property
-    def _quantities(self) -> str:
-        return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
 
     def shaped(self, shape: tuple[int, ...]) -> Samples:
         """The same samples with instants of another shape."""
