@@ -29,7 +29,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,10 +39,9 @@ from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyon
 from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.results.readout import BLOCK
+from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import derivative_tables
-
-if TYPE_CHECKING:
-    from pointcoord.results.ways import ByChain
+from pointcoord.solve.taylor import Chain
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -223,10 +221,11 @@ class CloseInstants:
     """A way to fill a table where many instants lie close together.
 
     Attributes:
-        solved: of one car.
+        solved: of one car, by a chain.
     """
 
-    solved: ByChain
+    solved: SolvedScene
+    chain: Chain
 
     def fill(self, times: Array, rows: Array) -> list[Stretch]:
         """Fill the columns of a table where it pays.
@@ -320,7 +319,7 @@ class CloseInstants:
     @cached_property
     def _segments(self) -> tuple[Array, Array]:
         """Start and scale of each segment, s."""
-        starts, scales = zip(*((s.start, s.scale) for s in self.solved.chain.segments), strict=True)
+        starts, scales = zip(*((s.start, s.scale) for s in self.chain.segments), strict=True)
         return np.array(starts), np.array(scales)
 
     @cached_property
@@ -335,7 +334,7 @@ class CloseInstants:
     def _sizes(self) -> tuple[Array, ...]:
         """The magnitudes of each segment's coefficients, (rows, order + 1), a row for each sum."""
         found = []
-        for segment in self.solved.chain.segments:
+        for segment in self.chain.segments:
             tables = derivative_tables(segment.coefficients, segment.scale, len(self._kinds) - 1)
             rows = [table[:, places] for table, places in zip(tables, self._kinds, strict=True)]
             found.append(np.ascontiguousarray(np.abs(np.concatenate(rows, axis=-1)).T))

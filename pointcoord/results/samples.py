@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
-from types import MappingProxyType
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Quantity
 from pointcoord.errors import NotComputed, UnknownName
+from pointcoord.results.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ class Channel(Mapping[str, Array]):
         return type(self), (self.quantity, self._arrays, self.left_out, self.unreported)
 
 
-class Named:
+class Named(ReadOnly):
     """Numbers by quantity and name; every quantity is an attribute too, such as `position`."""
 
     numbers: Mapping[str, Channel]
@@ -113,15 +113,6 @@ class Samples(Named):
 
     times: Array
     numbers: Mapping[str, Channel]
-
-    def __post_init__(self) -> None:
-        self.times.setflags(write=False)
-        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
-
-    def __reduce__(self) -> tuple[type[Samples], tuple[object, ...]]:
-        # A read-only view of a dictionary does not pickle.
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return type(self), tuple((values | {"numbers": dict(self.numbers)}).values())
 
     def __repr__(self) -> str:
         return f"<Samples: {self._span}; {self._quantities}>"

@@ -161,7 +161,7 @@ class ByChain(SolvedScene):
 
     @cached_property
     def _close(self) -> CloseInstants:
-        return CloseInstants(self)
+        return CloseInstants(self, self.chain)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """Sums of their series; the instants lie side by side in memory."""
