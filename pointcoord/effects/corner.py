@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Generic
+from typing import Any, Generic
 
-from pointcoord.effects.arithmetic import S, dot, ratio, root, times
+from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root, times
 from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.topology import Topology
 
@@ -77,6 +77,31 @@ class Corner(Generic[S]):
     def risen(self) -> S:
         """How far the wheel centre has gone up in the chassis' frame."""
         return self.chassis.along(_moved(self.chassis, self.drawn), "up")
+
+    def moving(
+        self, slopes: tuple[Mapping[str, Any], Mapping[str, Any]], zero: Callable[[Any], Any]
+    ) -> Corner[Dual[Any]]:
+        """The same with derivatives of its points; directions, the drawing and the radius have none.
+
+        Args:
+            slopes: of the points seen and in the chassis' frame. zero: what has no derivative, as its slope.
+        """
+
+        def still(part: Any) -> Dual[Any]:
+            return Dual(part, zero(part))
+
+        def dual(view: View[Any], points: Mapping[str, Dual[Any]]) -> View[Dual[Any]]:
+            def along(vector: Dual[Any], direction: Direction) -> Dual[Any]:
+                return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
+
+            up, outboard, radius = (still(part) for part in (view.up, view.outboard, view.radius))
+            return View(view.topology, points, along, up, outboard, radius)
+
+        def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
+            return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
+
+        drawn = dual(self.drawn, {name: still(place) for name, place in self.drawn.points.items()})
+        return Corner(moved(self.seen, slopes[0]), moved(self.chassis, slopes[1]), drawn, still(self.origin))
 
 
 def _moved(view: View[S], drawn: View[S]) -> S:

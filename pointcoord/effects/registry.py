@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
-from pointcoord.effects.along import NumberAlong, NumbersAlong
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
@@ -40,10 +39,10 @@ EFFECTS: Mapping[str, Effect] = {
 }
 """What a scene may list, by name."""
 
-NUMBERS_OF_THE_CAR: Mapping[str, CarNumber | NumberAlong] = {
+NUMBERS_OF_THE_CAR: Mapping[str, CarNumber] = {
     number.name: number
     for effect in EFFECTS.values()
-    if isinstance(effect, CarNumbers | NumbersAlong)
+    if isinstance(effect, CarNumbers)
     for number in effect.numbers
 }
 """Numbers of a car, by their names."""

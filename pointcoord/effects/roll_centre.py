@@ -13,9 +13,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pointcoord.effects.along import BY_TRAVEL, NumberAlong, NumbersAlong
 from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, times
-from pointcoord.effects.car_number import DIMENSION
+from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 
 
@@ -43,18 +42,15 @@ def _velocity_of(corner: Corner[Dual[Any]], place: Any) -> Any:
     return base.slope + times(a, e1.slope) + times(b, e2.slope) + times(c, normal.slope)
 
 
-ROLL_CENTRE = NumbersAlong.of(
+ROLL_CENTRE = CarNumbers.of(
     "roll_centre",
     "height of the roll centre above the contact point, mm",
-    NumberAlong(
-        name="roll_centre_height",
-        words="roll centre height",
-        sign="above the contact point",
-        quantity=DIMENSION,
-        roles=("wheel_axis", "knuckle"),
-        needs_radius=True,
+    Number(
+        "roll_centre_height",
+        "roll centre height",
+        "above the contact point",
+        roll_centre_height,
+        ("wheel_axis", "knuckle"),
         way=BY_TRAVEL,
-        formula=roll_centre_height,
-        power=1,
     ),
 )
