@@ -51,6 +51,7 @@ class Angle:
 
     quantity: ClassVar[Quantity] = WHEEL
     needs_radius: ClassVar[bool] = False
+    data: ClassVar[tuple[str, ...]] = ()
     way: ClassVar[str] = ""
 
     @property

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.corner import Corner, View
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -29,6 +30,15 @@ Array = NDArray[np.float64]
 
 DIMENSION = Quantity("dimension", "dimension", "mm", "car")
 BY_TRAVEL, BY_RACK = "by_travel", "by_rack"
+# What a scene may say of the car, and how, for those who did not.
+SUCH_AS = {
+    "axle": '"front"',
+    "wheelbase": "2500.0",
+    "centre_of_gravity_height": "500.0",
+    "brake_share": "0.6",
+    "drive_share": "1.0",
+}
+LENGTHS = ("wheelbase", "centre_of_gravity_height")
 KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide"}
 
 
@@ -47,6 +57,8 @@ class CarNumber(Protocol):
     def roles(self) -> tuple[str, ...]: ...
     @property
     def needs_radius(self) -> bool: ...
+    @property
+    def data(self) -> tuple[str, ...]: ...
     @property
     def way(self) -> str: ...
 
@@ -77,6 +89,7 @@ class Number:
         formula: what it is; lengths in the unit of the points.
         roles: of the mechanism, whose points it is made of. needs_radius: whether of the wheel's radius too.
         quantity: the kind of number that it is.
+        data: what it is made of beside, of what the scene says of the car.
         way: along which it takes the points' derivatives; empty if it takes none.
         power: of the unit of the points, mm, that it is multiplied by.
     """
@@ -88,6 +101,7 @@ class Number:
     roles: tuple[str, ...] = ("wheel_axis",)
     needs_radius: bool = True
     quantity: Quantity = DIMENSION
+    data: tuple[str, ...] = ()
     way: str = ""
     power: int = 1
 
@@ -108,16 +122,18 @@ class CarNumbers(Effect):
     Attributes:
         numbers: what they are.
         base: the effect whose numbers' gradients they are; empty if they are none.
+        nowhere: where else than where the wheel does not travel there is no number, in words.
     """
 
     numbers: tuple[CarNumber, ...]
     base: str = ""
+    nowhere: str = ""
 
     @classmethod
-    def of(cls, name: str, gives: str, *numbers: CarNumber, base: str = "") -> CarNumbers:
+    def of(cls, name: str, gives: str, *numbers: CarNumber, base: str = "", nowhere: str = "") -> CarNumbers:
         """The effect that gives some numbers."""
         signs = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
-        return cls(name, gives, signs, 0, (numbers[0].quantity,), numbers, base)
+        return cls(name, gives, signs, 0, (numbers[0].quantity,), numbers, base, nowhere)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -137,7 +153,8 @@ class CarNumbers(Effect):
     @property
     def no_number(self) -> str:
         """Where nothing can be divided by."""
-        return "the wheel does not travel there" if self.way == BY_TRAVEL else ""
+        travels = "the wheel does not travel there" if self.way == BY_TRAVEL else ""
+        return " or ".join(filter(None, (travels, self.nowhere)))
 
     def needs(self, topology: Topology) -> Collection[str]:
         """The points of their roles."""
@@ -159,15 +176,22 @@ class CarNumbers(Effect):
         found = numbers[quantity]
         return {quantity: {n.name: n.errors(corner, found[n.name], unit) for n in self.numbers}}
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
         for role in self.lines:
             if not topology.role(role):
                 return no_role(self.name, role, topology)
-        if wheel_radius is None and any(number.needs_radius for number in self.numbers):
+        if axes.wheel_radius is None and any(number.needs_radius for number in self.numbers):
             return (
                 f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
                 f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
+            )
+        data = dict.fromkeys(name for number in self.numbers for name in number.data)
+        if missing := [name for name in data if name not in axes.car]:
+            lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in missing)
+            return (
+                f"{self.name!r} needs of the car what the scene does not say: {', '.join(missing)}; give it "
+                f"under [mechanism.car], such as {lines}, or leave {self.name!r} out"
             )
         for number in self.numbers:
             problem = number.refusal(topology, drawn)
@@ -193,7 +217,8 @@ def corner_of(poses: Poses) -> Corner[Array]:
         return View(mechanism.topology, points, axes.component, axes.up, axes.outboard, radius)
 
     drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
-    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), mechanism.origin)
+    car = {name: np.array(number) for name, number in axes.car.items()}
+    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), mechanism.origin, car)
 
 
 def _beside(place: Array, dimensions: int) -> Array:
@@ -214,7 +239,9 @@ def enclosed_corner(poses: EnclosedPoses) -> Corner[Enclosed]:
     vectors = mechanism.drawing.vectors
     drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
     origin = Enclosed.of(mechanism.origin / float(mechanism.unit))
-    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin)
+    unit = float(mechanism.unit)
+    car = {n: Enclosed.of(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
+    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin, car)
 
 
 def _no_slope(part: Enclosed) -> Enclosed:

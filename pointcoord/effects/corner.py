@@ -59,12 +59,14 @@ class Corner(Generic[S]):
         chassis: the same in the chassis' frame.
         drawn: the same as drawn.
         origin: from the user's origin to that of the points.
+        car: what the scene says of the whole car, by name; lengths in the unit of the points.
     """
 
     seen: View[S]
     chassis: View[S]
     drawn: View[S]
     origin: S
+    car: Mapping[str, S]
 
     def moved(self) -> S:
         """How far the contact point has gone from its drawn place."""
@@ -101,7 +103,9 @@ class Corner(Generic[S]):
             return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
 
         drawn = dual(self.drawn, {name: still(place) for name, place in self.drawn.points.items()})
-        return Corner(moved(self.seen, slopes[0]), moved(self.chassis, slopes[1]), drawn, still(self.origin))
+        car = {name: still(number) for name, number in self.car.items()}
+        seen, chassis = moved(self.seen, slopes[0]), moved(self.chassis, slopes[1])
+        return Corner(seen, chassis, drawn, still(self.origin), car)
 
 
 def _moved(view: View[S], drawn: View[S]) -> S:
