@@ -17,7 +17,6 @@ from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.knuckle import component, contact_place, velocity_at
-from pointcoord.effects.wheel_travel import contact_travel
 
 SHARE = Quantity("share", "share", "%", "car")
 PERCENT = 100.0
@@ -36,7 +35,8 @@ def anti_drive(corner: Corner[Dual[Any]]) -> Any:
 
 def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
     car = {name: number.value for name, number in corner.car.items()}
-    height = car["centre_of_gravity_height"] - contact_travel(corner).value
+    travel = corner.chassis.along(corner.moved_in_chassis(), "up").value
+    height = car["centre_of_gravity_height"] - travel
     slope = ratio(component(corner.seen, velocity, "rearward"), component(corner.seen, velocity, "up"))
     part = multiple(PERCENT, car[share] * car["axle"])
     return part * slope * ratio(car["wheelbase"], height)

@@ -521,7 +521,10 @@ class Scene(Part):
             if name not in EFFECTS:
                 givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
                 hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
-                raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
+                allowed = [name for name, effect in EFFECTS.items() if not effect.base]
+                raise ValueError(
+                    f"no effect is called {shown(name)}{hint}; allowed: {', '.join(allowed)}, and gradients"
+                )
         return effects
 
     @field_validator("points")

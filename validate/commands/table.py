@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 ENDINGS = (".csv", ".md")
 ROWS = 21
-DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5}
+DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2}
 
 DESCRIPTION = """\
 Solve a scene by point coordinates and print the wheel's angles and dimensions over the way of

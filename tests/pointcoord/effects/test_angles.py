@@ -16,6 +16,7 @@ from pointcoord.numerics.enclosure import Enclosed, angle_error
 
 EPS = float(np.finfo(float).eps)
 UP, RIGHTWARD = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])  # x rearward
+AXES = CarAxes(UP, RIGHTWARD, RIGHTWARD)
 LOW = np.array([10.0, 600.0, 100.0])
 CAMBER, KINGPIN = ANGLES["camber"], ANGLES["kingpin"]
 # About which axis a right wheel leans for its angle to grow, and from which direction.
@@ -118,9 +119,9 @@ def test_a_line_without_a_length_is_refused_where_a_point_of_its_own_is_missing(
     apart = {name: tuple(place.tolist()) for name, place in drawn(3.0, 8.0).items()}
     together = apart | {"centre": apart["inner"]}
     missing = topology({"axis": "inner"})
-    assert WHEEL_ANGLES.refusal(missing, apart, None) == ""
-    assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together, None)
-    assert WHEEL_ANGLES.refusal(topology({}), together, None) == ""
+    assert WHEEL_ANGLES.refusal(missing, apart, AXES) == ""
+    assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together, AXES)
+    assert WHEEL_ANGLES.refusal(topology({}), together, AXES) == ""
 
 
 def error(sine: float, cosine: float, found: float, *boxes: float) -> float:

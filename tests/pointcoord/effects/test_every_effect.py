@@ -17,6 +17,7 @@ from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import ROUNDINGS
 from pointcoord.effects.angle import WHEEL
+from pointcoord.effects.car_number import LENGTHS, CarNumbers
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
@@ -29,6 +30,13 @@ Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]
 U = 2.0**-53
 RADIUS = 300.0  # mm, of the wheel
+DATA = {
+    "axle": 1.0,
+    "wheelbase": 2618.3,
+    "centre_of_gravity_height": 511.7,
+    "brake_share": 0.37,
+    "drive_share": 0.91,
+}
 TIME = 2.0**-3  # s, a unit of time other than a second
 EVERY = {effect.name: effect for effect in (*ALWAYS, *EFFECTS.values())}
 each_effect = pytest.mark.parametrize("name", EVERY)
@@ -92,6 +100,7 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             moving_in_chassis={n: plus(other_shifts[n], cross(other_turn, p)) for n, p in in_chassis.items()},
             driven_turn=turn,
             origin=origin,
+            data={name: mpf(number) for name, number in DATA.items()},
             drawn={name: exactly(unit * mechanism.drawing.vectors[name]) for name in points},
             wheel_axis=topology.wheel_axis,
             steering_axis=topology.steering_axis,
@@ -106,7 +115,8 @@ def rounded(vector: Vector) -> Array:
 
 
 def axes_of(car: Car) -> CarAxes:
-    return CarAxes(rounded(car.up), rounded(car.right), rounded(car.outboard), float(car.wheel_radius))
+    directions = (rounded(one) for one in (car.up, car.right, car.outboard))
+    return CarAxes(*directions, float(car.wheel_radius), {n: float(v) for n, v in car.data.items()})
 
 
 def poses_of(car: Car, mechanism: Mechanism) -> Poses:
@@ -295,7 +305,11 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     larger = replace(
         poses,
         mechanism=replace(mechanism, unit=mechanism.unit * scale, origin=mechanism.origin * scale),
-        axes=replace(poses.axes, wheel_radius=RADIUS * scale),
+        axes=replace(
+            poses.axes,
+            wheel_radius=RADIUS * scale,
+            car={n: v * (scale if n in LENGTHS else 1.0) for n, v in poses.axes.car.items()},
+        ),
         states=states,
         in_chassis={n: place * scale for n, place in poses.in_chassis.items()},
         added=added,
