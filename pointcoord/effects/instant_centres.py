@@ -30,23 +30,25 @@ FARTHEST = 1e9
 
 def swing_arm(side: Direction, corner: Corner[Dual[Any]]) -> Any:
     """From the contact point to the centre, against `side`."""
-    velocity = velocity_at(corner, contact_place(corner))
-    return -_over_turn(corner, side, component(corner.seen, velocity, "up"))
+    up, _, turn = _seen_from(side, corner)
+    return -ratio(up, turn)
 
 
 def centre_height(side: Direction, corner: Corner[Dual[Any]]) -> Any:
     """Of the centre above the contact point."""
-    velocity = velocity_at(corner, contact_place(corner))
-    return -_over_turn(corner, side, component(corner.seen, velocity, side))
+    _, along, turn = _seen_from(side, corner)
+    return -ratio(along, turn)
 
 
-def _over_turn(corner: Corner[Dual[Any]], side: Direction, rate: Any) -> Any:
-    """A rate over up' . h; no number where that is a length beyond all."""
+def _seen_from(side: Direction, corner: Corner[Dual[Any]]) -> tuple[Any, Any, Any]:
+    """v . up, v . h and up' . h; no number where that turns about a centre beyond all lengths."""
     view = corner.seen
-    length = ratio(rate, component(view, turning_of(corner, view.up.value), side))
-    if isinstance(length, np.ndarray):
-        return np.where(np.abs(length) <= FARTHEST * view.radius.value, length, np.nan)
-    return length
+    velocity = velocity_at(corner, contact_place(corner))
+    up, along = component(view, velocity, "up"), component(view, velocity, side)
+    turn = component(view, turning_of(corner, view.up.value), side)
+    if isinstance(turn, np.ndarray):
+        turn = np.where(np.abs(up) <= FARTHEST * view.radius.value * np.abs(turn), turn, np.nan)
+    return up, along, turn
 
 
 def _number(name: str, words: str, sign: str, formula: Any) -> Number:
