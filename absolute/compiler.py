@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from absolute.car import car_of
 from absolute.description import (
     Axis,
     Corner,
@@ -51,6 +52,7 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
             roles: wheel_axis, steering_axis and damper, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
             wheel_radius: of the wheel, mm, or None where nothing needs it.
+            car: axle, wheelbase, centre_of_gravity_height, brake_share and drive_share, as far as given.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
             too few rows.
@@ -136,7 +138,7 @@ class _Compiler:
             for end in ends:
                 _one_of(f"an end of the {role}", end, self.points)
         outboard, rearward, up = (self.directions[name] for name in (side, "rearward", "up"))
-        return Corner(outboard, rearward, up, roles, self._radius())
+        return Corner(outboard, rearward, up, roles, self._radius(), car_of(self.of.get("car")))
 
     def _radius(self) -> float | None:
         radius = self.of.get("wheel_radius")

@@ -97,6 +97,7 @@ class Corner:
         roles: the two points each of `wheel_axis` (inner point, wheel centre), `steering_axis` (lower, upper)
             and `damper`, as far as the linkage has them.
         wheel_radius: of the wheel, mm, if it is given.
+        car: numbers of the car, as far as they are given (see `car_of`).
     """
 
     outboard: Vector
@@ -104,9 +105,11 @@ class Corner:
     up: Vector
     roles: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     wheel_radius: float | None = None
+    car: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "roles", ReadOnly(self.roles))
+        for name in ("roles", "car"):
+            object.__setattr__(self, name, ReadOnly(getattr(self, name)))
 
     @property
     def axes(self) -> Array:

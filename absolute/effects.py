@@ -6,8 +6,15 @@ point of the steering axis, the contact point of a wheel of radius r is the lowe
 
     c = W - r unit(up - (up . n) n),    n = a / |a|,
 
-and is measured against the point of the line along k that is as high. To add a number, add its function to
-`ANGLES` or to `LENGTHS`.
+and is measured against the point of the line along k that is as high.
+
+Where travel changes, c as a point of the knuckle has a velocity v, and the knuckle an angular velocity w. In
+the plane of a horizontal h and up through c, its points move about the instant centre
+
+    c - (v . up / w . a) h + (v . h / w . a) up,    a = h x up.
+
+To add a number, add its function to `ANGLES` or to `LENGTHS`; one of velocities, which has no gradients, to
+`OF_VELOCITIES`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -15,10 +22,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from absolute.car import needed
 from absolute.description import Model
 from absolute.dual import Dual, arctan2, constant, hypot
 from absolute.errors import DescriptionError, InputError
 from absolute.mapping import ReadOnly
+from absolute.newton import SMALLEST_RCOND
+from absolute.precision import EPS
 from absolute.results import Motion
 from absolute.solution import Array
 
@@ -114,10 +124,47 @@ def roll_centre_height(motion: Motion) -> Array:
     The normal is at a right angle to the velocity of the contact point, as one of the knuckle, where travel
     changes; the plane goes through the origin. Not a number where that velocity is level.
     """
-    centre, contact = _centre(motion), _contact(motion)
-    velocity = motion.components(motion.moved(centre) + motion.riding(centre, contact))
-    place = motion.components(motion.drawn(centre) + motion.moved(centre) + contact)
-    return place[0].value * _ratio(*(_slope(motion, velocity[along], "travel") for along in (0, 2)))
+    centre, (outboard, _, up) = _centre(motion), _contact_velocity(motion)
+    place = motion.components(motion.drawn(centre) + motion.moved(centre) + _contact(motion))
+    return place[0].value * _ratio(outboard, up)
+
+
+def front_view_swing_arm(motion: Motion) -> Array:
+    """How far inboard of the contact point the instant centre is, front view. Not a number at infinity."""
+    return -_instant_centre(motion, 0)[0]
+
+
+def front_view_centre_height(motion: Motion) -> Array:
+    """How far above the contact point the instant centre is, front view. Not a number at infinity."""
+    return _instant_centre(motion, 0)[1]
+
+
+def side_view_swing_arm(motion: Motion) -> Array:
+    """How far rearward of the contact point the instant centre is, side view. Not a number at infinity."""
+    return _instant_centre(motion, 1)[0]
+
+
+def side_view_centre_height(motion: Motion) -> Array:
+    """How far above the contact point the instant centre is, side view. Not a number at infinity."""
+    return _instant_centre(motion, 1)[1]
+
+
+def anti_brake(motion: Motion) -> Array:
+    """How much of the load transfer of braking the linkage carries, %: anti-dive, at the rear anti-lift.
+
+    The brake holds the contact point in the knuckle. Not a number where that does not rise with travel.
+    """
+    return _anti(motion, _contact_velocity(motion), "brake_share")
+
+
+def anti_drive(motion: Motion) -> Array:
+    """How much of the load transfer of driving the linkage carries, %: anti-squat, at the front anti-lift.
+
+    A shaft from the chassis turns the wheel in the knuckle, so that the knuckle takes the force at the wheel
+    centre. Not a number where that does not rise with travel.
+    """
+    velocity = motion.components(motion.moved(_centre(motion)))
+    return _anti(motion, _slope(motion, velocity, "travel"), "drive_share")
 
 
 ANGLES: tuple[Number, ...] = camber, kingpin, toe, caster
@@ -134,6 +181,15 @@ LENGTHS: tuple[Number, ...] = (
     hub_trail,
     damper_length,
 )
+OF_VELOCITIES: Mapping[Callable[[Motion], Array], str] = {
+    roll_centre_height: "mm",
+    front_view_swing_arm: "mm",
+    front_view_centre_height: "mm",
+    side_view_swing_arm: "mm",
+    side_view_centre_height: "mm",
+    anti_brake: "%",
+    anti_drive: "%",
+}
 
 
 @dataclass(frozen=True)
@@ -159,7 +215,8 @@ def _effects() -> Iterator[tuple[str, Effect]]:
             yield name, Effect(unit, _value(number))
             yield f"{name}_by_travel", Effect(f"{unit}/mm", _by_travel(number), "travel")
             yield f"{name}_by_rack", Effect(f"{unit}/mm", _by_rack(number), "rack")
-    yield "roll_centre_height", Effect("mm", roll_centre_height, "travel")
+    for along, unit in OF_VELOCITIES.items():
+        yield along.__name__, Effect(unit, along, "travel")
 
 
 def _value(number: Number) -> Callable[[Motion], Array]:
@@ -209,6 +266,34 @@ def _contact_moved(motion: Motion) -> Dual:
     return motion.components(
         motion.moved(_centre(motion)) + (_contact(motion) - _contact(motion, drawn=True))
     )
+
+
+def _contact_velocity(motion: Motion) -> Array:
+    """v along outboard, rearward and up, (3, N)."""
+    centre = _centre(motion)
+    velocity = motion.moved(centre) + motion.riding(centre, _contact(motion))
+    return _slope(motion, motion.components(velocity), "travel")
+
+
+def _instant_centre(motion: Motion, along: int) -> tuple[Array, Array]:
+    """From the contact point along h, which is outboard (0) or rearward (1), and up, (N,) each."""
+    velocity, spin = _contact_velocity(motion), motion.spin(_centre(motion))[..., motion.by.index("travel")]
+    axes = motion.corner.axes
+    turn = np.cross(axes[along], axes[2]) @ spin
+    # Of a velocity, so much may be rounding at the largest condition number that is not refused.
+    rounding = EPS / SMALLEST_RCOND
+    speed = np.linalg.norm(spin, axis=0) + np.linalg.norm(velocity, axis=0) / motion.mechanism.drawing.size
+    turn = np.where(np.abs(turn) <= rounding * speed, 0.0, turn)
+    return -_ratio(velocity[2], turn), _ratio(velocity[along], turn)
+
+
+def _anti(motion: Motion, velocity: Array, share: str) -> Array:
+    """100 share s (v . rearward / v . up) wheelbase / (height of the centre of gravity - contact travel) with
+    s = -1 at the front and 1 at the rear, (N,)."""
+    names = ("axle", "wheelbase", "centre_of_gravity_height", share)
+    sign, wheelbase, drawn_height, part = needed(motion.corner.car, *names)
+    height = drawn_height - contact_travel(motion).value
+    return 100.0 * part * sign * _ratio(velocity[1] * wheelbase, velocity[2] * height)
 
 
 def _off_axis(motion: Motion, beside: Dual | None = None) -> Dual:

@@ -123,10 +123,14 @@ class Motion:
 
     def riding(self, on: str, arm: Dual) -> Dual:
         """An arm (3, N) that from now on turns with the body of a point."""
+        return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
+
+    def spin(self, on: str) -> Array:
+        """(3, N, K) angular velocity of a point's body for unit rates of inputs, as the ground sees it."""
         spin = self._slopes(self._holder(on)[0], 1)
         for turn in self.turns:
             spin = np.matvec(turn.rotation, spin)
-        return Dual(arm.value, cross(spin, arm.value.T).T)
+        return spin.T
 
     def _seen(self, vector: Array) -> Dual:
         """A vector and its slopes (1 + K, N, 3), in units of size, as the ground sees it, mm."""

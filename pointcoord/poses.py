@@ -10,13 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import AssemblyError, InputOutOfRange, PointcoordError, UnknownName
-from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.chassis import SPREAD, ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.freedoms import locked
@@ -28,6 +26,7 @@ from pointcoord.patches.lookup import Marked
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import HALVINGS, MOST
 from pointcoord.results.closing import closing
+from pointcoord.results.read_only import ReadOnly
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import assembled, close_drawing
@@ -44,7 +43,7 @@ PATHS = 256
 
 
 @dataclass(frozen=True)
-class SolvedPoses:
+class SolvedPoses(ReadOnly):
     """Poses for inputs of shape (...).
 
     Attributes:
@@ -127,10 +126,10 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
         there[lost] = np.nan
         position[name] = there.reshape(*shape, 3)
     return SolvedPoses(
-        MappingProxyType(position),
+        position,
         (spread * bound + rounded).reshape(shape),
         (spread * carried_bound + rounded).reshape(shape),
-        MappingProxyType(dict(sorted(failures.items()))),
+        dict(sorted(failures.items())),
     )
 
 
@@ -215,17 +214,11 @@ def _by_paths(
     violated = locked(mechanism, pose.y[whole], pose.bound[whole] / unit)
     stopped |= {int(whole[place]): error for place, error in violated.items()}
     done = np.array([place not in stopped for place in range(len(some))])
-    y, own = pose.y[done], some[done]
-    found = {name: y[:, list(mechanism.layout.vector(name))] for name in topology.moving}
-    gain = 1.0
-    for name, carriers in topology.carried.items():
-        weights = mechanism.carrier_weights[name]
-        found[name] = carried_place(weights, *(found[carrier] for carrier in carriers))
-        gain = max(gain, carried_gain(weights, mechanism.drawing, carriers))
-    rows[:, own] = unit * np.concatenate([found[name] for name in moving_points(topology)], axis=-1).T
+    own, places = some[done], mechanism.places(pose.y[done])
+    rows[:, own] = unit * np.concatenate([places[name] for name in moving_points(topology)], axis=-1).T
     bounds[0, own] = pose.bound[done]
     # Products of the weights and of edges below the mechanism's size round some ten times.
-    bounds[1, own] = gain * (pose.bound[done] + 16.0 * EPS * unit)
+    bounds[1, own] = max(1.0, mechanism.carried_gain) * (pose.bound[done] + 16.0 * EPS * unit)
     return {int(some[place]): error for place, error in stopped.items()}
 
 

@@ -32,18 +32,18 @@ from pointcoord.results.motion import Motion
 from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
-from pointcoord.results.states import StatesAtInstants, StatesOfChain
+from pointcoord.results.ways import AtInstants, ByChain
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
 from pointcoord.solve.follower import follow, stepped
-from pointcoord.solve.status import COMPLETE, Status
+from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
 from pointcoord.wording import shown
 
 if TYPE_CHECKING:
     from pointcoord.patches.flood import Limits
-    from pointcoord.results.states_of_map import StatesOfMap
+    from pointcoord.results.by_map import ByMap
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def solve_task(task: Task) -> Motion:
     else:
         solved = solve_by_map(task) if task.method.by_map else _at_instants(task)
     motion = _motion(task, solved)
-    error = solved.states.status.error(motion)
+    error = solved.status.error(motion)
     if error is not None:
         raise error
     assert motion is not None  # what is complete has its first instant at least
@@ -157,25 +157,25 @@ def effort(scene: Scene) -> Effort:
     """
     require_scene(scene)
     task, solved = solve_by_either(prepare_task(Scene.checked(scene, scene.title or "scene"), AUTO))
-    mechanism, states = task.readout.mechanism, solved.states
+    mechanism = task.readout.mechanism
     whole, mapped = scene.mechanism.topology, task.method is MAP
     # A map is of all coordinates, whatever moves them.
     moving = mechanism.map.unknowns if mapped else mechanism.moving_part(task.functions).system.unknowns
     kept = chain_settings(scene, mechanism, task.readout.plan.derivative).kept.tolerance
     return Effort(
         method=task.method.name,
-        why=states.notes[0] if mapped else "",
+        why=solved.notes[0] if mapped else "",
         tolerance=kept * float(mechanism.unit) / truncation_share(mechanism),
         part=kept / truncation_share(mechanism),
-        orders=states.orders,
+        orders=solved.orders,
         moving=moving,
         still=mechanism.map.unknowns - moving,
         not_needed=whole.layout.unknowns - mechanism.map.unknowns,
         points_not_needed=_unsolved(task),
         start=task.start.work,
-        work=task.start.work + replace(states.work, derivatives_evaluated=0, coordinates_evaluated=0),
-        stop=max(states.stop, scene.time.start),
-        status=states.status,
+        work=task.start.work + solved.solving,
+        stop=max(solved.stop, scene.time.start),
+        status=solved.status,
     )
 
 
@@ -217,9 +217,7 @@ def prepare_task(scene: Scene, method: Method) -> Task:
     )
     functions = {name: laws[name] for name in whole.topology.required_inputs}
     check_range(whole, functions, instants)
-    for block in _blocks(instants if readout.chassis.functions else instants[:0]):
-        for name in readout.chassis.functions:
-            readout.chassis.law(name, block, readout.reported_derivative)
+    readout.laws(instants)
     # The drawing is closed as a whole: it is all of the car that must be the one that was drawn.
     first, tolerance = scene.time.start, pose_tolerance(scene, method, whole)
     closed = close_drawing(whole, first, tolerance)
@@ -243,8 +241,7 @@ def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
     settings = replace(settings, hopeful=hopeful)
     chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
     notes = tolerance_notes(task.scene, mechanism)
-    states = StatesOfChain(task.readout, task.functions, chain, time.start, notes)
-    return SolvedScene(task.readout, task.functions, states)
+    return ByChain(task.readout, task.functions, chain, notes=notes)
 
 
 def solve_by_map(task: Task, why: str = "") -> SolvedScene:
@@ -255,7 +252,7 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     """
     # Imported here: few scenes need it.
     from pointcoord.patches.way_map import map_way
-    from pointcoord.results.states_of_map import StatesOfMap
+    from pointcoord.results.by_map import ByMap
 
     readout, time = task.readout, task.scene.time
     mechanism = readout.mechanism
@@ -263,10 +260,8 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     span, effort = (time.start, time.stop), task.method.map_effort
     way = map_way(mechanism, task.functions, task.start, *span, limits, effort)
     notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
-    states = StatesOfMap(readout, task.functions, way, time.start, COMPLETE, notes)
-    if way.reason:
-        states = replace(states, status=Status(_stop_of_map(task, states)))
-    return SolvedScene(readout, task.functions, states)
+    solved = ByMap(readout, task.functions, way, time.start, notes=notes)
+    return replace(solved, status=Status(_stop_of_map(task, solved))) if way.reason else solved
 
 
 def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
@@ -278,10 +273,10 @@ def solve_by_either(task: Task) -> tuple[Task, SolvedScene]:
     stopped: PointcoordError | None = foreseen(task)
     if stopped is None:
         solved = solve_by_series(task, hopeful=False)
-        stopped = solved.states.status.stopped
+        stopped = solved.status.stopped
     if isinstance(stopped, MotionTooLong | MotionTooRough):
         mapped = solve_by_map(task, why_map(stopped))
-        if mapped.states.status.complete:
+        if mapped.status.complete:
             return replace(task, method=MAP), mapped
         # As far as they come, then.
         solved = solve_by_series(task)
@@ -307,18 +302,18 @@ def why_map(stopped: MotionTooLong | MotionTooRough) -> str:
     return f"solved by a map of the inputs: {reason}"
 
 
-def _stop_of_map(task: Task, states: StatesOfMap) -> PointcoordError:
+def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
     """Why a map does not cover the way of the inputs.
 
     The way is tried a little further from the last pose that is covered. Where a place on it is not found
     close ahead, the straight path to it is followed by proof; where that is blocked, that is what stops the
     motion.
     """
-    mechanism, functions, way, time = task.readout.mechanism, task.functions, states.way, task.scene.time
+    mechanism, functions, way, time = task.readout.mechanism, task.functions, solved.way, task.scene.time
     until = max(way.until, time.start)
     known = mechanism.known_series({name: f.series(until, 0) for name, f in functions.items()})
     inputs = {name: float(value) for name, value in mechanism.input_values(known[..., 0, :]).items()}
-    y = task.start.y if way.until == -np.inf else states.coordinates(np.array([until]), 0)[0][0]
+    y = task.start.y if way.until == -np.inf else solved.coordinates(np.array([until]), 0)[0][0]
     later = task.scene.instants[task.scene.instants > until]
     goal = float(later[0]) if len(later) else time.stop
     for instant in np.linspace(until, goal, TRIED + 1)[1:].tolist():
@@ -342,12 +337,12 @@ def _at_instants(task: Task) -> SolvedScene:
     allowed = pose_tolerance(task.scene, task.method, mechanism)
     solver = task.method.at_instants
     solved = solver(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
-    return SolvedScene(task.readout, task.functions, StatesAtInstants(task.readout, solved))
+    return AtInstants(task.readout, task.functions, solved)
 
 
 def _motion(task: Task, solved: SolvedScene) -> Motion | None:
     """The motion, whole or up to where it was solved; None if it is nowhere."""
-    times = solved.states.covered(task.instants)
+    times = task.instants[task.instants <= solved.stop]
     if not len(times):
         return None
     samples = solved.samples(times)
@@ -356,10 +351,10 @@ def _motion(task: Task, solved: SolvedScene) -> Motion | None:
         times=samples.times,
         numbers=samples.numbers,
         method=task.method.name,
-        status=solved.states.status,
+        status=solved.status,
         start=task.start,
         closing=task.closing,
-        work=task.start.work + solved.states.work,
+        work=task.start.work + solved.work,
         notes=_notes(task, solved, samples),
         solved=solved,
     )
@@ -372,7 +367,7 @@ def _notes(task: Task, solved: SolvedScene, samples: Samples) -> tuple[str, ...]
         *closed,
         *_unsolved_in_words(task),
         *task.scene.mechanism.doubts,
-        *solved.states.notes,
+        *solved.notes,
         *_missing_numbers(solved, samples),
     )
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import S, angle
-from pointcoord.effects.car_number import CarNumber
 from pointcoord.effects.corner import Corner, View
 from pointcoord.effects.effect import Doubt, Point, Quantity
 from pointcoord.errors import UnknownName
@@ -30,26 +29,30 @@ AXES = {"wheel_axis": "the wheel's spin axis", "steering_axis": "the steering ax
 
 
 @dataclass(frozen=True)
-class Angle(CarNumber):
-    """An angle of a line of the car, in a plane of the car's axes; rad.
+class Angle:
+    """An angle of a line of the car, in a plane of the car's axes; rad. See `car_number.CarNumber`.
 
     Attributes:
+        name, words, sign: see `car_number.Number`.
         line: the axis that the topology names so, from its first point to its second.
         sine, cosine: the directions along which the line has the angle's sine and cosine.
         steepest: degrees beyond which a drawing looks misdrawn.
         steepest_by_default: the same where the line starts at a point that only stands in for its own.
     """
 
+    name: str
+    words: str
+    sign: str
     line: Literal["wheel_axis", "steering_axis"]
     sine: Direction
     cosine: Direction
     steepest: float = 180.0
     steepest_by_default: float = 180.0
 
-    @property
-    def quantity(self) -> Quantity:
-        """An angle."""
-        return WHEEL
+    quantity: ClassVar[Quantity] = WHEEL
+    needs_radius: ClassVar[bool] = False
+    data: ClassVar[tuple[str, ...]] = ()
+    way: ClassVar[str] = ""
 
     @property
     def roles(self) -> tuple[str, ...]:
@@ -69,7 +72,7 @@ class Angle(CarNumber):
         start, end = ends
         return start, end
 
-    def of(self, corner: Corner[S]) -> S:
+    def formula(self, corner: Corner[S]) -> S:
         """atan2(line . sine, line . cosine)."""
         return angle(*self._parts(corner.seen))
 

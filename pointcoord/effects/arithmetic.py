@@ -70,6 +70,11 @@ def times(factor: S, vector: S) -> S:
     return np.asarray(factor[..., None] * vector)
 
 
+def multiple(factor: float, x: P) -> P:
+    """A constant times a number."""
+    return Enclosed.of(factor) * x if isinstance(x, Enclosed) else np.asarray(factor * x)
+
+
 def root(x: S) -> S:
     """Square root of what is not negative; (sqrt x)' = x' / (2 sqrt x)."""
     if isinstance(x, Dual):

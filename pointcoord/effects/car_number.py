@@ -1,22 +1,24 @@
 """Effects that are numbers of the car, each a formula of its points that is written once.
 
 The formula gives the value at places in floats, and where it exactly is at places that are enclosed; so its
-error bound needs no derivation of its own.
+error bound needs no derivation of its own. What is made of how the points move by one input, as the wheel
+travels or as the rack does, takes points as duals. Of the inputs that a scene drives, those that are the
+travel of a slide steer; the other one moves the wheel up and down. The other inputs and the chassis are held
+(see `linkage.slopes`).
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.arithmetic import S
 from pointcoord.effects.corner import Corner, View
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -27,99 +29,21 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 DIMENSION = Quantity("dimension", "dimension", "mm", "car")
+BY_TRAVEL, BY_RACK = "by_travel", "by_rack"
+# What a scene may say of the car, and how, for those who did not.
+SUCH_AS = {
+    "axle": '"front"',
+    "wheelbase": "2500.0",
+    "centre_of_gravity_height": "500.0",
+    "brake_share": "0.6",
+    "drive_share": "1.0",
+}
+LENGTHS = ("wheelbase", "centre_of_gravity_height")
+KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide"}
 
 
-class Formula(Protocol):
-    """A number of a corner, in whichever arithmetic its points are."""
-
-    def __call__(self, corner: Corner[S]) -> S:
-        """The number; lengths in the unit of the points."""
-        ...
-
-
-@dataclass(frozen=True)
-class CarNumber(ABC):
-    """A number of a car.
-
-    Attributes:
-        name: in results and files.
-        words: for people.
-        sign: where it is positive, in words; empty of what is never negative.
-    """
-
-    name: str
-    words: str
-    sign: str
-
-    @property
-    @abstractmethod
-    def quantity(self) -> Quantity:
-        """The kind of number that it is."""
-
-    @property
-    @abstractmethod
-    def roles(self) -> tuple[str, ...]:
-        """The roles of the mechanism whose points it is made of."""
-
-    @property
-    def needs_radius(self) -> bool:
-        """Whether it is made of the wheel's radius."""
-        return False
-
-    @abstractmethod
-    def of(self, corner: Corner[S]) -> S:
-        """The number; lengths in the unit of the points."""
-
-    def errors(self, corner: Corner[Enclosed], found: Array, unit: float) -> Array:
-        """Proven and expected error of a value that was found, (2, N).
-
-        Args:
-            unit: of the corner's lengths, a power of two, mm.
-        """
-        exact = self.of(corner)
-        return (exact.scaled(unit) if self.quantity.unit == "mm" else exact).errors(found)
-
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
-        """Why a drawing that has its roles does not have it, in words; empty if it does."""
-        return ""
-
-
-@dataclass(frozen=True)
-class Length(CarNumber):
-    """A length, mm.
-
-    Attributes:
-        formula: what it is.
-        made_of: the roles whose points it is made of.
-        with_contact: whether the contact point is one of them.
-    """
-
-    formula: Formula
-    made_of: tuple[str, ...] = ("wheel_axis",)
-    with_contact: bool = True
-
-    @property
-    def quantity(self) -> Quantity:
-        """A length."""
-        return DIMENSION
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        """As said."""
-        return self.made_of
-
-    @property
-    def needs_radius(self) -> bool:
-        """Where the contact point is needed."""
-        return self.with_contact
-
-    def of(self, corner: Corner[S]) -> S:
-        """The formula's."""
-        return self.formula(corner)
-
-
-class NumberOfTheCar(Protocol):
-    """What every number of a car says of itself, whatever it is made of; see `CarNumber`."""
+class CarNumber(Protocol):
+    """What every number of a car says of itself; see `Number`."""
 
     @property
     def name(self) -> str: ...
@@ -133,13 +57,83 @@ class NumberOfTheCar(Protocol):
     def roles(self) -> tuple[str, ...]: ...
     @property
     def needs_radius(self) -> bool: ...
+    @property
+    def data(self) -> tuple[str, ...]: ...
+    @property
+    def way(self) -> str: ...
+
+    def formula(self, corner: Corner[Any], /) -> Any:
+        """The number, in whichever arithmetic the points are; lengths in their unit."""
+        ...
+
+    def errors(self, corner: Corner[Any], found: Array, unit: float) -> Array:
+        """Proven and expected error of a value that was found, (2, N).
+
+        Args:
+            unit: of the corner's lengths, a power of two, mm.
+        """
+        ...
+
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+        """Why a drawing that has its roles does not have it, in words; empty if it does."""
+        ...
 
 
 @dataclass(frozen=True)
-class OfTheCar(Effect):
-    """Numbers of the car that are made of the points of some roles."""
+class Number:
+    """A number by its formula; a length unless it says something else.
 
-    numbers: tuple[NumberOfTheCar, ...]
+    Attributes:
+        name: in results and files. words: for people.
+        sign: where it is positive, in words; empty of what is never negative.
+        formula: what it is; lengths in the unit of the points.
+        roles: of the mechanism, whose points it is made of. needs_radius: whether of the wheel's radius too.
+        quantity: the kind of number that it is.
+        data: what it is made of beside, of what the scene says of the car.
+        way: along which it takes the points' derivatives; empty if it takes none.
+        power: of the unit of the points, mm, that it is multiplied by.
+    """
+
+    name: str
+    words: str
+    sign: str
+    formula: Callable[[Corner[Any]], Any]
+    roles: tuple[str, ...] = ("wheel_axis",)
+    needs_radius: bool = True
+    quantity: Quantity = DIMENSION
+    data: tuple[str, ...] = ()
+    way: str = ""
+    power: int = 1
+
+    def errors(self, corner: Corner[Any], found: Array, unit: float) -> Array:
+        """From where it exactly is."""
+        exact: Enclosed = self.formula(corner)
+        return exact.scaled(unit**self.power).errors(found)
+
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+        """None."""
+        return ""
+
+
+@dataclass(frozen=True)
+class CarNumbers(Effect):
+    """Some numbers of the car, of one quantity and along one way if any.
+
+    Attributes:
+        numbers: what they are.
+        base: the effect whose numbers' gradients they are; empty if they are none.
+        nowhere: where else than where the wheel does not travel there is no number, in words.
+    """
+
+    numbers: tuple[CarNumber, ...]
+    base: str = ""
+    nowhere: str = ""
+
+    @classmethod
+    def of(cls, name: str, gives: str, *numbers: CarNumber, base: str = "", nowhere: str = "") -> CarNumbers:
+        """The effect that gives some numbers."""
+        signs = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
+        return cls(name, gives, signs, 0, (numbers[0].quantity,), numbers, base, nowhere)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -151,64 +145,66 @@ class OfTheCar(Effect):
         """The axes that they are seen on."""
         return tuple(dict.fromkeys(role for number in self.numbers for role in number.roles))
 
+    @property
+    def way(self) -> str:
+        """That of the numbers."""
+        return self.numbers[0].way
+
+    @property
+    def no_number(self) -> str:
+        """Where nothing can be divided by."""
+        travels = "the wheel does not travel there" if self.way == BY_TRAVEL else ""
+        return " or ".join(filter(None, (travels, self.nowhere)))
+
     def needs(self, topology: Topology) -> Collection[str]:
         """The points of their roles."""
         return {point for role in self.lines for point in topology.role(role)}
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
-        """A role or the wheel's radius is missing."""
-        for role in self.lines:
-            if not topology.role(role):
-                return no_role(self.name, role, topology)
-        if wheel_radius is not None or not any(number.needs_radius for number in self.numbers):
-            return ""
-        return (
-            f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
-            f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
-        )
-
-
-def signs_of(numbers: Sequence[NumberOfTheCar]) -> str:
-    """Where each is positive, in words."""
-    return "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
-
-
-@dataclass(frozen=True)
-class CarNumbers(OfTheCar):
-    """Some numbers of the car.
-
-    Attributes:
-        numbers: what they are.
-    """
-
-    numbers: tuple[CarNumber, ...]
-
-    @classmethod
-    def of(cls, name: str, gives: str, *numbers: CarNumber) -> CarNumbers:
-        """The effect that gives some numbers of one quantity."""
-        return cls(
-            name, gives, signs_of(numbers), derivative=0, quantities=(numbers[0].quantity,), numbers=numbers
-        )
-
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Each number, (..., N)."""
-        corner = corner_of(poses)
-        (quantity,) = self.quantities
-        return {quantity.name: {number.name: number.of(corner) for number in self.numbers}}
+        corner: Corner[Any] = corner_of(poses)
+        if self.way:
+            corner = corner.moving(poses.slopes[self.way], np.zeros_like)
+        return {self.quantities[0].name: {number.name: number.formula(corner) for number in self.numbers}}
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Of each number by itself."""
-        corner, unit = enclosed_corner(poses), float(poses.mechanism.unit)
-        (quantity,) = self.quantities
-        found = numbers[quantity.name]
-        return {quantity.name: {n.name: n.errors(corner, found[n.name], unit) for n in self.numbers}}
+        corner: Corner[Any] = enclosed_corner(poses)
+        if self.way:
+            corner = corner.moving(poses.slopes[self.way], _no_slope)
+        unit, quantity = float(poses.mechanism.unit), self.quantities[0].name
+        found = numbers[quantity]
+        return {quantity: {n.name: n.errors(corner, found[n.name], unit) for n in self.numbers}}
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
-        problem = super().refusal(topology, drawn, wheel_radius)
-        problems = (number.refusal(topology, drawn) for number in self.numbers if not problem)
-        own = next((problem for problem in problems if problem), "")
-        return f"{own}, or leave {self.name!r} out" if own else problem
+        for role in self.lines:
+            if not topology.role(role):
+                return no_role(self.name, role, topology)
+        if axes.wheel_radius is None and any(number.needs_radius for number in self.numbers):
+            return (
+                f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
+                f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
+            )
+        data = dict.fromkeys(name for number in self.numbers for name in number.data)
+        if missing := [name for name in data if name not in axes.car]:
+            lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in missing)
+            return (
+                f"{self.name!r} needs of the car what the scene does not say: {', '.join(missing)}; give it "
+                f"under [mechanism.car], such as {lines}, or leave {self.name!r} out"
+            )
+        for number in self.numbers:
+            problem = number.refusal(topology, drawn)
+            if problem:
+                return f"{problem}, or leave {self.name!r} out"
+        driven = topology.driven_along(self.way) if self.way else ("",)
+        if len(driven) == 1:
+            return ""
+        return (
+            f"{self.name!r} needs exactly one driven input that {KINDS[self.way]}, and there is "
+            f"{', '.join(driven) or 'none'}; drive the mechanism by one, such as wheel travel and rack, or "
+            f"leave {self.name!r} out"
+        )
 
 
 def corner_of(poses: Poses) -> Corner[Array]:
@@ -221,7 +217,8 @@ def corner_of(poses: Poses) -> Corner[Array]:
         return View(mechanism.topology, points, axes.component, axes.up, axes.outboard, radius)
 
     drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
-    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), mechanism.origin)
+    car = {name: np.array(number) for name, number in axes.car.items()}
+    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), mechanism.origin, car)
 
 
 def _beside(place: Array, dimensions: int) -> Array:
@@ -242,4 +239,10 @@ def enclosed_corner(poses: EnclosedPoses) -> Corner[Enclosed]:
     vectors = mechanism.drawing.vectors
     drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
     origin = Enclosed.of(mechanism.origin / float(mechanism.unit))
-    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin)
+    unit = float(mechanism.unit)
+    car = {n: Enclosed.of(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
+    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin, car)
+
+
+def _no_slope(part: Enclosed) -> Enclosed:
+    return Enclosed.of(np.zeros_like(part.middle))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Generic
+from typing import Any, Generic
 
-from pointcoord.effects.arithmetic import S, dot, ratio, root, times
+from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root, times
 from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.topology import Topology
 
@@ -59,12 +59,14 @@ class Corner(Generic[S]):
         chassis: the same in the chassis' frame.
         drawn: the same as drawn.
         origin: from the user's origin to that of the points.
+        car: what the scene says of the whole car, by name; lengths in the unit of the points.
     """
 
     seen: View[S]
     chassis: View[S]
     drawn: View[S]
     origin: S
+    car: Mapping[str, S]
 
     def moved(self) -> S:
         """How far the contact point has gone from its drawn place."""
@@ -77,6 +79,33 @@ class Corner(Generic[S]):
     def risen(self) -> S:
         """How far the wheel centre has gone up in the chassis' frame."""
         return self.chassis.along(_moved(self.chassis, self.drawn), "up")
+
+    def moving(
+        self, slopes: tuple[Mapping[str, Any], Mapping[str, Any]], zero: Callable[[Any], Any]
+    ) -> Corner[Dual[Any]]:
+        """The same with derivatives of its points; directions, the drawing and the radius have none.
+
+        Args:
+            slopes: of the points seen and in the chassis' frame. zero: what has no derivative, as its slope.
+        """
+
+        def still(part: Any) -> Dual[Any]:
+            return Dual(part, zero(part))
+
+        def dual(view: View[Any], points: Mapping[str, Dual[Any]]) -> View[Dual[Any]]:
+            def along(vector: Dual[Any], direction: Direction) -> Dual[Any]:
+                return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
+
+            up, outboard, radius = (still(part) for part in (view.up, view.outboard, view.radius))
+            return View(view.topology, points, along, up, outboard, radius)
+
+        def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
+            return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
+
+        drawn = dual(self.drawn, {name: still(place) for name, place in self.drawn.points.items()})
+        car = {name: still(number) for name, number in self.car.items()}
+        seen, chassis = moved(self.seen, slopes[0]), moved(self.chassis, slopes[1])
+        return Corner(seen, chassis, drawn, still(self.origin), car)
 
 
 def _moved(view: View[S], drawn: View[S]) -> S:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pointcoord.effects.arithmetic import S, dot, root
-from pointcoord.effects.car_number import CarNumbers, Length
+from pointcoord.effects.car_number import CarNumbers, Number
 from pointcoord.effects.corner import Corner
 
 
@@ -16,5 +16,5 @@ def damper_length(corner: Corner[S]) -> S:
 DAMPER = CarNumbers.of(
     "damper",
     "length of the damper, mm",
-    Length("damper_length", "length of the damper", "", damper_length, ("damper",), with_contact=False),
+    Number("damper_length", "length of the damper", "", damper_length, ("damper",), needs_radius=False),
 )

@@ -145,7 +145,7 @@ class Effect(ABC):
             numbers: everything that was reported, its own among it.
         """
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """Why a drawing does not have it and what to do, in words; empty if it does."""
         return ""
 

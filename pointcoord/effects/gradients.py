@@ -13,9 +13,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from pointcoord.effects.along import BY_RACK, BY_TRAVEL, NumberAlong, NumbersAlong
 from pointcoord.effects.arithmetic import Dual, ratio
-from pointcoord.effects.car_number import CarNumber, CarNumbers
+from pointcoord.effects.car_number import BY_RACK, BY_TRAVEL, CarNumber, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.wheel_travel import TRAVEL
@@ -27,35 +26,31 @@ QUANTITIES = {
 }
 
 
-def gradients(base: CarNumbers, way: str) -> NumbersAlong:
+def gradients(base: CarNumbers, way: str) -> CarNumbers:
     """What the numbers of an effect change by along a way."""
+    gives = f"what these change by per mm {WAYS[way]}: {base.gives}"
     numbers = [_gradient(number, way) for number in base.numbers]
-    return NumbersAlong.of(
-        f"{base.name}_{way}",
-        f"what these change by per mm {WAYS[way]}: {base.gives}",
-        *numbers,
-        base=base.name,
-    )
+    return CarNumbers.of(f"{base.name}_{way}", gives, *numbers, base=base.name)
 
 
-def _gradient(number: CarNumber, way: str) -> NumberAlong:
+def _gradient(number: CarNumber, way: str) -> Number:
     length, travels = number.quantity.unit == "mm", way == BY_TRAVEL
-    return NumberAlong(
+    return Number(
         name=f"{number.name}_{way}",
         words=f"{number.words} per mm {way.replace('_', ' ')}",
         sign=f"where it grows {WAYS[way]}",
-        quantity=QUANTITIES[number.quantity.unit],
+        formula=partial(_by_travel if travels else _by_rack, number),
         roles=tuple(dict.fromkeys((*number.roles, *(TRAVEL.roles if travels else ())))),
         needs_radius=number.needs_radius,
+        quantity=QUANTITIES[number.quantity.unit],
         way=way,
-        formula=partial(_by_travel if travels else _by_rack, number),
         power=length - travels,
     )
 
 
 def _by_rack(number: CarNumber, corner: Corner[Dual[Any]]) -> Any:
-    return number.of(corner).slope
+    return number.formula(corner).slope
 
 
 def _by_travel(number: CarNumber, corner: Corner[Dual[Any]]) -> Any:
-    return ratio(number.of(corner).slope, TRAVEL.of(corner).slope)
+    return ratio(number.formula(corner).slope, TRAVEL.formula(corner).slope)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from pointcoord.effects import rigid
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed, both, cross, dot, quotient
 from pointcoord.numerics.rounding import EPS
@@ -102,7 +103,7 @@ class BodyRates(Effect):
         """The points of the bodies."""
         return {point for points in topology.bodies.values() for point in points}
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point], wheel_radius: float | None) -> str:
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """There is a body whose rates they are."""
         return "" if topology.bodies else no_role(self.name, "knuckle", topology)
 

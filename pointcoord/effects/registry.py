@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
-from pointcoord.effects.along import NumberAlong, NumbersAlong
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.anti_features import ANTI_FEATURES
 from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
 from pointcoord.effects.caster import CASTER
 from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
+from pointcoord.effects.instant_centres import INSTANT_CENTRES
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.position import POSITION
 from pointcoord.effects.roll_centre import ROLL_CENTRE
@@ -36,14 +37,16 @@ EFFECTS: Mapping[str, Effect] = {
         *_ANGLES_AND_DIMENSIONS,
         *(gradients(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),
         ROLL_CENTRE,
+        INSTANT_CENTRES,
+        ANTI_FEATURES,
     )
 }
 """What a scene may list, by name."""
 
-NUMBERS_OF_THE_CAR: Mapping[str, CarNumber | NumberAlong] = {
+NUMBERS_OF_THE_CAR: Mapping[str, CarNumber] = {
     number.name: number
     for effect in EFFECTS.values()
-    if isinstance(effect, CarNumbers | NumbersAlong)
+    if isinstance(effect, CarNumbers)
     for number in effect.numbers
 }
 """Numbers of a car, by their names."""
@@ -60,6 +63,10 @@ READ_FIRST = (
     "half_track_change",
     "recession",
     "roll_centre_height",
+    "front_view_swing_arm",
+    "side_view_swing_arm",
+    "anti_brake",
+    "anti_drive",
     "scrub_radius",
     "kingpin_offset",
     "mechanical_trail",

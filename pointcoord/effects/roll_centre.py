@@ -13,48 +13,29 @@ from __future__ import annotations
 
 from typing import Any
 
-from pointcoord.effects.along import BY_TRAVEL, NumberAlong, NumbersAlong
-from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, times
-from pointcoord.effects.car_number import DIMENSION
+from pointcoord.effects.arithmetic import Dual, ratio
+from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
+from pointcoord.effects.knuckle import component, contact_place, velocity_at
 
 
 def roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
     """Of the point in the middle plane above the contact point."""
-    view, centre = corner.seen, corner.seen.topology.wheel_centre
-    place = view.points[centre].value + view.contact().value
-    velocity = _velocity_of(corner, place)
-    out, up = (view.along(Dual(velocity, velocity), side).value for side in ("outboard", "up"))
-    far = view.along(Dual(corner.origin.value + place, velocity), "outboard").value
-    return far * ratio(out, up)
+    view, place = corner.seen, contact_place(corner)
+    velocity = velocity_at(corner, place)
+    far = component(view, corner.origin.value + place, "outboard")
+    return far * ratio(component(view, velocity, "outboard"), component(view, velocity, "up"))
 
 
-def _velocity_of(corner: Corner[Dual[Any]], place: Any) -> Any:
-    """How a place moves that is fixed in the knuckle: p_0' + a e1' + b e2' + c (e1 x e2)'."""
-    view = corner.seen
-    base, first, second = (view.points[name] for name in view.topology.role("knuckle")[:3])
-    e1, e2 = first - base, second - base
-    normal = cross(e1, e2)
-    arm, n = place - base.value, normal.value
-    square = dot(n, n)
-    a = ratio(dot(cross(arm, e2.value), n), square)
-    b = ratio(dot(cross(e1.value, arm), n), square)
-    c = ratio(dot(arm, n), square)
-    return base.slope + times(a, e1.slope) + times(b, e2.slope) + times(c, normal.slope)
-
-
-ROLL_CENTRE = NumbersAlong.of(
+ROLL_CENTRE = CarNumbers.of(
     "roll_centre",
     "height of the roll centre above the contact point, mm",
-    NumberAlong(
-        name="roll_centre_height",
-        words="roll centre height",
-        sign="above the contact point",
-        quantity=DIMENSION,
-        roles=("wheel_axis", "knuckle"),
-        needs_radius=True,
+    Number(
+        "roll_centre_height",
+        "roll centre height",
+        "above the contact point",
+        roll_centre_height,
+        ("wheel_axis", "knuckle"),
         way=BY_TRAVEL,
-        formula=roll_centre_height,
-        power=1,
     ),
 )

@@ -9,7 +9,7 @@ at the height of a place p at
 from __future__ import annotations
 
 from pointcoord.effects.arithmetic import S, cross, dot, ratio, root, times
-from pointcoord.effects.car_number import CarNumbers, Length
+from pointcoord.effects.car_number import CarNumbers, Number
 from pointcoord.effects.corner import Corner
 
 ROLES = ("steering_axis", "wheel_axis")
@@ -78,17 +78,17 @@ def hub_trail(corner: Corner[S]) -> S:
 STEERING_AXIS = CarNumbers.of(
     "steering_axis",
     "scrub radius, kingpin offsets, trails, mm",
-    Length("kingpin_offset", "kingpin offset at ground", "where the axis is inboard", kingpin_offset, ROLES),
-    Length("scrub_radius", "scrub radius", "", scrub_radius, ROLES),
-    Length("mechanical_trail", "mechanical trail", "where the axis is ahead", mechanical_trail, ROLES),
-    Length("castor_offset", "castor offset at ground", "where the axis is ahead", castor_offset, ROLES),
-    Length(
+    Number("kingpin_offset", "kingpin offset at ground", "where the axis is inboard", kingpin_offset, ROLES),
+    Number("scrub_radius", "scrub radius", "", scrub_radius, ROLES),
+    Number("mechanical_trail", "mechanical trail", "where the axis is ahead", mechanical_trail, ROLES),
+    Number("castor_offset", "castor offset at ground", "where the axis is ahead", castor_offset, ROLES),
+    Number(
         "kingpin_offset_at_wheel",
         "kingpin offset at the wheel centre",
         "where the axis is inboard",
         kingpin_offset_at_wheel,
         ROLES,
-        with_contact=False,
+        needs_radius=False,
     ),
-    Length("hub_trail", "hub trail", "where the axis is behind", hub_trail, ROLES, with_contact=False),
+    Number("hub_trail", "hub trail", "where the axis is behind", hub_trail, ROLES, needs_radius=False),
 )

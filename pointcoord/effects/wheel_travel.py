@@ -7,7 +7,7 @@ equal travel they leave some thousandths of a degree between the angles (Lotus d
 from __future__ import annotations
 
 from pointcoord.effects.arithmetic import S
-from pointcoord.effects.car_number import CarNumbers, Length
+from pointcoord.effects.car_number import CarNumbers, Number
 from pointcoord.effects.corner import Corner
 
 
@@ -31,14 +31,14 @@ def recession(corner: Corner[S]) -> S:
     return corner.seen.along(corner.moved(), "rearward")
 
 
-TRAVEL = Length("travel", "travel of the wheel centre", "up", travel, with_contact=False)
+TRAVEL = Number("travel", "travel of the wheel centre", "up", travel, needs_radius=False)
 WHEEL_TRAVEL = CarNumbers.of(
     "wheel_travel",
     "travel, half-track change and recession of the wheel, mm",
     TRAVEL,
-    Length("contact_travel", "travel of the contact point", "up", contact_travel),
-    Length("half_track_change", "half-track change", "where the contact point goes out", half_track_change),
-    Length(
+    Number("contact_travel", "travel of the contact point", "up", contact_travel),
+    Number("half_track_change", "half-track change", "where the contact point goes out", half_track_change),
+    Number(
         "recession",
         "recession",
         "where the contact point goes rearward, which at a rear axle makes the wheelbase longer",

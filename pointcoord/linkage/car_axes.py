@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -27,12 +27,15 @@ class CarAxes:
         up, right: as the car's axes are given; rearward is right x up.
         outboard: away from the car's middle, on the side of the wheel.
         wheel_radius: mm; None where the scene has none.
+        car: what the scene says of the whole car, by name: lengths in mm, shares, and of its axle -1 at the
+            front and +1 at the rear.
     """
 
     up: Array
     right: Array
     outboard: Array
     wheel_radius: float | None = None
+    car: Mapping[str, float] = field(default_factory=dict)
 
     def component(self, vector: Array, direction: Direction) -> Array:
         """Component of vectors (..., 3) along a direction, shape (...,)."""

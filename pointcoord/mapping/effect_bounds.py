@@ -56,11 +56,10 @@ class Evaluated:
     laws: Mapping[str, Sequence[Array]]
     numbers: Numbers
 
-    def bounds(self, effects: Sequence[Effect]) -> dict[str, dict[str, Array]]:
-        """Proven error of every number of some effects, of its shape; infinite where none is known."""
+    def bounds(self, effects: Sequence[Effect], shape: tuple[int, ...]) -> dict[str, dict[str, Array]]:
+        """Proven error of every number of some effects for poses of a shape; infinite where none is known."""
         found = {
-            quantity: {name: np.empty_like(array) for name, array in arrays.items()}
-            for quantity, arrays in self.numbers.items()
+            q: {n: np.empty_like(a) for n, a in part.items()} for q, part in self.numbers.items() if part
         }
         # With no pose at all there is one block, of none.
         for low in range(0, max(len(self.patch), 1), BLOCK):
@@ -72,7 +71,9 @@ class Evaluated:
             for quantity, bounds in proven.items():
                 for name, bound in bounds.items():
                     found[quantity][name][here] = bound
-        return found
+        return {
+            q: {n: a.reshape((*shape, *a.shape[1:])) for n, a in part.items()} for q, part in found.items()
+        }
 
     def _enclosed(self, here: slice) -> EnclosedPoses:
         """Where the points of some poses are."""

@@ -23,11 +23,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.effects.effect import Effect, Poses
-from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.effects.plan import Plan, plan_effects
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered
-from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.asked import (
@@ -51,7 +49,8 @@ from pointcoord.patches.lookup import Lookup, part_of
 from pointcoord.patches.patches import Patches, ProvenPatches
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.results.closing import closing
-from pointcoord.results.samples import Channel
+from pointcoord.results.readout import Readout
+from pointcoord.results.samples import Channel, Named
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import close_drawing
@@ -125,8 +124,8 @@ class Uncovered:
 
 
 @dataclass(frozen=True, repr=False)
-class MappedPoses:
-    """What a map gives at some inputs; every quantity is an attribute too, such as `position`.
+class MappedPoses(Named):
+    """What a map gives at some inputs.
 
     Attributes:
         numbers: by quantity and name, of points and bodies (..., 3), of the car (...), for inputs of shape
@@ -136,15 +135,6 @@ class MappedPoses:
 
     numbers: Mapping[str, Channel]
     bounds: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
-
-    def __getattr__(self, name: str) -> Channel:
-        numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
-        if name in numbers:
-            return numbers[name]
-        raise AttributeError(f"{type(self).__name__} has no {name!r}; its quantities: {', '.join(numbers)}")
-
-    def __repr__(self) -> str:
-        return f"<MappedPoses: {', '.join(c.quantity.words for c in self.numbers.values() if c.computed)}>"
 
 
 @dataclass(frozen=True, repr=False)
@@ -270,18 +260,25 @@ class KinematicMap:
         given = [state for state in (inputs, rates, accelerations) if state is not None]
         states, laws, shape = columns_of(self.domain, given)
         require_finite_rates(self.domain, states)
-        patch = self._patches_of(states[0])
-        moving = self._sums(states, patch)
-        axes = self.scene.mechanism.axes
-        numbers = self._read(moving, laws, axes)
-        found = {name: channel.with_arrays(_shaped(channel, shape)) for name, channel in numbers.items()}
+        readout, patch = self._readouts[len(states) - 1], self._patches_of(states[0])
+        rows, tables = readout.room(len(patch)), [self.series.coefficients] * len(states)
+        places = readout.places(rows)
+        # Positions alone are the first rows of the table.
+        out = [rows[: 3 * len(self.points)]] if len(states) == 1 else None
+        sums = self.series.sums(tables, states, patch, out)
+        for order, part in enumerate(sums if out is None else ()):
+            for i, name in enumerate(self.points):
+                places[order, name][...] = part[3 * i : 3 * i + 3]
+        moving = [part.copy() for part in sums] if bounds else sums
+        readout.complete(laws, readout.by_derivative(places), rows)
+        samples = readout.named(np.zeros(len(patch)), rows)
+        numbers = samples.shaped(shape).numbers
         if not bounds:
-            return MappedPoses(found)
+            return MappedPoses(numbers)
         evaluated = Evaluated(
-            self.series, axes, patch, states[1:], moving, self._motion, laws, numbers
-        ).bounds(self._effects[len(states) - 1])
-        proven = {name: _shaped(numbers[name].with_arrays(b), shape) for name, b in evaluated.items() if b}
-        return MappedPoses(found, proven)
+            self.series, readout.axes, patch, states[1:], moving, readout.chassis, laws, samples.numbers
+        )
+        return MappedPoses(numbers, evaluated.bounds(readout.plan.computed, shape))
 
     def evaluate(
         self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
@@ -318,7 +315,8 @@ class KinematicMap:
             return self._one([state.tolist() for state in states])
         batch = common_shape([state.shape[:-1] for state in states], "arrays")
         flat = [np.broadcast_to(state, (*batch, inputs)).reshape(-1, inputs) for state in states]
-        found = np.stack(self._sums(flat, self._patches_of(flat[0])))
+        coefficients = [self.series.coefficients] * len(states)
+        found = np.stack(self.series.sums(coefficients, flat, self._patches_of(flat[0])))
         return np.moveaxis(found.reshape(len(states), len(self.points), 3, *batch), (1, 2), (-2, -1))
 
     def __reduce__(self) -> tuple[object, tuple[bytes]]:
@@ -399,12 +397,8 @@ class KinematicMap:
         """Of one pose's inputs."""
         return (len(self.inputs),)
 
-    def _sums(self, states: Sequence[Array], patch: Whole) -> list[Array]:
-        """States of the points that move, by derivative, each (3 points, N), mm per s^d."""
-        return self.series.sums([self.series.coefficients] * len(states), states, patch)
-
     def _one(self, states: Sequence[list[float]]) -> Array:
-        """The same of one pose, (derivatives + 1, points, 3), in a tenth of the time."""
+        """The states of one pose, (derivatives + 1, points, 3), in a tenth of the time."""
         number = self._lookup.at_one(states[0])
         if number < 0:
             self._patches_of(np.array(states[:1]))  # says why there is none
@@ -425,53 +419,17 @@ class KinematicMap:
         return [None] * len(self.series.low)
 
     @cached_property
-    def _motion(self) -> ChassisMotion:
-        """How the chassis moves by what is given."""
-        return ChassisMotion.of(self.mechanism, {})
-
-    @cached_property
-    def _effects(self) -> tuple[tuple[Effect, ...], ...]:
-        """What is evaluated with values alone, with rates, and with accelerations."""
+    def _readouts(self) -> tuple[Readout, ...]:
+        """What is read with values alone, with rates, and with accelerations."""
         asked = plan_effects((*self.scene.effects, *POINT_STATES)).computed
-        return tuple(tuple(effect for effect in asked if effect.derivative <= d) for d in range(3))
-
-    def _read(
-        self, moving: Sequence[Array], laws: Mapping[str, Sequence[Array]], axes: CarAxes
-    ) -> dict[str, Channel]:
-        """Effects of states in the chassis' frame, which moves.
-
-        Args:
-            moving: states of the points that move, by derivative, each (3 points, N), mm per s^d.
-        """
-        mechanism, count = self.mechanism, moving[0].shape[-1]
-        topology, vectors = mechanism.topology, mechanism.drawing.vectors
-        places: Sequence[Mapping[str, Array]] = [
-            {
-                name: np.broadcast_to(vectors[name] * (float(mechanism.unit) * (d == 0)), (count, 3))
-                for name in topology.chassis
-            }
-            | {name: state[3 * i : 3 * i + 3].T for i, name in enumerate(self.points)}
-            for d, state in enumerate(moving)
-        ]
-        in_chassis, places = places[0], self._motion.turned_by(laws, places)
-        added: list[Array | None] = [*self._motion.shifts(laws)] or [None] * len(places)
-        if mechanism.origin.any():
-            added[0] = mechanism.origin if added[0] is None else mechanism.origin + added[0]
-        poses = Poses(mechanism, axes, places, in_chassis, added)
-        found: dict[str, dict[str, Array]] = {quantity: {} for quantity in QUANTITIES}
-        computed = self._effects[len(places) - 1]
-        for effect in computed:
-            for quantity, arrays in effect.evaluate(poses).items():
-                found[quantity] |= arrays
-        missing = [effect for effect in EFFECTS.values() if effect not in computed]
-        numbers = {}
-        for name, arrays in found.items():
-            left_out = {e.name: e.gives_numbers[name] for e in missing if name in e.gives_numbers}
-            numbers[name] = Channel(QUANTITIES[name], arrays, left_out)
-        return numbers
+        still, axes = ChassisMotion.of(self.mechanism, {}), self.scene.mechanism.axes
+        return tuple(
+            Readout(self.mechanism, Plan(tuple(e for e in asked if e.derivative <= d)), still, axes)
+            for d in range(3)
+        )
 
 
-POINT_STATES = tuple(n for n, e in EFFECTS.items() if all(q.of == "point" for q in e.quantities))
+POINT_STATES = tuple(name for name, effect in EFFECTS.items() if effect.reports_states)
 """Effects that a map gives wherever it is told the rates."""
 
 
@@ -557,12 +515,6 @@ def _hold_rows(patches: ProvenPatches) -> None:
 
 def _unpickled(data: bytes) -> KinematicMap:
     return KinematicMap(*unpacked(data, "pickle"))
-
-
-def _shaped(channel: Channel, shape: tuple[int, ...]) -> dict[str, Array]:
-    """Its arrays, of N poses, for poses of a shape of N numbers."""
-    vector = () if channel.quantity.of == "car" else (3,)
-    return {name: array.reshape((*shape, *vector)) for name, array in channel.items()}
 
 
 def _file(path: object) -> str:

@@ -30,8 +30,13 @@ BLOCK = 512
 
 
 def sum_series(
-    tables: Sequence[Array], boxes: tuple[Array, Array], order: int, patch: Whole, states: Sequence[Array]
-) -> list[Array]:
+    tables: Sequence[Array],
+    boxes: tuple[Array, Array],
+    order: int,
+    patch: Whole,
+    states: Sequence[Array],
+    out: Sequence[Array] | None = None,
+) -> Sequence[Array]:
     """Sum each pose's series, and its time derivatives; poses lie side by side in memory.
 
     Args:
@@ -39,10 +44,11 @@ def sum_series(
         boxes: middles and half widths of the patches, each (P, p).
         patch: which one each pose lies on, shape (N,).
         states: inputs and their time derivatives, each (N, p).
+        out: where the sums go; new arrays if not given.
     Returns:
         By derivative, each (m, N), per s^d.
     """
-    found = [np.empty((table.shape[-1], len(patch))) for table in tables]
+    found = [np.empty((table.shape[-1], len(patch))) for table in tables] if out is None else out
     # Memory that the system has to map takes longer than filling it does.
     room = np.empty((len(states) + 1, tables[0].shape[1], min(len(patch), BLOCK)))
     for number, members in _by_patch(patch, len(tables[0])):

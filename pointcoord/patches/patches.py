@@ -77,18 +77,23 @@ class Patches:
         return Lookup.of(self.domain, self.low, self.high)
 
     def sums(
-        self, tables: Sequence[Array], states: Sequence[Array], patch: Whole | None = None
-    ) -> list[Array]:
+        self,
+        tables: Sequence[Array],
+        states: Sequence[Array],
+        patch: Whole | None = None,
+        out: Sequence[Array] | None = None,
+    ) -> Sequence[Array]:
         """Series of the patches that poses lie on, summed, and their time derivatives.
 
         Args:
             tables: by derivative, coefficients of what is wanted of it, each (P, powers, m).
             states: inputs and their time derivatives, each (N, p). patch: of each pose, where it is known.
+            out: where the sums go; new arrays if not given.
         Returns:
             By derivative, each (m, N), per s^d.
         """
         number = self.lookup.at(states[0]) if patch is None else patch
-        return sum_series(tables, self.boxes, self.order, number, states)
+        return sum_series(tables, self.boxes, self.order, number, states, out)
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
@@ -38,8 +38,10 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyond
 from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
-from pointcoord.results.readout import BLOCK, Readout
-from pointcoord.results.states import StatesOfChain
+from pointcoord.results.readout import BLOCK
+from pointcoord.results.solved_scene import SolvedScene
+from pointcoord.solve.dense_output import derivative_tables
+from pointcoord.solve.taylor import Chain
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.intp]
@@ -219,11 +221,11 @@ class CloseInstants:
     """A way to fill a table where many instants lie close together.
 
     Attributes:
-        states: of one mechanism, as series.
+        solved: of one car, by a chain.
     """
 
-    readout: Readout
-    states: StatesOfChain
+    solved: SolvedScene
+    chain: Chain
 
     def fill(self, times: Array, rows: Array) -> list[Stretch]:
         """Fill the columns of a table where it pays.
@@ -242,8 +244,7 @@ class CloseInstants:
 
     def _fill(self, times: Array, rows: Array) -> list[Stretch]:
         whole = [(0, len(times))]
-        chain = self.states.chain
-        if len(times) < ENOUGH or not (times[0] >= self.states.start and times[-1] <= chain.stop):
+        if len(times) < ENOUGH or not (times[0] >= self.solved.start and times[-1] <= self.solved.stop):
             return whole
         cells = self._cells(times)
         if not len(cells):
@@ -258,7 +259,8 @@ class CloseInstants:
 
     def _cells(self, times: Array) -> _Cells:
         """As few cells as are short enough for every state."""
-        edges = self.states.series[0].edges(times)
+        starts, _ = self._segments
+        edges = [0, *np.searchsorted(times, starts[1:], side="left").tolist(), len(times)]
         lows = [
             np.arange(first, last, MOST) if last - first >= ENOUGH else np.zeros(0, dtype=np.intp)
             for first, last in pairwise(edges)
@@ -310,34 +312,40 @@ class CloseInstants:
 
     def _largest_of_a_kind(self, terms: Array) -> Array:
         """Of all rows that are the same derivative, in each row."""
-        largest = np.empty_like(terms)
-        for rows in self._kinds:
-            largest[rows] = terms[rows].max(axis=0, initial=0.0)
-        return largest
-
-    @cached_property
-    def _kinds(self) -> list[slice]:
-        """The rows of the solved states of each derivative."""
-        table = self.readout.table
-        return [table.states_of(derivative)[0] for derivative in table.reported]
+        ends = np.cumsum([0, *map(len, self._kinds)]).tolist()
+        largest = [terms[low:high].max(axis=0, keepdims=True, initial=0.0) for low, high in pairwise(ends)]
+        return np.concatenate(largest)[np.repeat(np.arange(len(largest)), np.diff(ends))]
 
     @cached_property
     def _segments(self) -> tuple[Array, Array]:
         """Start and scale of each segment, s."""
-        series = self.states.series[0]
-        return np.array(series.starts), np.array(series.scales)
+        starts, scales = zip(*((s.start, s.scale) for s in self.chain.segments), strict=True)
+        return np.array(starts), np.array(scales)
+
+    @cached_property
+    def _kinds(self) -> list[list[int]]:
+        """By derivative the coordinates whose series are summed."""
+        layout, kinds = self.solved.readout.mechanism.layout, dict[int, list[int]]()
+        for order, name in self.solved.solved_states:
+            kinds.setdefault(order, []).extend(layout.vector(name))
+        return [kinds.get(order, []) for order in range(max(kinds, default=-1) + 1)]
 
     @cached_property
     def _sizes(self) -> tuple[Array, ...]:
-        """The magnitudes of each segment's coefficients."""
-        return tuple(np.abs(table) for table in self.states.series[0].tables)
+        """The magnitudes of each segment's coefficients, (rows, order + 1), a row for each sum."""
+        found = []
+        for segment in self.chain.segments:
+            tables = derivative_tables(segment.coefficients, segment.scale, len(self._kinds) - 1)
+            rows = [table[:, places] for table, places in zip(tables, self._kinds, strict=True)]
+            found.append(np.ascontiguousarray(np.abs(np.concatenate(rows, axis=-1)).T))
+        return tuple(found)
 
     def _fill_cells(self, cells: _Cells, times: Array, rows: Array) -> _Cells:
         """Fill the columns of those cells in which computed numbers are polynomials too, and give these."""
-        table, still, added = self.readout.table, self.readout.table.first_still, self._added
+        table, still, added = self.solved.readout.table, self.solved.readout.table.first_still, self._added
         coefficients, good = self._coefficients(cells, times)
         cells, coefficients = cells.chosen(good), coefficients[good]
-        laws = _Laws.of(self.readout.chassis, table.reported, cells, times)
+        laws = _Laws.of(self.solved.readout.chassis, table.reported, cells, times)
         terms = {row: np.flatnonzero(added[row, :-1]).tolist() for row in range(still, table.height)}
         stands = [row for row, own in terms.items() if not own]
         carried = [(row, own[0], own[1:]) for row, own in terms.items() if own]
@@ -380,39 +388,39 @@ class CloseInstants:
         points, moved = cells.points(times)
         values = self._at_points(points.ravel()).reshape(-1, *points.shape)
         found = interpolation(DEGREE).chebyshev(values, moved)
-        good = np.ones(len(cells), dtype=bool)
-        for part, size in self._computed:
-            largest = np.maximum(np.abs(values[part]).max(axis=(0, -1)), size)
-            good &= np.abs(found[part][..., DEGREE // 2 + 1 :]).max(axis=(0, -1)) <= HALFWAY * largest
+        first, least = self._computed
+        largest, last = (
+            np.maximum.reduceat(np.abs(each).max(axis=-1), first)
+            for each in (values, found[..., DEGREE // 2 + 1 :])
+        )
+        good = np.asarray((last <= HALFWAY * np.maximum(largest, least[:, None])).all(axis=0))
         return _of_powers(found), good
 
     def _at_points(self, points: Array) -> Array:
         """The rows that are solved for or computed, by the plain formulas, without what reporting adds."""
-        readout = self.readout
+        readout = self.solved.readout
         values = np.empty((readout.table.height, len(points)))
         for low in range(0, len(points), BLOCK):
             here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
-            states = self.states.states(here, block)
-            slopes = readout.slopes(here, partial(self._coordinates, here))
-            readout.compute(states, states[0], readout.added(here), block, slopes)
+            states, laws = self.solved.states(here, block), readout.laws(here)
+            slopes = readout.slopes(laws, self.solved.coordinates(here, 0)[0]) if readout.plan.ways else {}
+            readout.compute(states, states[0], readout.added(laws), block, slopes)
         return values[: readout.table.first_still]
 
-    def _coordinates(self, instants: Array) -> Array:
-        return self.states.coordinates(instants, 0)[0]
-
     @cached_property
-    def _computed(self) -> list[tuple[slice, float]]:
-        """The rows of each number that is computed of states, and a size below which it is small.
+    def _computed(self) -> tuple[Whole, Array]:
+        """The first row of each number, and a size below which it is small: of those that are solved for any.
 
         A vector is large or small as a whole, and an angle by the side of a radian.
         """
-        table = self.readout.table
-        return [
-            (table.places[quantity.name][name], 1.0 if quantity.unit == "rad" else 0.0)
-            for effect in table.computed
-            for quantity in effect.quantities
-            for name in table.places[quantity.name]
-        ]
+        table, carried = self.solved.readout.table, self.solved.readout.mechanism.topology.carried
+        found = {3 * i: 0.0 if name in carried else np.inf for i, (_, name) in enumerate(table.moving)}
+        for effect in table.computed:
+            for quantity in effect.quantities:
+                size = 1.0 if quantity.unit == "rad" else 0.0
+                found |= {place.start: size for place in table.places[quantity.name].values()}
+        first = sorted(found)
+        return np.array(first, dtype=np.intp), np.array([found[row] for row in first])
 
     @cached_property
     def _added(self) -> Array:
@@ -420,10 +428,12 @@ class CloseInstants:
 
         Shape (height, laws x derivatives + 1); zero in the rows that are computed.
         """
-        readout, table = self.readout, self.readout.table
+        readout, table = self.solved.readout, self.solved.readout.table
         count = len(table.reported)
         added = np.zeros((table.height, len(readout.chassis.functions) * count + 1))
-        added[table.first_still :, -1:] = self.states.still
+        for first, (derivative, name) in table.states:
+            if first >= table.first_still and derivative == 0:
+                added[first : first + 3, -1] = readout.mechanism.drawn_places[name]
         for place, derivative in enumerate(table.reported):
             for part in table.states_of(derivative):
                 points = added[part].reshape(-1, 3, added.shape[-1])

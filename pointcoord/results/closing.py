@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import hypot
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.rounding import EPS
 from pointcoord.numerics.vectors import lengths
+from pointcoord.results.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ ALLOWED = 0.01  # of the car's size: more than that is another car
 
 
 @dataclass(frozen=True)
-class Closing:
+class Closing(ReadOnly):
     """What closing a drawing moves.
 
     Attributes:
@@ -39,14 +39,6 @@ class Closing:
     movements: Mapping[str, float]
     misses: Mapping[str, float]
     size: float
-
-    def __post_init__(self) -> None:
-        for name in ("movements", "misses"):
-            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
-
-    def __reduce__(self) -> tuple[type[Closing], tuple[dict[str, float], dict[str, float], float]]:
-        # A read-only view of a dictionary does not pickle.
-        return type(self), (dict(self.movements), dict(self.misses), self.size)
 
     @property
     def point(self) -> str:

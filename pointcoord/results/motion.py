@@ -159,7 +159,7 @@ class Motion(Samples):
         return data_frame(self, library)
 
     def _require_dense(self) -> None:
-        if not self.solved.states.dense:
+        if not self.solved.dense:
             raise NotComputed(
                 f"a motion between its instants, by the method {self.method!r},",
                 "",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,10 +17,12 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import input_slopes, point_slopes
 from pointcoord.results.samples import Channel, Samples
-from pointcoord.results.table import Table, triples, vectors
+from pointcoord.results.table import State, Table, triples, vectors
 
 Array = NDArray[np.float64]
 Slopes = Mapping[str, tuple[Mapping[str, Array], Mapping[str, Array]]]
+Laws = Mapping[str, Sequence[Array]]
+"""Of inputs that move the chassis the values and their time derivatives, each (N,), mm or rad."""
 States = Sequence[Mapping[str, Array]]
 """For each time derivative, the points' states of shape (..., N, 3), mm, in the chassis' frame, from the
 mechanism's origin."""
@@ -31,7 +33,7 @@ BLOCK = 4096
 
 @dataclass(frozen=True)
 class Readout:
-    """How states become results.
+    """How states become results: of a motion, of many designs, or of a map.
 
     Attributes:
         plan: the effects to compute.
@@ -49,55 +51,96 @@ class Readout:
         """Highest time derivative that is evaluated of each point that is reported or needed."""
         return self.plan.derivatives(self.mechanism.topology)
 
-    @property
-    def reported_derivative(self) -> int:
-        """Highest time derivative that is reported of points; 0 where none is."""
-        return max(self.table.reported, default=0)
-
     @cached_property
     def table(self) -> Table:
-        """Where the numbers of a motion are, side by side."""
+        """Where the numbers are, side by side."""
         return Table.of(self.plan, self.mechanism.topology, self.derivatives)
 
+    def room(self, count: int) -> Array:
+        """Room for a table at so many instants, (..., height, N)."""
+        return np.empty((*self.mechanism.drawn.shape[:-1], self.table.height, count))
+
+    def laws(self, times: Array) -> Laws:
+        """What moves the chassis at instants.
+
+        Raises:
+            InputOutOfRange: a value, a rate or an acceleration that is too large to be added to anything.
+        """
+        chassis, reported = self.chassis, max(self.table.reported, default=0)
+        return {
+            name: list(
+                chassis.law(name, times, self.plan.derivative if name in chassis.centres else reported)
+            )
+            for name in chassis.functions
+        }
+
+    def places(self, rows: Array) -> dict[State, Array]:
+        """Where in a table each state belongs, (..., 3, N); those that are only needed are beside it.
+
+        Those of the chassis' points, which stand in its frame, are filled in.
+        """
+        table, drawn = self.table, self.mechanism.drawn_places
+        found = {state: rows[..., first : first + 3, :] for first, state in table.states}
+        spare = (*table.spare, *table.spare_still)
+        beside = np.empty((*rows.shape[:-2], 3 * len(spare), rows.shape[-1]))
+        found |= {state: beside[..., 3 * i : 3 * i + 3, :] for i, state in enumerate(spare)}
+        for order, name in (*table.still, *table.spare_still):
+            found[order, name][...] = drawn[name][..., None] if order == 0 else 0.0
+        return found
+
+    def by_derivative(self, places: Mapping[State, Array]) -> list[dict[str, Array]]:
+        """The same as states, which are views."""
+        states: list[dict[str, Array]] = [{} for _ in range(self.plan.derivative + 1)]
+        for (order, name), place in places.items():
+            states[order][name] = place.swapaxes(-1, -2)
+        return states
+
     def samples(self, times: Array, states: States) -> Samples:
-        """Compute the effects of the plan from states, and name the numbers."""
-        batch = np.broadcast_shapes(*(state.shape[:-2] for each in states for state in each.values()))
-        rows = np.empty((*batch, self.table.height, len(times)))
-        for low in range(0, len(times), BLOCK):
-            block = rows[..., low : low + BLOCK]
-            here = [{name: each[..., low : low + BLOCK, :] for name, each in s.items()} for s in states]
-            for first, (derivative, point) in self.table.states:
-                vectors(block, first)[...] = here[derivative][point]
-            self.complete(times[low : low + BLOCK], here, block)
+        """What the plan asks for, of states from elsewhere."""
+        rows = self.room(len(times))
+        for (order, name), place in self.places(rows).items():
+            place[...] = states[order][name].swapaxes(-1, -2)
+        self.complete(self.laws(times), states, rows)
         return self.named(times, rows)
 
     def named(self, times: Array, rows: Array) -> Samples:
         """The numbers of a whole table, by name."""
         found = self.table.numbers(rows)
         numbers = {
-            name: Channel(quantity, found.get(name, {}), self._left_out(name), self._unreported(name))
+            name: Channel(quantity, found.get(name, {}), *self._missing[name])
             for name, quantity in QUANTITIES.items()
         }
         return Samples(times.copy(), numbers)
 
-    def complete(
-        self, times: Array, states: States, rows: Array, coordinates: Callable[[], Array] | None = None
-    ) -> None:
+    @cached_property
+    def _missing(self) -> dict[str, tuple[dict[str, tuple[str, ...] | None], tuple[str, ...]]]:
+        """By quantity the effects that would give more of it, and points that are not reported."""
+        plan, others = self.plan, [EFFECTS[name] for name in self.plan.left_out]
+        reported = {q.name for e in plan.computed if e.reports_states for q in e.quantities}
+        return {
+            name: (
+                {e.name: e.names for e in others if any(q.name == name for q in e.quantities)},
+                plan.unreported if name in reported else (),
+            )
+            for name in QUANTITIES
+        }
+
+    def complete(self, laws: Laws, states: States, rows: Array, y: Array | None = None) -> None:
         """Compute the numbers that are made of states, and add to those what reporting adds.
 
         Args:
-            coordinates: y, (N, size), for derivatives by an input; asked for where an effect takes one.
-            rows: a table or some columns of one, shape (..., height, N), with the states in their places.
+            states: those that are reported have their places in the table too, and may be views of it.
+            rows: a table or some columns of one, shape (..., height, N).
+            y: the coordinates, (N, size), where an effect takes derivatives by an input.
         """
-        in_chassis = states[0]
-        slopes = {} if coordinates is None else self.slopes(times, coordinates)
-        if self.chassis.turns:
+        in_chassis, slopes = states[0], {} if y is None else self.slopes(laws, y)
+        if not self.chassis.centres.keys().isdisjoint(laws):
             # The states may be views of the table, which those of the turned car are written into.
             in_chassis = {name: place.copy() for name, place in states[0].items()}
-            states = self.chassis.turned(times, states)
+            states = self.chassis.turned_by(laws, states)
             for first, (derivative, point) in self.table.states:
                 vectors(rows, first)[...] = states[derivative][point]
-        added = self.added(times)
+        added = self.added(laws)
         self.compute(states, in_chassis, added, rows, slopes)
         for derivative in self.table.reported:
             more = added[derivative]
@@ -105,13 +148,6 @@ class Readout:
                 for part in self.table.states_of(derivative):
                     places = triples(rows, part)
                     places += more.swapaxes(-1, -2)[..., None, :, :]
-
-    def _unreported(self, quantity: str) -> tuple[str, ...]:
-        """The points whose states of a quantity the scene leaves out."""
-        computed = any(
-            q.name == quantity for e in self.plan.computed if e.reports_states for q in e.quantities
-        )
-        return self.plan.unreported if computed else ()
 
     def compute(
         self,
@@ -125,8 +161,7 @@ class Readout:
 
         Args:
             in_chassis: positions before the turns of the chassis.
-            slopes: as `slopes` gives them.
-            added: what reporting adds to these.
+            slopes: as `slopes` gives them. added: what reporting adds to these.
             rows: as of `complete`.
         """
         if self.table.computed:
@@ -136,16 +171,10 @@ class Readout:
                     for name, array in arrays.items():
                         self.table.put(rows, quantity, name, array)
 
-    def slopes(self, times: Array, coordinates: Callable[[], Array]) -> Slopes:
+    def slopes(self, laws: Laws, y: Array) -> Slopes:
         """By way, the derivatives of positions by its input, after the turns of the chassis and before."""
-        if not self.plan.ways:
-            return {}
-        if not len(times):
-            nowhere = dict.fromkeys(self.mechanism.topology.points, np.zeros((0, 3)))
-            return dict.fromkeys(self.plan.ways, (nowhere, nowhere))
-        y, found = coordinates(), {}
-        laws = {name: self.chassis.law(name, times, 0)[0] for name in self.chassis.turning}
-        held = {name: [law, np.zeros_like(law)] for name, law in laws.items()}
+        found = {}
+        held = {name: [law[0], np.zeros_like(law[0])] for name, law in laws.items()}
         places = {name: place * self.mechanism.unit for name, place in self.mechanism.places(y).items()}
         for way in self.plan.ways:
             (name, *_) = (*self.mechanism.topology.driven_along(way), "")
@@ -153,21 +182,12 @@ class Readout:
             found[way] = self.chassis.turned_by(held, [places, slopes])[1], slopes
         return found
 
-    def added(self, times: Array) -> tuple[Array | None, ...]:
+    def added(self, laws: Laws) -> list[Array | None]:
         """By time derivative, what reporting adds to every point; None where that is zero."""
-        shifts = self.chassis.states(times, self.reported_derivative)
-        rest: list[Array | None] = [*shifts[1:]] or [None] * self.plan.derivative
-        return self._offset(shifts), *rest
-
-    def _left_out(self, quantity: str) -> dict[str, tuple[str, ...] | None]:
-        """The effects that would give more of a quantity, and what each gives of it."""
-        others = (EFFECTS[name] for name in self.plan.left_out)
-        return {
-            other.name: other.gives_numbers[quantity] for other in others if quantity in other.gives_numbers
-        }
-
-    def _offset(self, shifts: Sequence[Array]) -> Array | None:
+        found: list[Array | None] = [*self.chassis.shifts(laws)] or [None] * (self.plan.derivative + 1)
         origin = self.mechanism.origin[..., None, :]
-        if not shifts:
-            return origin if origin.any() else None
-        return np.asarray(origin + shifts[0])
+        if found[0] is not None:
+            found[0] = origin + found[0]
+        elif origin.any():
+            found[0] = origin
+        return found

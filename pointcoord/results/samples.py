@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
-from types import MappingProxyType
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Quantity
 from pointcoord.errors import NotComputed, UnknownName
+from pointcoord.results.read_only import ReadOnly
 
 Array = NDArray[np.float64]
 
@@ -79,22 +79,10 @@ class Channel(Mapping[str, Array]):
         return type(self), (self.quantity, self._arrays, self.left_out, self.unreported)
 
 
-@dataclass(frozen=True, repr=False)
-class Samples:
-    """What a scene asked for, at some instants; every quantity is an attribute too, such as `position`.
+class Named(ReadOnly):
+    """Numbers by quantity and name; every quantity is an attribute too, such as `position`."""
 
-    Attributes:
-        times: shape (N,), s.
-        numbers: by quantity and name, of points and bodies (N, 3), of the car (N,); see
-            `effects.registry.QUANTITIES` for what there is and its units.
-    """
-
-    times: Array
     numbers: Mapping[str, Channel]
-
-    def __post_init__(self) -> None:
-        self.times.setflags(write=False)
-        object.__setattr__(self, "numbers", MappingProxyType(dict(self.numbers)))
 
     def __getattr__(self, name: str) -> Channel:
         numbers: Mapping[str, Channel] = self.__dict__.get("numbers", {})
@@ -105,10 +93,26 @@ class Samples:
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *self.numbers})
 
-    def __reduce__(self) -> tuple[type[Samples], tuple[object, ...]]:
-        # A read-only view of a dictionary does not pickle.
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
-        return type(self), tuple((values | {"numbers": dict(self.numbers)}).values())
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self._quantities}>"
+
+    @property
+    def _quantities(self) -> str:
+        return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
+
+
+@dataclass(frozen=True, repr=False)
+class Samples(Named):
+    """What a scene asked for, at some instants.
+
+    Attributes:
+        times: shape (N,), s.
+        numbers: by quantity and name, of points and bodies (N, 3), of the car (N,); see
+            `effects.registry.QUANTITIES` for what there is and its units.
+    """
+
+    times: Array
+    numbers: Mapping[str, Channel]
 
     def __repr__(self) -> str:
         return f"<Samples: {self._span}; {self._quantities}>"
@@ -121,10 +125,6 @@ class Samples:
             return f"at {self.times:.6g} s"
         count = "1 instant" if self.times.size == 1 else f"{self.times.size} instants"
         return f"{count} from {self.times.min():.6g} to {self.times.max():.6g} s"
-
-    @property
-    def _quantities(self) -> str:
-        return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
 
     def shaped(self, shape: tuple[int, ...]) -> Samples:
         """The same samples with instants of another shape."""

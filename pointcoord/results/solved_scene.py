@@ -1,45 +1,169 @@
-"""A scene whose linkage is solved: read at instants, and proven."""
+r"""A scene whose linkage is solved, in whichever way: read at instants, and proven.
+
+Of the points that are solved for, each way knows the states. What rides on a body is put together of these,
+
+    p = p_0 + a e1 + b e2 + c e1 x e2,
+    p'' = p_0'' + a e1'' + b e2'' + c (e1'' x e2 + 2 e1' x e2' + e1 x e2'').
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from math import comb
+from types import EllipsisType
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.errors import OutsideMotion
+from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.freedoms import held_rows
-from pointcoord.results.cells import CloseInstants
+from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import BLOCK, Readout
 from pointcoord.results.samples import Samples
-from pointcoord.results.states import SolvedStates, StatesOfChain
+from pointcoord.results.table import State
+from pointcoord.solve.status import Status
 from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
-    from pointcoord.bounds.proof import Proof, Reported
+    from pointcoord.bounds.proof import Proof
 
 Array = NDArray[np.float64]
+Places = Mapping[State, Array]
 
-# Instants in any order are sorted this many at a time, which takes 24 MB.
-SORTED = 2**20
-# Of those, how many are computed before they are put where they belong: 13 MB of them.
+# Of instants in any order, how many are computed before they are put where they belong: 13 MB of them.
 ORDERED = 2**14
+# Designs whose carried points are made at a time: at a hundred instants what lies between stays in a
+# second-level cache.
+CARRIED = 32
 
 
 @dataclass(frozen=True)
-class SolvedScene:
+class SolvedScene(ABC):
     """What a motion is read from.
 
     Attributes:
         functions: the laws of the inputs that drive the linkage.
-        states: of its points, and its coordinates, as they were solved for.
+        notes: where it was not solved as the scene asks.
     """
 
     readout: Readout
     functions: Mapping[str, TimeFunction]
-    states: SolvedStates
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
+
+    dense: ClassVar[bool] = True
+    """Whether it is known between the scene's instants too."""
+
+    @property
+    @abstractmethod
+    def status(self) -> Status:
+        """Whether it covers all that was asked for, and if not, what stopped the solver."""
+
+    @property
+    @abstractmethod
+    def solving(self) -> Work:
+        """What solving took."""
+
+    @property
+    @abstractmethod
+    def orders(self) -> tuple[int, ...]:
+        """Of every series that it is summed from."""
+
+    @property
+    @abstractmethod
+    def stop(self) -> float:
+        """Up to when it is known, s; minus infinity where it is not at all."""
+
+    @property
+    @abstractmethod
+    def start(self) -> float:
+        """From when on, s."""
+
+    @abstractmethod
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """y and its derivatives up to one, or as many as were solved for, each (N, size), units per s^d.
+
+        Args:
+            instants: shape (N,), s; they do not decrease.
+        """
+
+    @abstractmethod
+    def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
+        """Put the states of points that are solved for into their places, each (..., 3, N), mm per s^d.
+
+        Args:
+            places: in the order of `solved_states`.
+            rows: a table; the places of those that are reported are its first rows.
+        """
+
+    def summed(self, instants: Array) -> Sequence[Summed]:
+        """How `coordinates` sums each derivative; empty if they were solved for at the instants."""
+        return ()
+
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Number of the series that each instant is summed from, (N,); of those that were solved for any."""
+        return np.zeros(len(instants), dtype=np.intp)
+
+    def unsolved(self, instants: Array) -> Array:
+        """How far each pose was left because no more was asked, proven, in units, (N,)."""
+        return np.zeros(len(instants))
+
+    @property
+    def work(self) -> Work:
+        """What solving took, and what reading takes of each instant."""
+        table = self.readout.table
+        return self.solving + Work(
+            derivatives_evaluated=self.readout.plan.derivative + 1,
+            coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
+        )
+
+    def fill_moving(self, instants: Array, places: Places, rows: Array) -> None:
+        """Put the states of all points that move into their places."""
+        mechanism, solved = self.readout.mechanism, self.solved_states
+        carried = [state for state in places if state[1] in mechanism.topology.carried]
+        spare = [state for state in solved if state not in places]
+        room = np.empty((*mechanism.drawn.shape[:-1], 3 * len(spare), len(instants)))
+        whole = {**places} | {state: room[..., 3 * i : 3 * i + 3, :] for i, state in enumerate(spare)}
+        self.fill_solved(instants, {state: whole[state] for state in solved}, rows)
+        designs = len(mechanism.drawn) if mechanism.drawn.ndim > 1 else 0
+        parts: list[slice | EllipsisType] = [slice(low, low + CARRIED) for low in range(0, designs, CARRIED)]
+        for part in parts or [...]:
+            _carry(mechanism, part, carried, {state: place[part] for state, place in whole.items()})
+
+    @cached_property
+    def solved_states(self) -> list[State]:
+        """The states of points that are solved for which are reported, and then those that others need."""
+        table, carried = self.readout.table, self.readout.mechanism.topology.carried
+        wanted = (*table.moving, *table.spare)
+        reported = [state for state in table.moving if state[1] not in carried]
+        needed = [state for state in table.spare if state[1] not in carried]
+        for order, name in (state for state in wanted if state[1] in carried):
+            needed += [(d, carrier) for carrier in carried[name] for d in range(order + 1)]
+        return list(dict.fromkeys((*reported, *sorted(needed))))
+
+    def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
+        """By time derivative, the states of the points that the plan asks for (see `readout.States`).
+
+        Args:
+            instants: shape (N,), s; they do not decrease.
+            rows: a table of results or some columns of one, shape (..., height, N). The states that are
+                reported are put into their places, and those that are returned may be views of them.
+        Raises:
+            OutsideMotion: an instant that is not covered, or not a number.
+        """
+        outside = ~((instants >= self.start) & (instants <= self.stop))
+        if outside.any():
+            raise OutsideMotion(float(instants[outside][0]), self.start, self.stop)
+        if rows is None:
+            rows = self.readout.room(len(instants))
+        places = self.readout.places(rows)
+        self.fill_moving(instants, places, rows)
+        return self.readout.by_derivative(places)
 
     def samples(self, times: Array, out: Array | None = None) -> Samples:
         """What the scene asks for at instants of shape (N,), in any order.
@@ -51,53 +175,28 @@ class SolvedScene:
             MechanismError: a row that was left out, as it followed from others at the drawing, is violated.
         """
         readout = self.readout
-        rows = (
-            np.empty((*readout.mechanism.drawn.shape[:-1], readout.table.height, len(times)))
-            if out is None
-            else out
-        )
-        for low in range(0, len(times), SORTED):
-            self._fill(times[low : low + SORTED], rows[..., low : low + SORTED])
+        rows = readout.room(len(times)) if out is None else out
+        if (times[1:] >= times[:-1]).all():
+            self.fill(times, rows)
+        else:
+            order = np.argsort(times, kind="stable")
+            for low in range(0, len(times), ORDERED):
+                places = order[low : low + ORDERED]
+                block = readout.room(len(places))
+                self.fill(times[places], block)
+                rows[..., places] = block
         samples = readout.named(times, rows)
         if readout.mechanism.topology.left_out:
             off = self.proof(samples).pose_bound / readout.mechanism.unit
-            held_rows(readout.mechanism, self.states.coordinates(samples.times, 0)[0], off)
+            held_rows(readout.mechanism, self.coordinates(samples.times, 0)[0], off)
         return samples
 
-    def _fill(self, times: Array, rows: Array) -> None:
-        if (times[1:] >= times[:-1]).all():
-            self._fill_ordered(times, rows)
-            return
-        order = np.argsort(times, kind="stable")
-        room = np.empty((*rows.shape[:-1], min(ORDERED, len(times))))
-        for low in range(0, len(times), ORDERED):
-            places = order[low : low + ORDERED]
-            block = room[..., : len(places)]
-            self._fill_ordered(times[places], block)
-            rows[..., places] = block
-
-    def _fill_ordered(self, times: Array, rows: Array) -> None:
-        stretches = [(0, len(times))] if self._close is None else self._close.fill(times, rows)
-        for first, last in stretches:
-            for low in range(first, last, BLOCK):
-                here = slice(low, min(low + BLOCK, last))
-                self._fill_block(times[here], rows[..., here])
-
-    @cached_property
-    def _close(self) -> CloseInstants | None:
-        """What fills a table where instants lie close together; none of a batch, or of single poses, or of a
-        car that turns, whose states are no sums of series and laws.
-        """
-        single = self.readout.mechanism.drawn.ndim == 1 and not self.readout.chassis.turns
-        if isinstance(self.states, StatesOfChain) and single:
-            return CloseInstants(self.readout, self.states)
-        return None
-
-    def _fill_block(self, times: Array, rows: Array) -> None:
-        def coordinates() -> Array:
-            return self.states.coordinates(times, 0)[0]
-
-        self.readout.complete(times, self.states.states(times, rows), rows, coordinates)
+    def fill(self, times: Array, rows: Array) -> None:
+        """Fill a table at instants that do not decrease."""
+        for low in range(0, len(times), BLOCK):
+            here, block = times[low : low + BLOCK], rows[..., low : low + BLOCK]
+            y = self.coordinates(here, 0)[0] if self.readout.plan.ways else None
+            self.readout.complete(self.readout.laws(here), self.states(here, block), block, y)
 
     def doubts(self, times: Array) -> dict[str, Array]:
         """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
@@ -111,21 +210,60 @@ class SolvedScene:
             certain: as if the laws' values were exact as they are computed.
         """
         # What proves is imported where it is asked for, as most motions are read only.
-        from pointcoord.bounds.proof import prove
-
-        reported = self._reported(samples)
-        return prove(self.readout.mechanism, samples.times, reported, rates=rates, certain=certain)
-
-    def _reported(self, samples: Samples) -> Reported:
-        """All numbers of samples, and what went into them beside the coordinates."""
-        from pointcoord.bounds.proof import Reported
+        from pointcoord.bounds.proof import Reported, prove
 
         readout = self.readout
-        return Reported(
+        reported = Reported(
             numbers=samples.numbers,
             effects=readout.plan.computed,
             axes=readout.axes,
             chassis=readout.chassis,
             laws=self.functions,
-            solved=self.states,
+            solved=self,
         )
+        return prove(readout.mechanism, samples.times, reported, rates=rates, certain=certain)
+
+
+def _carry(mechanism: Mechanism, part: slice | EllipsisType, carried: Sequence[State], found: Places) -> None:
+    """Put together carried states of those of their carriers, (..., 3, N), mm.
+
+    Args:
+        part: which of the mechanism's cars they are of.
+    """
+    unit = mechanism.unit[part][..., None, None]
+    edges: dict[tuple[int, str, str], Array] = {}
+    normals: dict[tuple[int, tuple[str, str, str]], Array] = {}
+
+    def edge(order: int, base: str, point: str) -> Array:
+        key = order, base, point
+        if key not in edges:
+            edges[key] = found[order, point] - found[order, base]
+        return edges[key]
+
+    def normal(order: int, carriers: tuple[str, str, str]) -> Array:
+        key, (base, first, second) = (order, carriers), carriers
+        if key not in normals:
+            total = normals[key] = np.zeros_like(edge(order, base, first))
+            for i in range(order + 1):
+                _add_cross(total, comb(order, i), edge(i, base, first), edge(order - i, base, second))
+        return normals[key]
+
+    for order, name in carried:
+        carriers = base, first, second = mechanism.topology.carried[name]
+        a, b, c = (mechanism.carrier_weights[name][part][..., i, None, None] for i in range(3))
+        place = found[order, name]
+        np.multiply(edge(order, base, first), a, out=place)
+        place += b * edge(order, base, second)
+        # The weights are of lengths in the mechanism's units: of the cross product's square one is left.
+        place += (c / unit) * normal(order, carriers)
+        place += found[order, base]
+
+
+def _add_cross(total: Array, factor: float, a: Array, b: Array) -> None:
+    """Add factor a x b, all (..., 3, N)."""
+    for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
+        crossed = a[..., j, :] * b[..., k, :]
+        crossed -= a[..., k, :] * b[..., j, :]
+        if factor != 1.0:
+            crossed *= factor
+        total[..., i, :] += crossed

@@ -26,9 +26,10 @@ class Table:
     """The rows of a table.
 
     Attributes:
-        moving: states that are reported of points that are solved for: three rows each from row 0.
+        moving: states that are reported of points that move: three rows each from row 0, first
+            those of points that are solved for, then those of points that are carried.
         still: the same of the chassis' points, in the last rows.
-        spare: states of solved points that are only needed; they are in no table.
+        spare: states of points that move that are only needed; they are in no table.
         spare_still: likewise of points of the chassis.
         places: by quantity and name the rows of every number, in the order of results.
         computed: the effects that compute their numbers from states.
@@ -52,12 +53,13 @@ class Table:
         Args:
             highest: time derivative of each point that is needed.
         """
-        solved, points = (*topology.moving, *topology.carried), plan.reported(topology)
+        points = plan.reported(topology)
         reported = {e.derivative: e.quantities[0].name for e in plan.computed if e.reports_states}
-        moving, still = (
+        solved, carried, still = (
             tuple((d, point) for d in sorted(reported) for point in kind if point in points)
-            for kind in (solved, topology.chassis)
+            for kind in (topology.moving, topology.carried, topology.chassis)
         )
+        moving = (*solved, *carried)
         spare, spare_still = (
             tuple(
                 (d, point)
@@ -65,7 +67,7 @@ class Table:
                 for point in kind
                 if highest.get(point, -1) >= d and not (d in reported and point in points)
             )
-            for kind in (solved, topology.chassis)
+            for kind in ((*topology.moving, *topology.carried), topology.chassis)
         )
         height = 3 * len(moving)
         places: dict[str, dict[str, slice]] = {q.name: {} for e in plan.computed for q in e.quantities}
@@ -97,13 +99,13 @@ class Table:
         moving = [(3 * i, state) for i, state in enumerate(self.moving)]
         return moving + [(self.first_still + 3 * i, state) for i, state in enumerate(self.still)]
 
-    def states_of(self, derivative: int) -> tuple[slice, slice]:
-        """The rows of a reported derivative of all points: of those that are solved for, of the chassis."""
-        found = []
-        for states, before in ((self.moving, 0), (self.still, self.first_still)):
-            own = [i for i, (d, _) in enumerate(states) if d == derivative]
-            found.append(slice(before + 3 * own[0], before + 3 * own[-1] + 3) if own else slice(0, 0))
-        return found[0], found[1]
+    def states_of(self, derivative: int) -> list[slice]:
+        """The rows of a reported derivative of all points."""
+        found: list[slice] = []
+        for first in (first for first, (d, _) in self.states if d == derivative):
+            begun = found.pop().start if found and found[-1].stop == first else first
+            found.append(slice(begun, first + 3))
+        return found
 
     def numbers(self, rows: Array) -> dict[str, dict[str, Array]]:
         """A table's numbers by quantity and name, of points and bodies (..., N, 3), of the car (..., N).

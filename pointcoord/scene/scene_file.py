@@ -35,7 +35,17 @@ from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.scene_part import AS_LIST, Number, Part, PlainTable, Positive, Text, Vector, Whole
+from pointcoord.scene.scene_part import (
+    AS_LIST,
+    Number,
+    Part,
+    PlainTable,
+    Positive,
+    Share,
+    Text,
+    Vector,
+    Whole,
+)
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 from pointcoord.toml_text import parsed, read_file, read_stream
 from pointcoord.wording import meant, shown
@@ -52,6 +62,8 @@ PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
+# Where an axle lies, seen from the car's middle.
+AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
 
@@ -123,6 +135,26 @@ def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -
     return found
 
 
+class CarPart(Part):
+    """What the whole car is like, for the effects that ask for it.
+
+    `axle` says which one the wheel is of. Lengths are in mm, the height of the centre of gravity above the
+    drawn ground. Of all that brakes or drives the car, the shares are those of this axle.
+    """
+
+    axle: Literal["front", "rear"] | None = None
+    wheelbase: Positive | None = None
+    centre_of_gravity_height: Positive | None = None
+    brake_share: Share | None = None
+    drive_share: Share | None = None
+
+    @property
+    def numbers(self) -> dict[str, float]:
+        """What is given, by name; of the axle -1 at the front and +1 at the rear."""
+        given = self.model_dump(exclude_none=True)
+        return {name: AXLES.get(value, value) for name, value in given.items()}
+
+
 class MechanismPart(Part):
     """The mechanism, its side of the car, its drawn points in mm and the car's axes.
 
@@ -148,6 +180,7 @@ class MechanismPart(Part):
     up: Vector = (0.0, 0.0, 1.0)
     right: Vector = (0.0, 1.0, 0.0)
     wheel_radius: Positive | None = None
+    car: CarPart | None = None
     points: dict[str, Vector]
 
     _driven: tuple[str, ...] | None = PrivateAttr(None)
@@ -296,7 +329,7 @@ class MechanismPart(Part):
             driven: names of the inputs that are driven, chassis motions among them; only these are given.
         Returns:
             Bodies, rods, slides, inputs and roles by name, every point as drawn (mm), the car's axes, its
-            side and the wheel's radius (mm, or None).
+            side, the wheel's radius (mm, or None) and what is given of the whole car.
         """
         structure = self.structure
         return {
@@ -307,6 +340,7 @@ class MechanismPart(Part):
             "right": list(self.right),
             "side": self.side,
             "wheel_radius": self.wheel_radius,
+            "car": {} if self.car is None else self.car.model_dump(exclude_none=True),
         }
 
     @cached_property
@@ -348,7 +382,8 @@ class MechanismPart(Part):
     @property
     def axes(self) -> CarAxes:
         """The car's directions, and its wheel."""
-        return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius)
+        car = {} if self.car is None else self.car.numbers
+        return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius, car)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -357,7 +392,7 @@ class MechanismPart(Part):
 
     def refusal(self, effect: Effect) -> str:
         """Why this car does not have an effect and what to do, in words; empty if it does."""
-        return effect.refusal(self.topology, self.points, self.wheel_radius)
+        return effect.refusal(self.topology, self.points, self.axes)
 
     @property
     def outboard(self) -> NDArray[np.float64]:
@@ -486,7 +521,10 @@ class Scene(Part):
             if name not in EFFECTS:
                 givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
                 hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
-                raise ValueError(f"no effect is called {shown(name)}{hint}; allowed: {', '.join(EFFECTS)}")
+                allowed = [name for name, effect in EFFECTS.items() if not effect.base]
+                raise ValueError(
+                    f"no effect is called {shown(name)}{hint}; allowed: {', '.join(allowed)}, and gradients"
+                )
         return effects
 
     @field_validator("points")

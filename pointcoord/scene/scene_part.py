@@ -78,6 +78,7 @@ AS_LIST = BeforeValidator(_own_list)
 Text = Annotated[str, Field(strict=True)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False), BeforeValidator(_own_number)]
 Positive = Annotated[Number, Field(gt=0.0)]
+Share = Annotated[Number, Field(ge=0.0, le=1.0)]
 Whole = Annotated[int, Field(strict=True), BeforeValidator(_own_whole)]
 Vector = Annotated[tuple[Number, Number, Number], AS_LIST]
 PlainTable = Annotated[dict[str, Any], BeforeValidator(_own_table)]

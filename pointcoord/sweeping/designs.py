@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import SceneError, SweepError, UnknownName
 from pointcoord.linkage.topology import Topology
+from pointcoord.results.read_only import ReadOnly
 from pointcoord.scene.scene_file import Scene
 from pointcoord.wording import shown
 
@@ -29,7 +29,7 @@ MOST = 10**9
 
 
 @dataclass(frozen=True)
-class Column:
+class Column(ReadOnly):
     """Values of one coordinate: design number k has values[(k // repeat) % len(values)], mm."""
 
     values: Array
@@ -41,7 +41,7 @@ class Column:
 
 
 @dataclass(frozen=True)
-class Designs:
+class Designs(ReadOnly):
     """Designs of one suspension; make them with `designs_of`, `grid_of` or `designs_of_scenes`.
 
     Attributes:
@@ -55,15 +55,6 @@ class Designs:
     count: int
     columns: Mapping[str, Column]
     scenes: tuple[Scene, ...] = field(default=(), repr=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "columns", MappingProxyType(dict(self.columns)))
-        for column in self.columns.values():
-            column.values.setflags(write=False)
-
-    def __reduce__(self) -> tuple[type[Designs], tuple[object, ...]]:
-        # A read-only view of a dictionary does not pickle.
-        return type(self), (self.scene, self.count, dict(self.columns), self.scenes)
 
     @cached_property
     def following(self) -> Mapping[str, str]:

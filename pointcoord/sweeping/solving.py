@@ -36,8 +36,8 @@ from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size
 from pointcoord.results.motion import Motion
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
-from pointcoord.results.states_of_designs import StatesOfDesigns
 from pointcoord.results.table import Table
+from pointcoord.results.ways import ByChain
 from pointcoord.scene.drawing_doubts import doubts_of_drawings
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import (
@@ -384,8 +384,8 @@ class _Block:
         """Put the numbers of designs that were solved into their tables."""
         for each in solved.followed:
             readout = _readout(self.course, scene, mechanism.taken(each.numbers))
-            states = StatesOfDesigns(readout, functions, each.chain, scene.time.start)
-            self._fill(readout, states, scene.instants, members[each.numbers])
+            solved_by = ByChain(readout, functions, each.chain)
+            self._fill(solved_by, scene.instants, members[each.numbers])
         alive = members[solved.solved]
         if not len(alive):
             return
@@ -395,19 +395,16 @@ class _Block:
         self._require_known(scene, alive[kept], functions)
         self._note_missing(alive[[number not in self.failures for number in alive.tolist()]])
 
-    def _fill(self, readout: Readout, states: StatesOfDesigns, instants: Array, members: Numbers) -> None:
+    def _fill(self, solved: ByChain, instants: Array, members: Numbers) -> None:
         """Put the numbers of designs into their tables."""
-        self.readouts[:] = [readout]
+        self.readouts[:] = [solved.readout]
         places = members - self.first
         kept = np.array([number not in self.failures for number in members.tolist()])
         whole = kept.all() and places[-1] - places[0] == len(places) - 1
         rows = (
             self.rows[places[0] : places[-1] + 1] if whole else np.empty((len(members), *self.rows.shape[1:]))
         )
-        for low in range(0, len(instants), INSTANTS):
-            here = rows[..., low : low + INSTANTS]
-            times = instants[low : low + INSTANTS]
-            readout.complete(times, states.states(times, here), here)
+        solved.fill(instants, rows)
         if not whole:
             self.rows[places[kept]] = rows[kept]
         self.filled[places[kept]] = True

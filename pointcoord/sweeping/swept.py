@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -109,18 +108,6 @@ class Sweep(Samples):
     drawn: Mapping[str, Array]
     failures: Mapping[int, Failure]
     notes: tuple[Noted, ...]
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for name in ("varied", "drawn", "failures"):
-            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
-        for array in (self.solved, self.closing, *self.varied.values(), *self.drawn.values()):
-            array.setflags(write=False)
-
-    def __reduce__(self) -> tuple[type[Sweep], tuple[object, ...]]:
-        _, values = super().__reduce__()
-        plain = (dict(value) if isinstance(value, MappingProxyType) else value for value in values)
-        return type(self), tuple(plain)
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""

@@ -3,7 +3,8 @@
 The arm turns by t about the line from pivot to pivot_end and the carriage travels by s, so that a point of
 the arm is at  P + R(t) (p - P) + s d;  then the car turns. Axes x rearward, y right, z up. Numbers are made
 of coordinates another way than in the model: points on lines by their height, the tyre's forward by the angle
-of its axle, the wheel's lowest point by two directions in its plane. Derivatives are mpmath's.
+of its axle, the wheel's lowest point by two directions in its plane, instant centres as points of the hinge's
+line. Derivatives are mpmath's.
 """
 
 from collections.abc import Mapping
@@ -20,6 +21,13 @@ Vector = Any
 
 DIGITS = 40
 RADIUS = 310.0
+CAR = {
+    "axle": "front",
+    "wheelbase": 2600.0,
+    "centre_of_gravity_height": 520.0,
+    "brake_share": 0.65,
+    "drive_share": 0.4,
+}
 # A left wheel.
 DRAWN = {
     "guide": (-300.0, -420.0, 180.0),
@@ -39,6 +47,15 @@ ROLES = {
     "steering_axis": ["lower", "upper"],
     "damper": ["damper_top", "damper_foot"],
 }
+BY_TRAVEL = (
+    "roll_centre_height",
+    "front_view_swing_arm",
+    "front_view_centre_height",
+    "side_view_swing_arm",
+    "side_view_centre_height",
+    "anti_brake",
+    "anti_drive",
+)
 # Roll about a point of the chassis, and pitch about another: axes forward and left.
 TURNS = {"roll": ("forward", (-1, 0, 0), "damper_top"), "pitch": ("left", (0, -1, 0), "stop")}
 
@@ -75,6 +92,7 @@ def plain(points: Mapping[str, Any] = DRAWN, **changed: Any) -> dict[str, Any]:
         "right": (0, 1, 0),
         "side": "left",
         "wheel_radius": RADIUS,
+        "car": CAR,
         **changed,
     }
 
@@ -178,14 +196,40 @@ class Written:
         """Any effect of the model, by its name."""
         with mp.workdps(DIGITS):
             t, s = mpf(self.values.get("turn", 0.0)), mpf(self.values.get("steer", 0.0))
-            if effect == "roll_centre_height":
-                return float(self.roll_centre(t, s))
+            if effect in BY_TRAVEL:
+                return float(self.by_travel(effect, t, s))
             name, _, by = effect.partition("_by_")
             if by == "rack":
                 return float(diff(lambda s: self.number(name, t, s), s))
             value = self.number(name, t, s) if not by else diff(lambda t: self.number(name, t, s), t)
             rate = diff(lambda t: self.number("travel", t, s), t) if by else 1
             return float(value / rate if rate else nan)
+
+    def by_travel(self, effect: str, t: Any, s: Any) -> Any:
+        if effect == "roll_centre_height":
+            return self.roll_centre(t, s)
+        c, w = self.contact(t, s), self.place("centre", t, s)
+        front, side, side_at_centre = (self.hinge_in_plane(*at, t, s) for at in ((c, 0), (c, 1), (w, 1)))
+
+        def anti(share: str, steepness: Any) -> Any:
+            height = CAR["centre_of_gravity_height"] - self.number("contact_travel", t, s)
+            return -100 * mpf(CAR[share]) * steepness * CAR["wheelbase"] / height
+
+        return {
+            "front_view_swing_arm": lambda: -self.out * front[1],
+            "front_view_centre_height": lambda: front[2],
+            "side_view_swing_arm": lambda: side[0],
+            "side_view_centre_height": lambda: side[2],
+            # A point goes at a right angle to the line to its centre.
+            "anti_brake": lambda: anti("brake_share", -side[2] / side[0]),
+            "anti_drive": lambda: anti("drive_share", -side_at_centre[2] / side_at_centre[0]),
+        }[effect]()
+
+    def hinge_in_plane(self, p: Vector, normal: int, t: Any, s: Any) -> Vector:
+        """From p to where the hinge's line meets the plane through p across x (0) or y (1)."""
+        pivot, end = self.place("pivot", t, s), self.place("pivot_end", t, s)
+        share = (p[normal] - pivot[normal]) / (end[normal] - pivot[normal])
+        return pivot + (end - pivot) * share - p
 
     def roll_centre(self, t: Any, s: Any) -> Any:
         c, pivot = self.contact(t, s), self.place("pivot", t, s)

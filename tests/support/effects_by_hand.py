@@ -30,6 +30,7 @@ class Car:
         moving, moving_in_chassis: how the points and those in the chassis' frame change by an input, per mm.
         driven_turn: how every body turns by the input.
         origin: from the user's to that of the points.
+        data: what the scene says of the whole car; of its axle -1 at the front and +1 at the rear.
         up, right, outboard: of the car.
     """
 
@@ -47,6 +48,7 @@ class Car:
     moving_in_chassis: Mapping[str, Vector]
     driven_turn: Vector
     origin: Vector
+    data: Mapping[str, mpf]
     up: Vector
     right: Vector
     outboard: Vector
@@ -212,6 +214,53 @@ def _roll_centre(car: Car) -> Numbers:
     return {"dimension": {"roll_centre_height": [out * dot(velocity, car.outboard) / dot(velocity, car.up)]}}
 
 
+def _going(car: Car, place: Vector) -> Vector:
+    """How a point of the knuckle at a place moves by the input."""
+    centre = car.wheel_axis[1]
+    arm = plus(place, car.places[centre], -1)
+    return plus(car.moving[centre], cross(car.driven_turn, arm))
+
+
+def _centre(car: Car, level: Vector) -> tuple[mpf, mpf]:
+    """The instant centre in the plane of a level direction and up: along both from the contact point.
+
+    It lies on the normal of the way of the contact point, and on that of a point above it.
+    """
+    contact = car.contact(car.places)
+    high = mpf(100)
+    one, two = (_going(car, plus(contact, car.up, h)) for h in (mpf(0), high))
+    (a, b), (c, d) = ((dot(way, level), dot(way, car.up)) for way in (one, two))
+    # a x + b y = 0 and c x + d (y - high) = 0
+    return -b * d * high / (a * d - b * c), a * d * high / (a * d - b * c)
+
+
+def _instant_centres(car: Car) -> Numbers:
+    outward, front = _centre(car, car.outboard)
+    rearward, side = _centre(car, cross(car.right, car.up))
+    numbers = {
+        "front_view_swing_arm": -outward,
+        "front_view_centre_height": front,
+        "side_view_swing_arm": rearward,
+        "side_view_centre_height": side,
+    }
+    return {"dimension": {name: [number] for name, number in numbers.items()}}
+
+
+def _anti_features(car: Car) -> Numbers:
+    """The steepness of the way of the contact point, or of the wheel centre, in the side view."""
+    data, rearward = car.data, cross(car.right, car.up)
+    height = data["centre_of_gravity_height"] - _wheel_travel(car)["dimension"]["contact_travel"][0]
+    found = {}
+    for name, share, place in (
+        ("anti_brake", "brake_share", car.contact(car.places)),
+        ("anti_drive", "drive_share", car.places[car.wheel_axis[1]]),
+    ):
+        way = _going(car, place)
+        steep = dot(way, rearward) / dot(way, car.up)
+        found[name] = [100 * data[share] * data["axle"] * steep * data["wheelbase"] / height]
+    return {"share": found}
+
+
 PER_MM = {"wheel": "angle_gradient", "dimension": "dimension_gradient"}
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
@@ -226,6 +275,8 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "steering_axis": _steering_axis,
     "damper": _damper,
     "roll_centre": _roll_centre,
+    "instant_centres": _instant_centres,
+    "anti_features": _anti_features,
 }
 OF_THE_CAR = ("camber", "wheel_angles", "toe", "caster", "wheel_travel", "steering_axis", "damper")
 BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in OF_THE_CAR}

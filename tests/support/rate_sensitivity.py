@@ -16,7 +16,7 @@ def rate_sensitivities(motion: Motion) -> tuple[Array, Array]:
     most, and 2 B(e_j, v) are the columns of the Jacobian at v.
     """
     mechanism = motion.solved.readout.mechanism
-    y, velocity, acceleration = motion.solved.states.coordinates(motion.times, 2)
+    y, velocity, acceleration = motion.solved.coordinates(motion.times, 2)
     inverse = np.abs(factorise(mechanism.map.jacobian(y)).preconditioner)
 
     def change(rate: Array) -> Array:

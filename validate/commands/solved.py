@@ -40,7 +40,7 @@ BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values
 PICTURES, TABLES = (".svg", ".png"), (".csv", ".md")
 SMOOTH = 401  # a curve of fewer instants has corners
 ROWS = 21
-DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5}
+DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2}
 
 SIMULATE = """\
 Solve a scene by point coordinates alone and write what it asks for: a row for each instant, a

@@ -420,13 +420,15 @@ def _compared(
 
 
 def gaps_between(mine: Array, other: Array, unit: str) -> Array:
-    """How far two arrays of numbers are apart, number by number; infinity where one is none."""
+    """How far two arrays of numbers are apart, number by number; infinity where one alone is none."""
     gap = np.abs(mine - other)
     if unit == "rad":
         # Whole turns apart is the same angle.
         gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
     # A NaN is a disagreement, and the worst one.
     gap[~np.isfinite(gap)] = np.inf
+    # That there is none, as of a centre at infinity, is what both say.
+    gap[np.isnan(mine) & np.isnan(other)] = 0.0
     return np.asarray(gap)
 
 

@@ -17,7 +17,7 @@ from pointcoord.bounds.enclosed_points import exact_weights
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.rounding import EPS
-from pointcoord.results.states import StatesOfChain
+from pointcoord.results.ways import ByChain
 
 Array = NDArray[np.float64]
 
@@ -32,8 +32,8 @@ def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_make
 ) -> None:
     sine = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offset": 1.5}}
     motion = simulate(make_scene(sine, [0.0, 5.0]))
-    states = motion.solved.states
-    assert isinstance(states, StatesOfChain)
+    states = motion.solved
+    assert isinstance(states, ByChain)
     segments = list(states.chain.segments)
     coefficients = segments[0].coefficients.copy()
     layout = states.readout.mechanism.layout
@@ -41,7 +41,7 @@ def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_make
         coefficients[1, layout.vector(name)[1]] += sign * relative
     segments[0] = replace(segments[0], coefficients=coefficients)
     wrong_states = replace(states, chain=replace(states.chain, segments=tuple(segments)))
-    wrong = replace(motion, solved=replace(motion.solved, states=wrong_states))
+    wrong = replace(motion, solved=wrong_states)
     instants = np.linspace(motion.times[0], segments[0].stop, 400)[:-1]
     right, samples = motion.at(instants), wrong.at(instants)
     names = states.readout.mechanism.topology.moving

@@ -78,7 +78,7 @@ def test_positions_and_rates_are_held_to_the_tolerance_of_the_scene(name: str, t
     assert proof.carried_bound.max() <= tolerance
     part = tolerance / motion.unit
     laws = [f.series(motion.times, 2) for f in scene.functions.values()]
-    patches = motion.solved.states.patches
+    patches = motion.solved.patches
     domain, (_, half) = patches.domain, patches.boxes
     names = list(scene.functions)
     # S_i of the patches, per unit of each input; the largest of any patch.

@@ -295,9 +295,7 @@ def test_a_claim_without_what_the_tolerance_left_is_caught(
         return motion.proof(rates=True).expected["position"]["wheel_centre"]
 
     assert (gap <= claimed()).all()
-    monkeypatch.setattr(
-        type(motion.solved.states), "unsolved", lambda self, instants: np.zeros(len(instants))
-    )
+    monkeypatch.setattr(type(motion.solved), "unsolved", lambda self, instants: np.zeros(len(instants)))
     assert not (gap <= claimed()).all()
 
 

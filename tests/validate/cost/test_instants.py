@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene, simulate
-from pointcoord.results.states import StatesOfChain
+from pointcoord.results.ways import ByChain
 from validate.cost.scenes import GOLDEN, MOST, MOST_QUICK, STUDY_SCENES, own_scene, study_instants
 
 
@@ -28,8 +28,8 @@ def test_they_are_no_end_of_a_segment_of_any_chain_and_no_instant_of_the_scene(n
     instants, duration = study_instants(scene), scene.time.stop - scene.time.start
     special = [scene.instants, np.linspace(scene.time.start, scene.time.stop, 2 * len(instants) + 1)]
     for tolerance in (1e-3, 1e-9, 1e-13):
-        states = simulate(scene.model_copy(update={"tolerance": tolerance})).solved.states
-        assert isinstance(states, StatesOfChain)
+        states = simulate(scene.model_copy(update={"tolerance": tolerance})).solved
+        assert isinstance(states, ByChain)
         special.append(np.array([segment.start for segment in states.chain.segments]))
     nearest = np.abs(instants[:, None] - np.concatenate(special)).min()
     assert nearest > 1e-9 * duration

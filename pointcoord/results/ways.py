@@ -1,0 +1,203 @@
+"""The ways in which a scene is solved: at its instants, or by a chain of series."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.numerics.counters import Work
+from pointcoord.numerics.rounding import EPS
+from pointcoord.results.cells import CloseInstants
+from pointcoord.results.solved_scene import Places, SolvedScene
+from pointcoord.solve.box import Box
+from pointcoord.solve.dense_output import SeriesRows, evaluate
+from pointcoord.solve.status import Status
+from pointcoord.solve.taylor import Chain, last_magnitudes
+
+if TYPE_CHECKING:
+    from pointcoord.solve.pointwise import Solved
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.intp]
+
+# A coefficient of many designs up to this, of places whose size is 1, is what rounding leaves of rounding.
+NOTHING = EPS**2
+
+
+@dataclass(frozen=True)
+class AtInstants(SolvedScene):
+    """Solved at each instant by itself."""
+
+    solved: Solved
+    dense: ClassVar[bool] = False
+
+    @property
+    def status(self) -> Status:
+        """The solver's."""
+        return self.solved.status
+
+    @property
+    def solving(self) -> Work:
+        """The solver's."""
+        return self.solved.work
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """There are no series."""
+        return ()
+
+    @property
+    def start(self) -> float:
+        """The first instant."""
+        return float(self.solved.times[0]) if len(self.solved.times) else np.inf
+
+    @property
+    def stop(self) -> float:
+        """The last instant that was reached."""
+        return float(self.solved.times[-1]) if len(self.solved.times) else -np.inf
+
+    def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
+        """As they were solved for."""
+        mechanism = self.readout.mechanism
+        coordinates = self.coordinates(instants, self.readout.plan.derivative)
+        for (order, name), place in places.items():
+            place[...] = mechanism.unit * coordinates[order][:, mechanism.layout.span(name)].T
+
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """As they were solved for."""
+        return self.solved.coordinates(instants)[: derivatives + 1]
+
+    def unsolved(self, instants: Array) -> Array:
+        """What the tolerance let Newton's method leave."""
+        return self.solved.left[np.searchsorted(self.solved.times, instants)]
+
+
+@dataclass(frozen=True)
+class ByChain(SolvedScene):
+    """Summed from a chain of series, which many designs may share, at any instants inside it."""
+
+    chain: Chain
+
+    @property
+    def status(self) -> Status:
+        """The solver's."""
+        return self.chain.status
+
+    @property
+    def solving(self) -> Work:
+        """The solver's."""
+        return self.chain.work
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Of each segment."""
+        return tuple(segment.order for segment in self.chain.segments)
+
+    @property
+    def start(self) -> float:
+        """Of the chain."""
+        return self.chain.segments[0].start if self.chain.segments else np.inf
+
+    @property
+    def stop(self) -> float:
+        """The end of the chain."""
+        return self.chain.stop if self.chain.segments else -np.inf
+
+    def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
+        """The sums of their series."""
+        if isinstance(self.chain.segments[0], Box):
+            self._fill_by_inputs(self.chain.segments[0], instants, places)
+            return
+        reported, needed = self._series
+        first = sum(name in self.readout.mechanism.topology.moving for _, name in self.readout.table.moving)
+        reported.sum(instants, rows[..., : 3 * first, :])
+        if len(places) > first:
+            sums = np.empty((*needed.shape, len(instants)))
+            needed.sum(instants, sums)
+            for i, state in enumerate(self.solved_states[first:]):
+                places[state][...] = sums[..., 3 * i : 3 * i + 3, :]
+
+    @cached_property
+    def _series(self) -> tuple[SeriesRows, ...]:
+        """Of the states of points that are solved for, mm: that are reported, and that are only needed."""
+        mechanism, topology = self.readout.mechanism, self.readout.mechanism.topology
+        first = sum(name in topology.moving for _, name in self.readout.table.moving)
+        unit, found = mechanism.unit[..., None, None], []
+        columns = [segment.coefficients * unit for segment in self.chain.segments]
+        for states in (self.solved_states[:first], self.solved_states[first:]):
+            wanted: list[list[int]] = [[] for _ in range(self.readout.plan.derivative + 1)]
+            for order, name in states:
+                wanted[order] += mechanism.layout.vector(name)
+            found.append(SeriesRows.of(self.chain, columns, wanted))
+        return tuple(found)
+
+    def _fill_by_inputs(self, box: Box, instants: Array, places: Places) -> None:
+        """Of many designs whose powers are the same: one product for each state."""
+        mechanism, orders = self.readout.mechanism, range(max((order for order, _ in places), default=-1) + 1)
+        powers, series = box.powers(instants, len(orders)), dict[str, tuple[Numbers, Array]]()
+        for (order, name), place in places.items():
+            if name not in series:
+                own = box.coefficients[..., mechanism.layout.span(name)].transpose(1, 2, 0)
+                # Of two inputs many a point is moved by one alone, to rounding.
+                kept = np.flatnonzero(np.abs(own).reshape(len(own), -1).max(axis=-1) > NOTHING)
+                # Axis, designs, powers; the designs side by side in memory.
+                series[name] = kept, np.multiply(own[kept], mechanism.unit, order="C").transpose(1, 2, 0)
+            kept, shared = series[name]
+            np.matmul(shared, powers[order][kept], out=place.swapaxes(0, 1))
+
+    def fill(self, times: Array, rows: Array) -> None:
+        """By cells where instants of one car lie close together, unless it turns, and by blocks elsewhere."""
+        left = [(0, len(times))]
+        if self.readout.mechanism.drawn.ndim == 1 and not self.readout.chassis.turns:
+            left = self._close.fill(times, rows)
+        for first, last in left:
+            super().fill(times[first:last], rows[..., first:last])
+
+    @cached_property
+    def _close(self) -> CloseInstants:
+        return CloseInstants(self, self.chain)
+
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """Sums of their series; the instants lie side by side in memory."""
+        mechanism = self.readout.mechanism
+        known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
+        wanted = min(derivatives, self.readout.plan.derivative)
+        found = list(evaluate(self.chain, [s.coefficients for s in self.chain.segments], instants, wanted))
+        found[0][:, mechanism.map.unknowns :] = known[:, 0]
+        return found
+
+    def summed(self, instants: Array) -> list[Summed]:
+        """How `coordinates` sums each derivative at instants."""
+        terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
+        # Terms that are missing by chance tell nothing of what is left out.
+        lasts = [
+            last_magnitudes(segment.coefficients, (segment.stop - segment.start) / segment.scale)
+            for segment in self.chain.segments
+        ]
+        derivative = self.readout.plan.derivative
+
+        def sums(first: int, last: int | None, sizes: Sequence[Array]) -> Array:
+            """Of the terms from one to another, counted from the end."""
+            kept = [np.zeros_like(t) for t in terms]
+            for part, whole in zip(kept, sizes, strict=True):
+                part[first:last] = whole[first:last]
+            return evaluate(self.chain, kept, instants, derivative)
+
+        parts = (sums(-2, None, lasts), sums(-4, -2, terms), sums(0, None, terms))
+        return [Summed(*part) for part in zip(*parts, strict=True)]
+
+    def unsolved(self, instants: Array) -> Array:
+        """What the tolerance let Newton's method leave at the start of each segment."""
+        left = np.array([np.max(segment.left) for segment in self.chain.segments])
+        return np.asarray(left[self.pieces(instants)])
+
+    def pieces(self, instants: Array) -> Numbers:
+        """Number of the segment of each instant."""
+        starts = [segment.start for segment in self.chain.segments]
+        return np.asarray(np.searchsorted(starts, instants, side="right") - 1)

@@ -1,0 +1,149 @@
+"""Angles of a wheel and a steering axis that are leaned by hand: signs, limits, and what is proven."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from pointcoord import Scene, simulate
+from pointcoord.effects.registry import ANGLES
+from pointcoord.effects.wheel_angles import WHEEL_ANGLES
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.numerics.enclosure import Enclosed, angle_error
+
+EPS = float(np.finfo(float).eps)
+UP, RIGHTWARD = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])  # x rearward
+AXES = CarAxes(UP, RIGHTWARD, RIGHTWARD)
+LOW = np.array([10.0, 600.0, 100.0])
+CAMBER, KINGPIN = ANGLES["camber"], ANGLES["kingpin"]
+# About which axis a right wheel leans for its angle to grow, and from which direction.
+LEANS = {
+    "camber": (0, -1.0, RIGHTWARD),  # out at the top
+    "toe": (2, 1.0, RIGHTWARD),  # in at the front
+    "kingpin": (0, 1.0, UP),  # in at the top
+    "caster": (1, 1.0, UP),  # back at the top
+}
+
+
+@pytest.mark.parametrize("name", ANGLES)
+@settings(deadline=None, max_examples=40)
+@given(st.floats(-60.0, 60.0), st.floats(-1.0, 1.0), st.sampled_from([-1.0, 1.0]))
+def test_an_angle_is_how_far_its_line_was_leaned_on_either_side(
+    name: str, degrees: float, unseen: float, side: float
+) -> None:
+    axis, sense, start = LEANS[name]
+    about = np.eye(3)[axis]
+    # What the line has along the axis that it leans about is not seen.
+    line = Rotation.from_rotvec(sense * degrees * about, degrees=True).apply(start) + unseen * about
+    mirror = np.array([1.0, side, 1.0])
+    axes = CarAxes(UP, RIGHTWARD, side * RIGHTWARD)
+    found = ANGLES[name].value(LOW * mirror, (LOW + 300.0 * line) * mirror, axes)
+    # A few roundings of coordinates up to 1000 over the length of 300.
+    assert found == pytest.approx(np.radians(degrees), abs=16 * EPS * 1000 / 300)
+
+
+def test_the_papers_formulas_for_the_left_wheel() -> None:
+    p5, p7, p10 = (
+        np.array(p) for p in ([450.0, -330.0, -40.0], [452.0, -320.0, 20.0], [452.0, -410.0, 25.0])
+    )
+    left = CarAxes(UP, RIGHTWARD, -RIGHTWARD)
+    # eqs. (16) and (17), in the quadrant where the arc tangent is its own branch
+    assert KINGPIN.value(p5, p7, left) == pytest.approx(np.arctan(10.0 / 60.0), abs=4 * EPS)
+    assert CAMBER.value(p7, p10, left) == pytest.approx(np.arctan(-5.0 / 90.0), abs=4 * EPS)
+
+
+def test_a_tie_rod_pushed_outward_behind_the_axle_turns_either_wheel_in() -> None:
+    scene = Scene.load("off-axis-strut")
+    points = scene.mechanism.points
+    assert points["tie_rod_outer"][0] > points["lower_ball_joint"][0]  # behind it
+    mirrored = {name: (x, -y, z) for name, (x, y, z) in points.items()}
+    # The rack's travel is along the car's left, which is outward for the left wheel.
+    for side, drawn, outward in (("left", dict(points), 1.0), ("right", mirrored, -1.0)):
+        content = scene.model_dump(mode="json", exclude_none=True) | {"effects": ["toe"]}
+        content["mechanism"] |= {"side": side, "points": drawn}
+        content["inputs"] = {"rack": {"polynomial": [0.0, 10.0 * outward]}, "arm_angle": {"constant": 1.63}}
+        content["time"] = {"start": 0.0, "stop": 1.0, "samples": 5}
+        assert (np.diff(simulate(Scene.from_mapping(content)).wheel["toe"]) > 0.01).all()
+
+
+def test_axes_that_are_not_right_handed_are_told_where_the_front_is() -> None:
+    content = Scene.load("off-axis-strut").model_dump(mode="json", exclude_none=True) | {"effects": ["toe"]}
+    right_handed = simulate(Scene.from_mapping(content))
+    assert not any("wrong sign" in note for note in right_handed.notes)
+    # y to the left and z up, but x still rearward: the mirror image of a car in right-handed axes.
+    points = {name: [x, -y, z] for name, (x, y, z) in content["mechanism"]["points"].items()}
+    content["mechanism"] |= {"points": points, "right": [0.0, -1.0, 0.0]}
+    left_handed = simulate(Scene.from_mapping(content))
+    (note,) = (note for note in left_handed.notes if "may have the wrong sign" in note)
+    assert "toe and caster" in note
+    assert "towards [1.0, 0.0, 0.0]" in note
+    assert left_handed.wheel["toe"] == pytest.approx(-right_handed.wheel["toe"], abs=1e-13)
+
+
+def topology(stand_ins: dict[str, str]) -> SimpleNamespace:
+    """A linkage whose wheel turns about inner - centre, steered about low - high."""
+    lines = {"wheel_axis": ("inner", "centre"), "steering_axis": ("low", "high")}
+    own = {"inner", "centre", "low", "high"}
+    return SimpleNamespace(**lines, role=lambda name: lines.get(name, ()), stand_ins=stand_ins, points=own)
+
+
+def drawn(camber: float, kingpin: float) -> dict[str, np.ndarray]:
+    """Of a right wheel, deg."""
+    c, k = np.radians([camber, kingpin])
+    wheel, axis = (0.1, np.cos(c), -np.sin(c)), (0.1, -np.sin(k), np.cos(k))
+    return {"inner": LOW, "centre": LOW + 80.0 * np.array(wheel), "low": LOW, "high": LOW + np.array(axis)}
+
+
+@pytest.mark.parametrize(
+    ("stand_ins", "camber"),
+    # Another limit where the wheel's axis starts at a point that stands in for one that is missing.
+    [({}, 45.0), ({"axis": "inner"}, 10.0), ({"axis": "low"}, 45.0), ({"inner": "inner"}, 45.0)],
+)
+def test_lines_look_misdrawn_beyond_their_limits_only(stand_ins: dict[str, str], camber: float) -> None:
+    right, known = CarAxes(UP, RIGHTWARD, RIGHTWARD), np.array(False)
+    for sign in (-1.0, 1.0):
+        for by in (-0.5, 0.5):
+            points = drawn(sign * (camber + by), sign * (45.0 + by))
+            for angle in (CAMBER, KINGPIN):
+                assert angle.doubt(topology(stand_ins), points, right, known).where == (by > 0.0)
+                assert not angle.doubt(topology(stand_ins), points, right, ~known).where
+                assert not ANGLES["caster"].doubt(topology(stand_ins), points, right, known).where
+    wrong = [a.doubt(topology({}), drawn(89.5, 90.5), right, known).words(()) for a in (CAMBER, KINGPIN)]
+    assert ["swapped" in words for words in wrong] == [False, True]
+
+
+def test_a_line_without_a_length_is_refused_where_a_point_of_its_own_is_missing() -> None:
+    apart = {name: tuple(place.tolist()) for name, place in drawn(3.0, 8.0).items()}
+    together = apart | {"centre": apart["inner"]}
+    missing = topology({"axis": "inner"})
+    assert WHEEL_ANGLES.refusal(missing, apart, AXES) == ""
+    assert "give the axis a point of its own, axis" in WHEEL_ANGLES.refusal(missing, together, AXES)
+    assert WHEEL_ANGLES.refusal(topology({}), together, AXES) == ""
+
+
+def error(sine: float, cosine: float, found: float, *boxes: float) -> float:
+    """Proven of a line; `boxes` are the radii of sine and cosine."""
+    parts = (Enclosed.of(np.array([v]), 0.0, r, 0.0) for v, r in zip((sine, cosine), boxes, strict=True))
+    return float(angle_error(*parts, np.array([found]))[0, 0])
+
+
+@pytest.mark.parametrize("length", [2.0**-9, 1.0, 2.0**9])
+def test_a_proven_error_is_what_the_worst_line_in_its_box_is_off(length: float) -> None:
+    random = np.random.default_rng(3)
+    for angle in random.uniform(-np.pi, np.pi, 30):
+        sine, cosine = length * np.sin(angle), length * np.cos(angle)
+        r = length * 1e-6 * random.uniform(0.2, 1.0, 2)
+        corners = [np.arctan2(sine + a, cosine + b) for a in (-r[0], r[0]) for b in (-r[1], r[1])]
+        worst = np.abs(np.remainder(np.array(corners) - angle + np.pi, 2.0 * np.pi) - np.pi).max()
+        # Of second order is what a line that is shorter by its box gives away.
+        assert worst - 4.0 * EPS <= error(sine, cosine, angle, *r) <= worst * (1.0 + 4e-6) + 8.0 * EPS
+
+
+def test_of_an_angle_that_points_elsewhere_or_of_a_line_without_a_length_nothing_is_proven() -> None:
+    for off in (np.pi, np.pi - 0.1, 3.4, 1.0, -1.0):
+        assert error(3.0, 4.0, float(np.arctan2(3.0, 4.0)) + off, 0.0, 0.0) == np.pi
+    for box in ((0.5, 0.0), (0.0, 0.5), (0.7, 0.7)):
+        assert error(0.0, 1.0, 0.0, *box) == np.pi

@@ -1,0 +1,54 @@
+"""A number that does not exist: both models say so, and neither alone may."""
+
+from typing import Any
+
+import numpy as np
+
+from pointcoord import Scene, simulate
+from validate.comparison.compare import compare, gaps_between
+
+CENTRES = (
+    "front_view_swing_arm",
+    "front_view_centre_height",
+    "side_view_swing_arm",
+    "side_view_centre_height",
+)
+LEVEL: dict[str, Any] = {
+    "effects": ["instant_centres", "camber"],
+    "mechanism": {
+        "type": "double_wishbone",
+        "side": "right",
+        "wheel_radius": 200.0,
+        "points": {
+            "lower_arm_front": [-100.0, 250.0, 100.0],
+            "lower_arm_rear": [100.0, 250.0, 100.0],
+            "upper_arm_front": [-100.0, 250.0, 300.0],
+            "upper_arm_rear": [100.0, 250.0, 300.0],
+            "lower_ball_joint": [0.0, 650.0, 100.0],
+            "upper_ball_joint": [0.0, 650.0, 300.0],
+            "tie_rod_outer": [-100.0, 650.0, 200.0],
+            "tie_rod_inner": [-100.0, 250.0, 200.0],
+            "wheel_centre": [0.0, 700.0, 200.0],
+            "wheel_axis_inner": [0.0, 650.0, 200.0],
+        },
+    },
+    "inputs": {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": 0.0}},
+    "time": {"start": 0.0, "stop": 1.0, "samples": 11},
+}
+
+
+def test_parallel_arms_have_their_centres_at_infinity_and_both_models_say_so() -> None:
+    scene = Scene.from_mapping(LEVEL, "parallel arms")
+    motion = simulate(scene)
+    for name in CENTRES:
+        assert np.isnan(motion.numbers["dimension"][name]).all()
+        told = f"dimension of {name} is not a number at 11 of 11 instants"
+        assert any(note.startswith(told) and "at infinity" in note for note in motion.notes)
+    outcome = compare(scene, "pointcoord", "absolute")
+    assert outcome.agreed
+    assert {*CENTRES} <= {row.name for row in outcome.rows}
+
+
+def test_none_beside_a_number_is_the_worst_difference_and_none_beside_none_is_no_difference() -> None:
+    mine, other = np.array([1.0, np.nan, np.nan]), np.array([1.0, 2.0, np.nan])
+    assert gaps_between(mine, other, "mm").tolist() == [0.0, np.inf, 0.0]
