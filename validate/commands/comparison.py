@@ -31,7 +31,7 @@ from validate.comparison.examined import Examined, examine
 from validate.diagnosis import explain_outcome
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.formulations.registry import NAMES, WORDS, formulation
+from validate.formulations.registry import NAMES, WORDS, formulation, second_there
 from validate.output import report
 from validate.output.console import Console
 from validate.output.progress import progress
@@ -44,9 +44,9 @@ from validate.solvers.check import ACCURACY, required_accuracy
 from validate.solvers.load import solver_at
 from validate.solvers.plain import PlainSolver
 
-FIRST, SECOND = "pointcoord", "absolute"
+FIRST = "pointcoord"
 # Without names on the command line the paper's own algorithm is held to the other model too.
-FURTHER = ("pointcoord-newton", "absolute")
+FURTHER = "pointcoord-newton"
 OF_A_SOLVER = ("--traceback", "--solver-timeout", "--in-process")
 
 _WIDTH = max(map(len, WORDS))
@@ -84,8 +84,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add(
         "--second",
         metavar="NAME",
-        help=f"the one to compare it with ({SECOND} if not given); without --first and --second "
-        f"{FURTHER[0]} is compared with {FURTHER[1]} as well",
+        help="the one to compare it with (absolute if not given, and where Pinocchio is not there, MuJoCo or "
+        f"Exudyn); without --first and --second {FURTHER} is compared with it as well",
     )
     share(parser, "--data", "--map")
     add(
@@ -162,7 +162,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None = None)
 
 def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
     refuse(options, ("--map",), "is about a file of results; give it with --data FILE")
-    names, pairs = _names(options), _pairs(options)
+    names, pairs = _names(options), _pairs(options, console)
     require_input_once(names)
     if options.save_baseline == "-":
         raise UsageError("--save-baseline - is no file; a baseline is not text: give the path of a file")
@@ -235,7 +235,7 @@ def _names(options: argparse.Namespace) -> list[str]:
     return [name for i, name in enumerate(named) if name == STANDARD_INPUT or name not in named[:i]]
 
 
-def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
+def _pairs(options: argparse.Namespace, console: Console) -> tuple[tuple[str, str], ...]:
     """Which formulations are compared."""
     if "" in (options.first, options.second):
         raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
@@ -250,9 +250,13 @@ def _pairs(options: argparse.Namespace) -> tuple[tuple[str, str], ...]:
         ("--accuracy",),
         "is about a solver or a file: give --solver MODULE:NAME or --data FILE",
     )
+    first, second = options.first or FIRST, options.second
+    if second is None:
+        second, why = second_there()
+        if second != "absolute":
+            console.warn(f"absolute is missing, {second} stands in for it: {why}")
     if options.first is None and options.second is None:
-        return (FIRST, SECOND), FURTHER
-    first, second = options.first or FIRST, options.second or SECOND
+        return (FIRST, second), (FURTHER, second)
     if first == second:
         others = ", ".join(name for name in NAMES if name != first)
         raise UsageError(

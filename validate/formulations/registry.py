@@ -72,6 +72,22 @@ def formulation(name: str) -> Formulation:
         raise MissingPackage(name, error) from error
 
 
+def second_there() -> tuple[str, str]:
+    """What stands beside pointcoord where nobody names a second one, and why it is not the absolute model.
+
+    There are systems that Pinocchio is not built for; the programs in `OUTSIDE` are.
+    """
+    why = ""
+    for name in ("absolute", *OUTSIDE):
+        try:
+            formulation(name)
+        except MissingPackage as error:
+            why = why or str(error)
+        else:
+            return name, why
+    return "absolute", why
+
+
 def _absolute() -> Formulation:
     from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 

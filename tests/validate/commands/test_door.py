@@ -224,6 +224,17 @@ def test_solving_needs_no_extra(words: str, tmp_path: Path) -> None:
         assert (done.returncode, complaints(done.stderr)) == (0, [])
 
 
+def test_without_pinocchio_another_program_is_the_second_model_and_that_is_said(tmp_path: Path) -> None:
+    (tmp_path / "pinocchio.py").write_text("raise ModuleNotFoundError(name='pinocchio')\n")
+    done = with_fake(tmp_path, "validate", "steer")
+    assert done.returncode == 0, done.stderr
+    assert "pointcoord and mujoco; pointcoord-newton and mujoco: 1 scene" in done.stdout
+    assert "absolute is missing, mujoco stands in for it: the absolute model needs Pinocchio" in done.stderr
+    asked = with_fake(tmp_path, "validate", "steer", "--second", "absolute")
+    assert asked.returncode == 2
+    assert "the absolute model needs Pinocchio" in asked.stderr
+
+
 def test_every_module_says_which_extra_it_lacks() -> None:
     program = (
         "import importlib, pkgutil, sys\n"
