@@ -179,10 +179,10 @@ class SolvedScene(ABC):
         if (times[1:] >= times[:-1]).all():
             self.fill(times, rows)
         else:
-            order = np.argsort(times, kind="stable")
+            order, room = np.argsort(times, kind="stable"), readout.room(min(ORDERED, len(times)))
             for low in range(0, len(times), ORDERED):
                 places = order[low : low + ORDERED]
-                block = readout.room(len(places))
+                block = room[..., : len(places)]
                 self.fill(times[places], block)
                 rows[..., places] = block
         samples = readout.named(times, rows)
