@@ -57,6 +57,8 @@ def test_poses_on_patches_are_those_from_paths_of_their_own(
             off = np.abs(on_patches.position[point] - from_paths.position[point]).max(axis=-1)
             assert (off <= one + other).all()
     assert (on_patches.carried_bound <= 1e-9).all()
+    # What rides on a body is off by what its carriers are, and more.
+    assert (from_paths.carried_bound > from_paths.bound).all()
 
 
 def test_poses_beside_a_lock_are_on_patches_or_on_paths_and_the_rest_say_why(
