@@ -509,7 +509,7 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    doubts = solved.doubts(samples.times)
+    doubts = {name: law.rounding(samples.times) for name, law in solved.functions.items()}
     if all((doubt <= tolerance).all() for doubt in doubts.values()):
         return
     unproven = ~np.isfinite(solved.proof(samples).bound)

@@ -198,10 +198,6 @@ class SolvedScene(ABC):
             y = self.coordinates(here, 0)[0] if self.readout.plan.ways else None
             self.readout.complete(self.readout.laws(here), self.states(here, block), block, y)
 
-    def doubts(self, times: Array) -> dict[str, Array]:
-        """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
-        return {name: function.rounding(times) for name, function in self.functions.items()}
-
     def proof(self, samples: Samples, *, rates: bool = False, certain: bool = False) -> Proof:
         """What is proven at each of the samples' times.
 

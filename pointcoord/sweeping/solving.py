@@ -15,8 +15,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.angle import WHEEL
-from pointcoord.effects.effect import Doubt, Poses
+from pointcoord.drawing_stands import drawn_angles
+from pointcoord.effects.effect import Doubt
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (
     AssemblyError,
@@ -334,15 +334,7 @@ class _Block:
         )
 
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
-        unit = mechanism.unit[..., None]
-        states = {name: place * unit for name, place in mechanism.places(closed).items()}
-        poses = Poses(mechanism, self.course.axes, (states,), states, (None,))
-        found: dict[str, Array] = {}
-        for effect in self.course.plan.computed:
-            if effect.quantities == (WHEEL,):
-                for numbers in effect.evaluate(poses).values():
-                    found |= numbers
-        return found
+        return drawn_angles(mechanism, self.course.axes, self.course.plan.effects, closed)
 
     def _read(
         self,
