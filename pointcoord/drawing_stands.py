@@ -6,7 +6,7 @@ until it meets a pose beyond which there is none.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import smallest_left_singular_vector
 from pointcoord.results.closing import Closing, closing
@@ -73,7 +74,12 @@ def standing(scene: Scene) -> Standing:
     return Standing(
         inputs=drawn,
         reach={name: _ends(mechanism, closed, name) for name in drawn},
-        angles=_angles(scene, mechanism, closed.y),
+        angles={
+            name: float(angle)
+            for name, angle in drawn_angles(
+                mechanism, scene.mechanism.axes, scene.mechanism.effects, closed.y
+            ).items()
+        },
         closing=closing(mechanism, closed.y),
     )
 
@@ -107,15 +113,16 @@ def _drawn(mechanism: Mechanism, closed: Path) -> dict[str, float]:
     return {name: float(value) + 0.0 for name, value in mechanism.input_values(known).items()}
 
 
-def _angles(scene: Scene, mechanism: Mechanism, y: Array) -> dict[str, float]:
-    """Every angle of the car."""
-    places = {name: place * mechanism.unit for name, place in mechanism.places(y).items()}
-    poses = Poses(mechanism, scene.mechanism.axes, (places,), places, added=(None,))
-    found: dict[str, float] = {}
-    for effect in EFFECTS.values():
-        if effect.quantities == (WHEEL,) and not scene.mechanism.refusal(effect):
+def drawn_angles(mechanism: Mechanism, axes: CarAxes, effects: Iterable[str], y: Array) -> dict[str, Array]:
+    """The angles that some effects give of poses y, (..., size), each (...,), rad."""
+    unit = mechanism.unit[..., None]
+    places = {name: place * unit for name, place in mechanism.places(y).items()}
+    poses = Poses(mechanism, axes, (places,), places, added=(None,))
+    found: dict[str, Array] = {}
+    for effect in (EFFECTS[name] for name in effects):
+        if effect.quantities == (WHEEL,):
             for numbers in effect.evaluate(poses).values():
-                found |= {name: float(number) for name, number in numbers.items()}
+                found |= numbers
     return found
 
 

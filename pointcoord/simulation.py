@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -51,7 +51,7 @@ Array = NDArray[np.float64]
 TRIED = 32
 # Largest share of a scene's tolerance that solved points may use (see `truncation_share`).
 TRUNCATION_SHARE = 0.1
-# Instants that are checked at a time: what is made on the way takes some 5 MB.
+# Instants that are checked at a time: the known coordinates of each take some 5 MB.
 BLOCK = 2**14
 
 
@@ -436,31 +436,15 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
 
 
 def check_range(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    """Find an input out of range at the scene's instants before anything is solved.
-
-    A block at a time; only of a scene that is refused are all looked at, for the value that tells most.
-    """
-    try:
-        for block in _blocks(instants):
-            _check_range_at(mechanism, functions, block)
-        return
-    except InputOutOfRange as error:
-        found = error
-    _check_range_at(mechanism, functions, instants)
-    raise found
-
-
-def _check_range_at(mechanism: Mechanism, functions: Mapping[str, TimeFunction], instants: Array) -> None:
-    try:
-        mechanism.known_series({name: f.series(instants, 0) for name, f in functions.items()})
-    except InputOutOfRange as error:
-        values = functions[error.name].series(instants, 0)[:, 0]
-        when = float(instants[np.argmax(values == error.value)])
-        raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
-
-
-def _blocks(rows: Array) -> Iterator[Array]:
-    return (rows[low : low + BLOCK] for low in range(0, len(rows), BLOCK))
+    """Find an input out of range at the scene's instants before anything is solved."""
+    for low in range(0, len(instants), BLOCK):
+        block = instants[low : low + BLOCK]
+        series = {name: function.series(block, 0) for name, function in functions.items()}
+        try:
+            mechanism.known_series(series)
+        except InputOutOfRange as error:
+            when = float(block[np.argmax(series[error.name][:, 0] == error.value)])
+            raise InputOutOfRange(error.name, error.value, error.allowed, when) from None
 
 
 def truncation_share(mechanism: Mechanism) -> float:
@@ -525,10 +509,9 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
     Raises:
         InputNotKnown: it does, and with the law's values as they are the pose is proven.
     """
-    each = (doubt for block in _blocks(samples.times) for doubt in solved.doubts(block).values())
-    if all((doubt <= tolerance).all() for doubt in each):
+    doubts = {name: law.rounding(samples.times) for name, law in solved.functions.items()}
+    if all((doubt <= tolerance).all() for doubt in doubts.values()):
         return
-    doubts = solved.doubts(samples.times)
     unproven = ~np.isfinite(solved.proof(samples).bound)
     unproven &= np.isfinite(solved.proof(samples, certain=True).bound)
     if unproven.any():
@@ -541,33 +524,14 @@ def require_known(solved: SolvedScene, samples: Samples, tolerance: float) -> No
 
 def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
     """Which numbers are none, and why."""
-    if _all_are_numbers(solved, samples):
-        return ()
-    notes = []
+    notes, count = [], len(samples.times)
     for effect in solved.readout.plan.computed:
         why = f": {effect.no_number}" if effect.no_number else ""
         for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
             for name in effect.names or channel:
-                numbers = channel[name].reshape(len(samples.times), -1)
-                known = (np.isfinite(block).all(axis=-1) for block in _blocks(numbers))
-                bad = sum(int(np.count_nonzero(~each)) for each in known)
-                if bad:
-                    notes.append(
-                        f"{channel.quantity.words} of {name} is not a number at {bad} of "
-                        f"{len(samples.times)} instants{why}"
-                    )
+                known = np.isfinite(channel[name])
+                if not known.all():
+                    bad = count - np.count_nonzero(known.reshape(count, -1).all(axis=-1))
+                    what = f"{channel.quantity.words} of {name}"
+                    notes.append(f"{what} is not a number at {bad} of {count} instants{why}")
     return tuple(notes)
-
-
-def _all_are_numbers(solved: SolvedScene, samples: Samples) -> bool:
-    """Whether no number is missing, looked at all at once where there are few instants."""
-    count = len(samples.times)
-    if count > BLOCK:
-        return False
-    found = [
-        samples.numbers[quantity][name].reshape(count, -1)
-        for effect in solved.readout.plan.computed
-        for quantity in effect.gives_numbers
-        for name in effect.names or samples.numbers[quantity]
-    ]
-    return bool(np.isfinite(np.concatenate(found, axis=1)).all())

@@ -9,11 +9,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import zipfile
-import zlib
 from collections.abc import Mapping, Sequence
 from io import BytesIO
-from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -34,27 +31,11 @@ Content = tuple[Scene, float, Patches, Gaps]
 """A map: its scene, its tolerance, and its patches and gaps."""
 
 FORMAT, VERSION = "pointcoord kinematic map", 1
-PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 ALLOWED = "a map as KinematicMap.save writes it"
-DAMAGED = (
-    ValueError,
-    EOFError,
-    AttributeError,
-    LookupError,
-    TypeError,
-    ArithmeticError,
-    MemoryError,  # a size that was never written
-    RuntimeError,  # a password
-    SyntaxError,  # an array whose header is no Python
-    TokenError,  # likewise
-    zipfile.BadZipFile,
-    zlib.error,
-)
-"""What reading other bytes than those of a map's file ends with."""
 
 
 def packed(content: Content) -> bytes:
-    """A map as the bytes of its file: a zip archive of one npy file for each array."""
+    """A map as the bytes of its file."""
     scene, tolerance, patches, gaps = content
     reasons = list(dict.fromkeys(reason for _, reason in gaps))
     inputs = len(patches.domain.free)
@@ -84,12 +65,9 @@ def packed(content: Content) -> bytes:
             "reasons": reasons,
         }
     )
-    words = {"format": FORMAT, "version": VERSION, "head": head, "digest": _digest(head, arrays)}
     stream = BytesIO()
-    with zipfile.ZipFile(stream, "w") as archive:
-        for name, array in (words | arrays).items():
-            with archive.open(f"{name}.npy", "w", force_zip64=True) as part:
-                np.lib.format.write_array(part, np.asarray(array, order="C"), allow_pickle=False)
+    words: dict[str, Any] = {"format": FORMAT, "version": VERSION, "head": head}
+    np.savez(stream, **(words | arrays), digest=_digest(head, arrays))
     return stream.getvalue()
 
 
@@ -102,13 +80,9 @@ def unpacked(data: bytes, what: str) -> Content:
         MapError: they are another file's, of another version, or damaged.
     """
     try:
-        with zipfile.ZipFile(BytesIO(data)) as archive:
-            if any(part.compress_type not in PACKED for part in archive.infolist()):
-                raise zipfile.BadZipFile("packed in a way that numpy does not use")
-            # A part is read to its end, where its checksum stands, before anything is made of it.
-            parts = {name.removesuffix(".npy"): archive.read(name) for name in archive.namelist()}
-        found = {name: np.lib.format.read_array(BytesIO(part)) for name, part in parts.items()}
-    except DAMAGED as error:
+        with np.load(BytesIO(data), allow_pickle=False) as archive:
+            found = dict(archive)
+    except Exception as error:  # what reading other bytes ends with is numpy's affair, and zipfile's
         raise MapError(what, "is no npz file, or a damaged one", ALLOWED) from error
     if str(found.pop("format", "")) != FORMAT:
         raise MapError(what, "is no kinematic map", ALLOWED)
@@ -122,7 +96,7 @@ def unpacked(data: bytes, what: str) -> Content:
         return _content(json.loads(text), found, what)
     except MapError:
         raise
-    except (*DAMAGED, PointcoordError) as error:
+    except (PointcoordError, LookupError, TypeError, ValueError) as error:
         raise MapError(what, f"does not hold a whole map: {error}", ALLOWED) from error
 
 

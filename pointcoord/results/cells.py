@@ -312,9 +312,10 @@ class CloseInstants:
 
     def _largest_of_a_kind(self, terms: Array) -> Array:
         """Of all rows that are the same derivative, in each row."""
-        ends = np.cumsum([0, *map(len, self._kinds)]).tolist()
-        largest = [terms[low:high].max(axis=0, keepdims=True, initial=0.0) for low, high in pairwise(ends)]
-        return np.concatenate(largest)[np.repeat(np.arange(len(largest)), np.diff(ends))]
+        largest = np.empty_like(terms)
+        for low, high in pairwise([0, *accumulate(map(len, self._kinds))]):
+            largest[low:high] = terms[low:high].max(axis=0, initial=0.0)
+        return largest
 
     @cached_property
     def _segments(self) -> tuple[Array, Array]:

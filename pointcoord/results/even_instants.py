@@ -12,8 +12,6 @@ Array = NDArray[np.float64]
 
 # Whole numbers up to 2^53 are exact, so that their quotient is rounded once.
 EXACT = 2**53
-# Instants at a time, which take half a MB: a scene of millions takes no more than its instants.
-BLOCK = 2**14
 
 
 def even_instants(start: float, stop: float, samples: int, first: int = 0, last: int | None = None) -> Array:
@@ -24,17 +22,7 @@ def even_instants(start: float, stop: float, samples: int, first: int = 0, last:
     start = a / d, stop = b / d and n steps that is (a n + i (b - a)) / (d n), a quotient of whole numbers;
     where these are too large to be exact, the instants are rounded a few times more.
     """
-    last = samples if last is None else last
-    instants = np.empty(last - first)
-    for low in range(first, last, BLOCK):
-        high = min(low + BLOCK, last)
-        instants[low - first : high - first] = _even_instants(start, stop, samples, low, high)
-    return instants
-
-
-def _even_instants(start: float, stop: float, samples: int, first: int, last: int) -> Array:
-    steps = samples - 1
-    numbers = np.arange(first, last)
+    steps, numbers = samples - 1, np.arange(first, samples if last is None else last)
     if steps < 1:
         return np.full(len(numbers), start)
     exact_start, exact_stop = Fraction(repr(start)), Fraction(repr(stop))

@@ -179,10 +179,10 @@ class SolvedScene(ABC):
         if (times[1:] >= times[:-1]).all():
             self.fill(times, rows)
         else:
-            order = np.argsort(times, kind="stable")
+            order, room = np.argsort(times, kind="stable"), readout.room(min(ORDERED, len(times)))
             for low in range(0, len(times), ORDERED):
                 places = order[low : low + ORDERED]
-                block = readout.room(len(places))
+                block = room[..., : len(places)]
                 self.fill(times[places], block)
                 rows[..., places] = block
         samples = readout.named(times, rows)
@@ -197,10 +197,6 @@ class SolvedScene(ABC):
             here, block = times[low : low + BLOCK], rows[..., low : low + BLOCK]
             y = self.coordinates(here, 0)[0] if self.readout.plan.ways else None
             self.readout.complete(self.readout.laws(here), self.states(here, block), block, y)
-
-    def doubts(self, times: Array) -> dict[str, Array]:
-        """How far the computed value of each law may be from the law's own, each (N,), rad or mm."""
-        return {name: function.rounding(times) for name, function in self.functions.items()}
 
     def proof(self, samples: Samples, *, rates: bool = False, certain: bool = False) -> Proof:
         """What is proven at each of the samples' times.

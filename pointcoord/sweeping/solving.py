@@ -15,8 +15,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.angle import WHEEL
-from pointcoord.effects.effect import Doubt, Poses
+from pointcoord.drawing_stands import drawn_angles
+from pointcoord.effects.effect import Doubt
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.errors import (
     AssemblyError,
@@ -61,27 +61,11 @@ Points = Mapping[str, Array]
 
 # Designs that are solved together at most: of 128 to 2048 tried, the quickest or near it.
 TOGETHER = 512
-# Bytes that solving takes on the way: of a design for its matrices and for products of its series, beside
-# these themselves, twice, because they are put together from parts; before they are known, for all of it; and
+# Bytes that solving takes on the way: of a design for its matrices and series and for products of these; and
 # of a number of the results at an instant for what the effects are made of.
-OF_A_DESIGN, BEFORE, OF_A_NUMBER = 150_000, 450_000, 16
-# Designs that are solved first, to know what one takes.
-FIRST = 64
+OF_A_DESIGN, OF_A_NUMBER = 450_000, 16
 # Two orders of summing the same three products differ by less than this part of the largest.
 SLACK = 1e-12
-
-
-class Pace:
-    """How many designs are solved at a time, by what those before them took."""
-
-    def __init__(self, memory: float, of_effects: int, first: int) -> None:
-        self.together = first
-        self._memory, self._of_effects = memory, of_effects
-
-    def learn(self, series: int) -> None:
-        """What the series of a design took at most, in bytes."""
-        each = OF_A_DESIGN + 2 * series + self._of_effects
-        self.together = int(min(TOGETHER, max(self._memory // each, 1)))
 
 
 @dataclass(frozen=True)
@@ -139,46 +123,36 @@ class Course:
 
     @property
     def bytes_on_the_way(self) -> int:
-        """What solving one design takes beside its numbers, before more is known."""
-        return BEFORE + self._of_effects
-
-    @property
-    def _of_effects(self) -> int:
+        """What solving one design takes beside its numbers."""
         table, count = self.table, min(len(self.scene.instants), INSTANTS)
-        return (OF_A_NUMBER * table.height * bool(table.computed) + 24 * len(table.spare)) * count
-
-    def pace(self, memory: float = np.inf) -> Pace:
-        """How many designs are solved at a time in so many bytes beside their numbers."""
-        return Pace(memory, self._of_effects, int(min(FIRST, max(memory // self.bytes_on_the_way, 1))))
+        return (
+            OF_A_DESIGN + (OF_A_NUMBER * table.height * bool(table.computed) + 24 * len(table.spare)) * count
+        )
 
     def room(self, count: int) -> Array:
         """Room for the numbers of so many designs."""
         return np.empty((count, self.table.height, len(self.scene.instants)))
 
-    def solve(self, first: int, last: int, pace: Pace, room: Array | None = None) -> Sweep:
+    def solve(self, first: int, last: int, memory: float = np.inf, room: Array | None = None) -> Sweep:
         """What becomes of the designs from number `first` to before `last`.
 
         Args:
-            pace: how many are solved at a time, which it learns on the way.
+            memory: bytes for solving, beside the numbers.
             room: for the numbers of as many designs or more; new if not given.
         Raises:
             InputOutOfRange, InputNotKnown: a law that all designs share.
         """
         rows = self.room(last - first) if room is None else room[: last - first]
-        block = _Block.empty(self, first, rows)
-        low = first
-        while low < last:
-            numbers = np.arange(low, min(low + pace.together, last))
-            low += len(numbers)
-            taken = 0
+        block, together = _Block.empty(self, first, rows), int(min(TOGETHER, memory // self.bytes_on_the_way))
+        for low in range(first, last, max(together, 1)):
+            numbers = np.arange(low, min(low + max(together, 1), last))
             for law, members in self._by_laws(numbers):
                 try:
-                    taken = max(taken, block.solve(law, members))
+                    block.solve(law, members)
                 except PointcoordError as error:
                     if self.which is None:
                         raise
                     block.fail(members, error)
-            pace.learn(taken)
         return block.sweep()
 
     def _by_laws(self, numbers: Numbers) -> Iterator[tuple[int, Numbers]]:
@@ -253,9 +227,8 @@ class _Block:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
             self.filled[int(number) - self.first] = False
 
-    def solve(self, law: int, members: Numbers) -> int:
-        """Solve designs that share their laws, by their number; the bytes that the series of one take."""
-        taken = 0
+    def solve(self, law: int, members: Numbers) -> None:
+        """Solve designs that share their laws, by their number."""
         course = self.course
         points = course.designs.points(members)
         sound = np.ones(len(members), dtype=bool)
@@ -269,12 +242,11 @@ class _Block:
             # Which rows follow from others hangs on each drawing.
             for number in members[sound].tolist():
                 self._alone_from_its_drawing(number)
-            return 0
+            return
         for own, mechanism in self._mechanisms(members[sound], {n: p[sound] for n, p in points.items()}):
             places = np.searchsorted(members, own)
             self._look_at(own, {name: place[places] for name, place in points.items()})
-            taken = max(taken, self._move(law, own, mechanism))
-        return taken
+            self._move(law, own, mechanism)
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
         """The mechanism of all that have one, found in halves where some have none."""
@@ -313,8 +285,8 @@ class _Block:
             weight = 0.0 if weights is None else float(weights[place])
             self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
 
-    def _move(self, law: int, members: Numbers, mechanism: Mechanism) -> int:
-        """Close, assemble and move designs, and read their numbers; the bytes that the series of one take."""
+    def _move(self, law: int, members: Numbers, mechanism: Mechanism) -> None:
+        """Close, assemble and move designs, and read their numbers."""
         course, scene = self.course, self.course.laws[law]
         time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
@@ -333,7 +305,6 @@ class _Block:
                 self._alone(int(members[place]))
                 continue
             self.fail([members[place]], error)
-        return solved.bytes_of_a_design
 
     def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
         """Refuse drawings whose closing makes another car of them, and note how far the others move."""
@@ -363,15 +334,7 @@ class _Block:
         )
 
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
-        unit = mechanism.unit[..., None]
-        states = {name: place * unit for name, place in mechanism.places(closed).items()}
-        poses = Poses(mechanism, self.course.axes, (states,), states, (None,))
-        found: dict[str, Array] = {}
-        for effect in self.course.plan.computed:
-            if effect.quantities == (WHEEL,):
-                for numbers in effect.evaluate(poses).values():
-                    found |= numbers
-        return found
+        return drawn_angles(mechanism, self.course.axes, self.course.plan.effects, closed)
 
     def _read(
         self,

@@ -59,7 +59,7 @@ def sweep(
             f"has {count} designs, whose numbers take {needed / 1e9:.3g} GB",
             f"what fits into this machine's {room / 1e9:.3g} GB; use sweep_blocks, which takes any number",
         )
-    return course.solve(0, count, course.pace())
+    return course.solve(0, count)
 
 
 def sweep_blocks(
@@ -89,11 +89,11 @@ def sweep_blocks(
     course = Course.of(_designs(designs, points, offsets, grid))
     require_room(course, memory)
     # Half for the numbers of a block and half for what is solved together.
-    pace = course.pace(max(0.5 * memory, course.bytes_on_the_way))
-    left = memory - max(0.5 * memory, course.bytes_on_the_way)
+    solving = max(0.5 * memory, course.bytes_on_the_way)
+    left = memory - solving
     size, count = int(max(left // course.bytes_of_a_design, 1)), course.designs.count
     room = course.room(min(size, count)) if reuse else None
-    return (course.solve(first, min(first + size, count), pace, room) for first in range(0, count, size))
+    return (course.solve(first, min(first + size, count), solving, room) for first in range(0, count, size))
 
 
 def _designs(

@@ -246,35 +246,6 @@ def test_turned_or_mirrored_car_moves_turned_or_mirrored(
 
 @by_kind
 @few
-@given(
-    data=st.data(),
-    run=inputs(),
-    axes=st.permutations([0, 1, 2]),
-    signs=st.tuples(*[st.sampled_from([-1.0, 1.0])] * 3),
-)
-def test_no_axis_of_the_frame_is_special(
-    make_scene: Callable[..., Scene],
-    kind: Kind,
-    data: st.DataObject,
-    run: dict[str, Any],
-    axes: list[int],
-    signs: tuple[float, ...],
-) -> None:
-    # All 48 turns and mirror images that leave the axes in place: hardpoints are not rounded at all.
-    changed_car(
-        make_scene,
-        kind.sample,
-        data.draw(kind.cars),
-        run,
-        "newton",
-        np.eye(3)[axes] * np.array(signs)[:, None],
-        np.zeros(3),
-        1.0,
-    )
-
-
-@by_kind
-@few
 @given(data=st.data(), run=inputs(), shift=vectors, power=st.integers(0, 8), method=methods)
 def test_moved_car_moves_the_same_elsewhere(
     make_scene: Callable[..., Scene],

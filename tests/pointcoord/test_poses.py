@@ -57,6 +57,8 @@ def test_poses_on_patches_are_those_from_paths_of_their_own(
             off = np.abs(on_patches.position[point] - from_paths.position[point]).max(axis=-1)
             assert (off <= one + other).all()
     assert (on_patches.carried_bound <= 1e-9).all()
+    # What rides on a body is off by what its carriers are, and more.
+    assert (from_paths.carried_bound > from_paths.bound).all()
 
 
 def test_poses_beside_a_lock_are_on_patches_or_on_paths_and_the_rest_say_why(
@@ -140,15 +142,3 @@ def test_the_bound_of_a_pose_holds_where_a_patch_is_coarse_and_is_not_far_from_t
         off = np.max([np.abs(coarse.position[p] - finest.position[p]).max(axis=-1) for p in points], axis=0)
         assert (off <= bound + rest).all()
         assert (off / bound).max() > 0.01
-
-
-@pytest.mark.parametrize("part", ["bound", "carried_bound"])
-def test_a_bound_that_is_a_hundredth_of_the_proven_one_is_seen(part: str) -> None:
-    """The comparison above would notice bounds that do not hold."""
-    scene, rng = Scene.load("bounce"), np.random.default_rng(13)
-    inputs = {"arm_angle": 1.6 + rng.uniform(-0.1, 0.1, 3000), "rack": rng.uniform(-10.0, 10.0, 3000)}
-    finest, coarse = (solve_poses(scene, inputs, tolerance=tolerance) for tolerance in (1e-9, 1e-2))
-    topology = scene_mechanism(scene).topology
-    points = topology.moving if part == "bound" else topology.carried
-    off = np.max([np.abs(coarse.position[p] - finest.position[p]).max(axis=-1) for p in points], axis=0)
-    assert (off > 0.01 * getattr(coarse, part)).any()

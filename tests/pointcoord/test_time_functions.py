@@ -84,19 +84,6 @@ def test_table_is_the_not_a_knot_spline(seed: int, count: int) -> None:
     assert np.abs(table.series(times, 0)[:, 0] - values).max() <= 100 * 50 * EPS
 
 
-@plain
-@given(coefficients=st.tuples(numbers, numbers, numbers, numbers), seed=st.integers(0, 2**32 - 1))
-def test_table_of_a_cubic_is_the_cubic(coefficients: tuple[float, ...], seed: int) -> None:
-    times = np.cumsum(np.random.default_rng(seed).uniform(0.5, 1.5, size=6))
-    cubic = Polynomial(coefficients)
-    table = Table(tuple(times.tolist()), tuple(cubic.series(times, 0)[:, 0].tolist()))
-    instants = np.linspace(times[0], times[-1], 11)
-    # Values up to 3 * (1 + 9 + 81 + 729) are rounded and differenced three times over steps of 0.5 and
-    # more in a system of condition number below 100.
-    tolerance = 100 * 2**3 * 8 * EPS * 3 * 820
-    assert np.abs(table.series(instants, 3) - cubic.series(instants, 3)).max() <= tolerance
-
-
 def test_only_the_third_derivative_of_a_table_jumps_and_only_at_its_breaks() -> None:
     times, values = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0), (0.0, 1.0, 0.0, 2.0, -1.0, 0.5)
     table = Table(times, values)
@@ -111,38 +98,6 @@ def test_only_the_third_derivative_of_a_table_jumps_and_only_at_its_breaks() -> 
     assert max(jumps) > 0.5
     # Not-a-knot: the first and the last inner time carry no jump.
     assert max(jumps[0], jumps[-1]) <= 1e3 * EPS
-
-
-@pytest.mark.parametrize("function", [Polynomial((1.0, 2.0)), Sine(1.0, 2.0)])
-def test_analytic_functions_have_no_breaks(function: TimeFunction) -> None:
-    assert function.breaks == ()
-
-
-@pytest.mark.parametrize(
-    "function",
-    [
-        Polynomial((1.0, -2.0, 0.5)),
-        Sine(1.0, 2.0, 0.3, 4.0),
-        Table((0.0, 1.0, 2.0, 3.0), (0.0, 1.0, 1.0, 4.0)),
-    ],
-)
-def test_series_of_many_instants_are_those_of_each(function: TimeFunction) -> None:
-    instants = np.array([[0.0, 0.4, 1.0], [1.7, 2.0, 3.0]])
-    together = function.series(instants, 5)
-    assert together.shape == (2, 3, 6)
-    for place in np.ndindex(2, 3):
-        assert np.array_equal(together[place], function.series(float(instants[place]), 5))
-
-
-@plain
-@given(start=numbers, slope=numbers)
-def test_cosine_of_a_straight_line_is_its_taylor_series(start: float, slope: float) -> None:
-    angle = np.zeros(ORDER + 1)
-    angle[:2] = start, slope
-    derivatives = [np.cos(start), -np.sin(start), -np.cos(start), np.sin(start)]
-    exact = [slope**k * derivatives[k % 4] / factorial(k) for k in range(ORDER + 1)]
-    # Each order adds fewer than 4 roundings, of terms no larger than the majorant's.
-    assert (np.abs(cosine_and_sine(angle)[0] - exact) <= 4 * (ORDER + 2) * EPS * majorant(angle)).all()
 
 
 @plain
@@ -163,16 +118,6 @@ def test_squares_of_cosine_and_sine_series_sum_to_one_and_their_rates_fit(angle:
     grown = multiply(size[:-1], np.abs(rate))
     off = (c * np.arange(ORDER + 1))[1:] + multiply(s[:-1], rate)
     assert (np.abs(off) <= 4 * rounding * grown + under).all()
-
-
-def test_cosine_and_sine_of_a_batch_are_those_of_each() -> None:
-    angle = np.random.default_rng(3).normal(size=(2, 3, 6))
-    together = cosine_and_sine(angle)
-    # Sums of six products may be taken in another order.
-    for place in np.ndindex(2, 3):
-        allowed = 16 * EPS * majorant(angle[place]).max()
-        for both, alone in zip(together, cosine_and_sine(angle[place]), strict=True):
-            assert np.allclose(both[place], alone, rtol=0, atol=allowed)
 
 
 @plain
@@ -239,12 +184,6 @@ def test_an_offset_that_nearly_cancels_a_sine_costs_no_digit(seed: int) -> None:
         assert max(sine_error(Sine(amplitude, 2.0, 0.0, float(near)), np.array([t]))) <= 1.0
 
 
-@pytest.mark.parametrize("offset", [1.0, -3e2, 7.7e5])
-def test_an_offset_far_above_a_sine_is_rounded_once(offset: float) -> None:
-    instants = np.linspace(0.1, 3.0, 200)
-    assert max(sine_error(Sine(1e-3, 2.0, 0.0, offset), instants)) <= 1.0
-
-
 @pytest.mark.parametrize("size", [1e306, 1e308, -1e308])
 def test_a_huge_law_is_summed_plainly_and_warns_of_nothing(size: float) -> None:
     with warnings.catch_warnings():
@@ -253,17 +192,6 @@ def test_a_huge_law_is_summed_plainly_and_warns_of_nothing(size: float) -> None:
     # Three roundings of a sum of like signs.
     assert abs(value / (0.24 * size) - 1.0) <= 4 * EPS
     assert abs(rate / (1.4 * size) - 1.0) <= 4 * EPS or np.isinf(rate)
-
-
-@pytest.mark.parametrize(
-    ("instant", "meant"),
-    [(-1.0, (6.0, -8.0, 5.0)), (1.0, (10.0, 12.0, 5.0)), (0.0, (3.0, 2.0, 5.0)), (-0.0, (3.0, 2.0, 5.0))],
-)
-def test_a_polynomial_at_small_whole_instants_is_what_sums_by_hand_give(
-    instant: float, meant: tuple[float, ...]
-) -> None:
-    law = Polynomial((3.0, 2.0, 5.0))
-    assert tuple(law.series(instant, 2).tolist()) == meant
 
 
 SPANS: list[tuple[TimeFunction, float]] = [

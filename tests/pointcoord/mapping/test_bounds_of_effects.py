@@ -94,14 +94,6 @@ def test_every_number_is_within_its_bound_of_the_reference(name: str) -> None:
 
 
 @by_scene
-def test_bounds_are_not_far_from_what_a_coarse_map_is_off(name: str) -> None:
-    scene = with_all_effects(name)
-    states = states_of(scene, name, 22)
-    parts = shares(coarse(name)(*states, bounds=True), exact(scene, states))
-    assert min(parts.values()) > 1e-3, parts
-
-
-@by_scene
 @pytest.mark.parametrize("derivative", range(3))
 def test_a_map_that_is_off_by_more_than_it_says_is_found_out(name: str, derivative: int) -> None:
     """Errors of its sums, of their first or of their second derivatives are told a millionth as large."""

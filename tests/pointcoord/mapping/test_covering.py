@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import cast
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar, by_car
 
-from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, simulate, standing
-from pointcoord.linkage.mechanism import Mechanism
+from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, standing
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches import flood as flooding
-from pointcoord.patches.domain import Domain, widened
+from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
-from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked
 from pointcoord.patches.patches import ProvenPatches
 from pointcoord.solve.assembly import assemble, close_drawing
@@ -43,58 +39,6 @@ def scene_of(car: SampleCar) -> Scene:
             "time": {"start": 0.0, "stop": 0.0, "samples": 1},
         }
     )
-
-
-@pytest.mark.parametrize(
-    ("tolerance", "derivative", "inputs", "order"),
-    [
-        (1e-6, 0, 1, 9),  # a digit each of 1e-6 mm in a car of 1000 mm
-        (1e-6, 1, 2, 11),
-        (1e-6, 2, 1, 13),
-        (1e-6, 0, 3, 9),
-        (1.0, 0, 2, 6),  # no fewer
-        (1e-20, 0, 1, 16),  # a double has no more digits
-        (1e-20, 1, 1, 18),
-        (1e-20, 2, 2, 20),
-        (1e-12, 2, 1, 19),
-        (1e-20, 0, 3, 12),  # of three inputs 12 are 455 powers
-    ],
-)
-def test_series_have_an_order_for_each_digit_and_two_for_each_derivative(
-    tolerance: float, derivative: int, inputs: int, order: int
-) -> None:
-    names = ["arm_angle", "rack", "wheel"][:inputs]
-    mechanism = SimpleNamespace(unit=1e3, topology=SimpleNamespace(required_inputs=names))
-    domain = Domain(cast(Mechanism, mechanism), dict.fromkeys(names, (0.0, 1.0)), 0)
-    assert domain.order_for(tolerance, derivative) == order
-
-
-@pytest.mark.parametrize("low", [3.0, -4e3, 0.25])
-def test_a_range_too_narrow_is_widened_alike_on_both_sides_and_no_other(low: float) -> None:
-    least = 2.0**-20 * max(abs(low), 1.0)
-    for high in (low, low + 0.25 * least):
-        first, last = widened(low, high)
-        assert last - first == pytest.approx(least, rel=1e-6)
-        assert low - first == pytest.approx(last - high, rel=1e-6)
-    assert widened(low, low + 2.0 * least) == (low, low + 2.0 * least)
-
-
-@pytest.mark.parametrize(("derivative", "used"), [(0, [0.5, 4.0]), (1, [3.0, 4.0]), (2, [3.0, 10.0])])
-def test_a_patch_uses_the_largest_part_of_what_is_allowed_of_any_derivative(
-    derivative: int, used: list[float]
-) -> None:
-    # Two patches of two inputs with one point; L = 100 mm, so that a part of 1e-2 is a tolerance of 1 mm.
-    coefficients = np.zeros((2, 6, 3))
-    coefficients[:, 1, 0], coefficients[:, 2, 1] = -20.0, 40.0  # S_1 = 20 mm, S_2 = 40 mm
-    coefficients[:, 1, 2] = 3.0  # less than that of another coordinate
-    off = Jet(np.zeros((2, 3)), np.zeros((2, 2, 3)), np.zeros((2, 2, 2, 3)))
-    off.value[0, 1], off.value[1, 2] = 0.5, 4.0  # of 1 mm
-    off.first[0, 1, 2] = 3.0 * 1e-2 * 40.0
-    off.first[1, 0, 0] = 2.0 * 1e-2 * 20.0
-    off.second[0, 1, 1, 0] = 2.0 * 1e-2 * 40.0 * 40.0 / 100.0
-    off.second[1, 0, 1, 1] = off.second[1, 1, 0, 1] = 10.0 * 1e-2 * 20.0 * 40.0 / 100.0
-    found = Limits(1.0, derivative).used(coefficients, off, 100.0)
-    np.testing.assert_allclose(found, used, rtol=1e-12)
 
 
 @pytest.mark.parametrize("which", [0, 1])
@@ -247,17 +191,6 @@ def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_an
         assert [reason for _, reason in seamed.given_up] == [SEAM]
 
 
-@pytest.mark.parametrize("corner", [(0, 0), (0, 128)])
-def test_where_no_path_leads_far_boxes_are_entered_from_their_neighbours(
-    monkeypatch: pytest.MonkeyPatch, corner: tuple[int, int]
-) -> None:
-    domain = paper_domain()
-    monkeypatch.setattr(flooding, "STEPS", 1)
-    found = flood(domain, 8, Limits(1e-6), entry(domain, corner), 4096)
-    assert found.given_up == ()
-    assert np.prod(found.patches.high - found.patches.low, axis=-1).sum() == 64**2
-
-
 def test_only_what_is_wanted_of_a_range_is_covered_and_all_of_that() -> None:
     domain = paper_domain()
     marks = np.zeros((64, 64), dtype=bool)
@@ -275,22 +208,3 @@ def test_a_range_that_the_drawing_cannot_reach_is_refused_with_what_stops_it() -
     last = standing(scene).reach["rack"][1].value
     with pytest.raises(AssemblyError, match=r"wanted .*rack"):
         kinematic_map(scene, {"arm_angle": (1.6, 1.7), "rack": (last + 50.0, last + 60.0)})
-
-
-def test_where_the_map_has_no_answer_simulation_has_none_or_a_fold_is_near() -> None:
-    scene = scene_of(PAPER_STRUT)
-    ranges = {"arm_angle": (0.5, 1.0), "rack": (-80.0, 80.0)}
-    map = kinematic_map(scene, ranges, 1e-6)
-    low, high = np.array([*ranges.values()]).T
-    values = np.random.default_rng(6).uniform(low, high, (300, 2))
-    covered = map.covers({"arm_angle": values[:, 0], "rack": values[:, 1]})
-    assert 0 < covered.sum() < 300
-    content = scene.model_dump(exclude_none=True)
-    for value in values[~covered][:12]:
-        names = ("arm_angle", "rack")
-        content["inputs"] = {n: {"constant": float(v)} for n, v in zip(names, value, strict=True)}
-        try:
-            motion = simulate(Scene.from_mapping(content))
-        except AssemblyError:
-            continue
-        assert motion.start.condition > 1e3

@@ -15,10 +15,8 @@ from pointcoord import (
     Motion,
     MotionNotMapped,
     MotionTooLong,
-    PointcoordError,
     Scene,
     simulate,
-    simulation,
     standing,
 )
 from pointcoord.method import MAP
@@ -176,41 +174,6 @@ def test_near_a_fold_what_no_patch_covers_is_refused_with_its_place(
     assert simulate(scene).method == "series"
 
 
-@pytest.mark.parametrize(
-    ("arm", "rack", "kind"),
-    [
-        ([1.6], [0.0, 100.0], AssemblyError),
-        ([1.6, 0.3], [0.0, 20.0, 30.0], AssemblyError),
-        ([1.6], [0.0, 55.0], MotionNotMapped),
-        ([1.6, 0.2], [0.0, 30.0], MotionNotMapped),
-    ],
-)
-def test_what_stops_a_map_is_what_stops_a_path_that_is_proven_step_by_step(
-    make_scene: Make,
-    monkeypatch: pytest.MonkeyPatch,
-    arm: list[float],
-    rack: list[float],
-    kind: type[PointcoordError],
-) -> None:
-    # Of a map that gives up at once all of the way to the next instant is looked at.
-    monkeypatch.setattr(way_map, "HALVINGS", {1: 0, 2: 0})
-    scene = make_scene(arm, rack, stop=2.0, samples=2)
-    said = {}
-    for stepping in (True, False):
-        if not stepping:
-            monkeypatch.setattr(simulation, "stepped", lambda *_: None)
-        with pytest.raises(kind) as caught:
-            simulate(scene, "map")
-        said[stepping] = caught.value
-    plain, quick = said[False], said[True]
-    if isinstance(plain, AssemblyError):
-        assert (quick.limits, quick.reduce, quick.instant) == (plain.limits, plain.reduce, plain.instant)
-        # Both end at the fold, which is found to the square root of rounding in the unknowns, and so to some
-        # roundings of the inputs' own sizes.
-        for name, value in plain.reached.items():
-            assert abs(quick.reached[name] - value) <= 1e-12 * max(abs(value), abs(plain.wanted[name]))
-
-
 def test_a_step_is_not_taken_across_a_fold_nor_far_from_its_tangent(make_scene: Make) -> None:
     scene = make_scene([1.6], [0.0])
     task = prepare_task(scene, MAP)
@@ -229,8 +192,3 @@ def test_a_step_is_not_taken_across_a_fold_nor_far_from_its_tangent(make_scene: 
     assert follow(mechanism.map, y, at(0.999 * far)).done == 1.0
     assert stepped(mechanism.map, y, at(0.999 * far)) is None
     assert stepped(mechanism.map, y, at(1.001 * far)) is None
-
-
-def test_a_pose_that_stands_still_is_solved_too(make_scene: Make) -> None:
-    scene = make_scene([1.6], [2.0], samples=3)
-    assert largest_share(simulate(scene, "map"), simulate(scene, "newton")) <= 1.0

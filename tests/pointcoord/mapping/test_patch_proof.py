@@ -7,13 +7,9 @@ zero but the first.
 
 from __future__ import annotations
 
-import inspect
-import sys
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import perm
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -67,14 +63,14 @@ def root() -> tuple[Factors, Array]:
     return factors, expand(SQUARE, factors, CENTRE[None], known, inputs=2)
 
 
-def errors_are_bounded(proof: ModuleType) -> bool:
-    """Whether the bounds of the root's errors hold."""
+def test_errors_of_a_root_are_within_their_bounds() -> None:
+    """Where all terms of the bounds are reached."""
     factors, series = root()
-    found = proof.prove_patches(SQUARE, factors, series, LOW_ORDER, np.zeros((1, 5)), NOTHING).error
+    found = prove_patches(SQUARE, factors, series, LOW_ORDER, np.zeros((1, 5)), NOTHING).error
     u = np.sqrt(1.0 - SLOPES.sum())
     exact = u, -SLOPES / (2.0 * u), -np.outer(SLOPES, SLOPES) / (4.0 * u**3)
     parts = zip(exact, in_the_corner(series[0, :, U]), found.parts, strict=True)
-    return all((np.abs(e - s) <= bound[0, ..., 0]).all() for e, s, bound in parts)
+    assert all((np.abs(e - s) <= bound[0, ..., 0]).all() for e, s, bound in parts)
 
 
 def doubts() -> tuple[Array, Jet, Array]:
@@ -85,17 +81,14 @@ def doubts() -> tuple[Array, Jet, Array]:
     return low, Jet.of(off, EVERY.exponents), off
 
 
-def rest_is_bounded(proof: ModuleType) -> bool:
-    """Whether X C is no more than is said where all of the data are off as far as they may be.
-
-    Here w and v grow with the inputs, so that no term of the two is of another sign.
-    """
+def test_what_is_left_of_data_that_are_off_as_far_as_they_may_be_is_bounded_and_hardly_less() -> None:
+    """Here w and v grow with the inputs, so that no term of the two is of another sign."""
     low, data, off = doubts()
     series = np.zeros((1, EVERY.count, 5))
     series[0, 0] = CENTRE
     series[0, 1:3, W], series[0, 1:3, V] = SLOPES, SLOPES[::-1]
     factors = factorise(SQUARE.jacobian(series[:, 0]))
-    found = proof._remaining(SQUARE, factors, series, LOW_ORDER, low, data)
+    found = patch_proof._remaining(SQUARE, factors, series, LOW_ORDER, low, data)
     whole = series[0] + off[0]
     whole[0] += low[0]
     w, v = (in_the_corner(whole[:, place]) for place in (W, V))
@@ -103,23 +96,23 @@ def rest_is_bounded(proof: ModuleType) -> bool:
     exact = w[0] * v[0] - 1.0, w[1] * v[0] + w[0] * v[1], w[2] * v[0] + mixed + mixed.T + w[0] * v[2]
     # X = 1 / 2. What the centre lacks of both is taken twice, which is below one part in a thousand.
     parts = list(zip(exact, found.parts, strict=True))
-    assert proof is not patch_proof or all((b[0, ..., 0] <= 0.501 * e).all() for e, b in parts)
-    return all((0.5 * e <= b[0, ..., 0] * INFLATION).all() for e, b in parts)
+    assert all((b[0, ..., 0] <= 0.501 * e).all() for e, b in parts)
+    assert all((0.5 * e <= b[0, ..., 0] * INFLATION).all() for e, b in parts)
 
 
-def change_is_bounded(proof: ModuleType) -> bool:
+def test_how_far_the_jacobian_changes_is_bounded() -> None:
     """Whether I - X C_u is no more than is said where p, which is 0, is as far below as it may be."""
     factors, series = root()
     off = np.zeros((1, EVERY.count, 5))
     off[0, :, P] = np.random.default_rng(2).uniform(0.01, 0.02, EVERY.count)
     low = np.array([[0.0, 0.0, 0.0, 0.03, 0.0]])
     data = Jet.of(off, EVERY.exponents)
-    found = proof._change(SQUARE, factors, series, LOW_ORDER, low, data)
+    found = patch_proof._change(SQUARE, factors, series, LOW_ORDER, low, data)
     whole = series[0, :, U] - 0.5 * off[0, :, P]
     whole[0] -= 0.5 * low[0, P]
     value, first, second = in_the_corner(whole)
     parts = zip((1.0 - value, -first, -second), found.parts, strict=True)
-    return all((e <= b[0, ..., 0, 0] * INFLATION).all() for e, b in parts)
+    assert all((e <= b[0, ..., 0, 0] * INFLATION).all() for e, b in parts)
 
 
 ORDER = 10
@@ -163,68 +156,6 @@ def series_of(car: SampleCar, angle: float = 0.0625, travel: float = 6.0) -> Ser
     factors = factorise(mechanism.map.jacobian(y))
     found = expand(mechanism.map, factors, y, known, inputs=2)
     return Series(mechanism, domain, centre, half, factors, found, lacking, data)
-
-
-CHECKS = (errors_are_bounded, rest_is_bounded, change_is_bounded)
-# What is planted, by what it stands for; each is a text that is there once.
-FAULTS = {
-    "remaining.value + applied(z, value)": ("0.5 * remaining.value + applied(z, value)", "remaining.value"),
-    "+ (0.5 * omega * radius**2)": ("+ (0.25 * omega * radius**2)", "+ (0.0 * omega)"),
-    "remaining.first[:, i] + applied": ("0.5 * remaining.first[:, i] + applied", "applied"),
-    "applied(change.first[:, i], value))": ("0.5 * applied(change.first[:, i], value))", "0.0 * value)"),
-    "crossed = omega *": ("crossed = 0.5 * omega *", "crossed = 0.0 * omega *"),
-    "norm(first[:, i]) * norm(first[:, j])": ("norm(first[:, i]) ** 2",),
-    "right = remaining.second[:, i, j]": ("right = 0.5 * remaining.second[:, i, j]",),
-    "+ applied(change.second[:, i, j], value)": ("+ 0.5 * applied(change.second[:, i, j], value)", ""),
-    "+= applied(change.first[:, i], first[:, j])": (
-        "+= 0.5 * applied(change.first[:, i], first[:, j])",
-        "+= applied(change.first[:, i], first[:, i])",
-        "+= 0.0",
-    ),
-    "+ applied(change.first[:, j], first[:, i])": (
-        "+ 0.5 * applied(change.first[:, j], first[:, i])",
-        "+ applied(change.first[:, i], first[:, i])",
-        "",
-    ),
-    "right + applied(z, found)": ("right + 0.5 * applied(z, found)", "right"),
-    "+ (omega * radius * size)": ("+ (0.5 * omega * radius * size)", "+ (0.0 * omega)"),
-    "/ (1.0 - contraction)": ("/ (1.0 - 0.5 * contraction)", ""),
-    "known.each(system.jacobian_uncertainty)": (
-        "known.each(system.jacobian_uncertainty).scaled(0.5)",
-        "data.each(system.jacobian_uncertainty)",
-    ),
-    "_of_factors(system, data)\n": ("_of_factors(system, data.scaled(0.5))\n",),
-}
-SCALED = (
-    "Jet.of(rows @ np.swapaxes(inverse, -1, -2), exponents)",
-    "Jet.of(moved, exponents)",
-    "off[0] * later[1]",
-    "first[1] * off[1]",
-    "off[0] * off[1]",
-    "doubted[0] * later[0]",
-    "first[0] * doubted[1]",
-)
-FAULTS |= {term: tuple(f"({term}).scaled({share})" for share in (0.5, 0.0)) for term in SCALED}
-
-
-@pytest.mark.parametrize("check", CHECKS)
-def test_a_bound_holds_where_all_of_its_terms_are_reached(check: Callable[[ModuleType], bool]) -> None:
-    assert check(patch_proof)
-
-
-@pytest.mark.parametrize(
-    ("right", "wrong"), [(right, wrong) for right, every in FAULTS.items() for wrong in every]
-)
-def test_a_term_of_the_bound_that_is_left_out_halved_or_another_s_is_noticed(
-    monkeypatch: pytest.MonkeyPatch, right: str, wrong: str
-) -> None:
-    source = inspect.getsource(patch_proof)
-    assert source.count(right) == 1
-    faulty = ModuleType("faulty")
-    # Where data classes look for their module.
-    monkeypatch.setitem(sys.modules, "faulty", faulty)
-    exec(source.replace(right, wrong), vars(faulty))
-    assert not all(check(faulty) for check in CHECKS)
 
 
 @by_car
@@ -364,31 +295,6 @@ def test_what_a_series_leaves_is_no_more_than_its_bound_says(doubtful: bool) -> 
             assert left <= Fraction(float(bound)), (seed, d)
             closest[d] = max(closest[d], float(left / Fraction(float(bound))) if bound else 0.0)
     assert (closest > 0.3).all(), closest
-
-
-@by_car
-def test_weights_that_do_not_give_the_drawn_point_are_in_its_bound_and_not_far_below_it(
-    car: SampleCar,
-) -> None:
-    """A carried point whose weight is off by 1e-6 is off by that of its edge, wherever the body stands."""
-    mechanism = car.mechanism()
-    series, error = standing_series(mechanism)
-    names = moving_points(mechanism.topology)
-    drawn, bound = reported_points(mechanism, series, error, 2)
-    assert bound.value.max() < 1e-11  # rounding of a car of some 1000 mm
-    for name in mechanism.topology.carried:
-        for i in range(3):
-            weights = mechanism.carrier_weights[name].copy()
-            weights[i] += 1e-6
-            wrong = replace(mechanism, carrier_weights={**mechanism.carrier_weights, name: weights})
-            found, off = reported_points(wrong, series, error, 2)
-            here = slice(3 * names.index(name), 3 * names.index(name) + 3)
-            moved = np.abs(found - drawn)[0, 0, here]
-            assert moved.max() > 1e-6
-            assert (off.value[0, here] >= moved).all(), (name, i)
-            # Twice that for the inverse of the frame, whose edges are not square; and all three weights are
-            # held to be as far off as the worst of them.
-            assert off.value[0, here].max() <= 100.0 * moved.max(), (name, i)
 
 
 def standing_series(mechanism: Mechanism) -> tuple[Array, Jet]:

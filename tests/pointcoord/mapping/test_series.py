@@ -36,29 +36,6 @@ def test_a_product_of_series_is_the_product_of_their_sums(
     assert np.array_equal(found.T @ product, (left.T @ factors) * (right.T @ factors))
 
 
-@pytest.mark.parametrize("k", [(1,), (6,), (7,), (0, 4), (3, 2), (4, 4), (2, 0, 2), (1, 2, 3), (2, 4, 2)])
-def test_the_pairs_of_a_power_are_each_once_in_a_table_of_exponents(k: tuple[int, ...]) -> None:
-    every = powers(len(k), 8)
-    number = every.exponents.tolist().index(list(k))
-    places = np.stack(np.indices([9] * len(k)), axis=-1)
-    found = {}
-    for alike in (False, True):
-        up, down = every.pairs(alike)[number]
-        first, second = (places[side].reshape(-1, len(k)) for side in (up, down))
-        assert (first + second == k).all()
-        found[alike] = sorted(map(tuple, first.tolist()))
-        assert len(set(found[alike])) == len(first)
-    assert len(found[False]) == prod(one + 1 for one in k)
-    # Of half of them the others are what is left of k.
-    others = [tuple(np.subtract(k, i).tolist()) for i in found[True]]
-    twice = any(one % 2 for one in k)
-    assert every.times[number] == 1.0 + twice
-    assert sorted(found[True] + others if twice else found[True]) == found[False]
-    # Laid out flat a power is where its exponents say.
-    flat = np.arange(9 ** len(k)).reshape([9] * len(k))
-    assert np.arange(9 ** len(k))[every.places(number, number + 1)].tolist() == [flat[k]]
-
-
 @pytest.mark.parametrize("inputs", [1, 2, 3])
 def test_bounds_of_series_and_of_their_products_are_reached_in_the_corner(inputs: int) -> None:
     """Where no term is negative."""
@@ -80,19 +57,6 @@ def test_bounds_of_series_and_of_their_products_are_reached_in_the_corner(inputs
             for j in range(inputs):
                 twice = k[:, i] * (k[:, j] - float(i == j))
                 assert np.array_equal(jet.second[:, i, j], np.einsum("k,pkm->pm", twice, coefficients))
-
-
-def test_what_does_not_depend_on_the_inputs_has_no_derivatives_and_what_is_not_proven_no_bound() -> None:
-    values = np.random.default_rng(1).normal(size=(4, 3))
-    jet = Jet.constant(values, 2)
-    assert np.array_equal(jet.value, np.abs(values))
-    assert (jet.first.shape, jet.second.shape) == ((4, 2, 3), (4, 2, 2, 3))
-    assert not jet.first.any()
-    assert not jet.second.any()
-    only = jet.where(np.array([True, False, True, False]))
-    for part, whole in zip(only.parts, jet.parts, strict=True):
-        assert np.array_equal(part[::2], whole[::2])
-        assert np.isinf(part[1::2]).all()
 
 
 @pytest.mark.parametrize("patches", [1, 3])

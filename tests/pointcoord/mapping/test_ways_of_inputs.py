@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
-from sample_cars import PAPER_STRUT
 
 from pointcoord import Scene
 from pointcoord.method import MAP
@@ -17,7 +15,7 @@ from pointcoord.patches.lookup import Lookup, Marked, touched
 from pointcoord.patches.path import Spans, covered_until, way_of
 from pointcoord.patches.way_map import map_way
 from pointcoord.simulation import map_limits, prepare_task
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+from pointcoord.time_functions import Polynomial, Sine
 
 Array = NDArray[np.float64]
 Make = Callable[..., Scene]
@@ -42,32 +40,6 @@ def test_a_pose_of_another_assembly_is_not_the_patch_s(make_scene: Make) -> None
     other[list(layout.vector("tie_rod_outer"))] -= 2.0 * (outer - a) @ normal / (normal @ normal) * normal
     assert np.abs(mechanism.map.residual(other)).max() < 1e-14
     assert not way.patches.holds(values, other)
-
-
-LAWS: list[TimeFunction] = [
-    Polynomial((1.0, 2.0, -3.0, 0.5)),
-    Polynomial((1.5,)),
-    Polynomial((0.0, 1e-25)),
-    Sine(0.3, 7.0, 0.2, 1.5),
-    Sine(-0.3, 1e6, 0.2, 1.5),
-    Sine(0.3, -40.0, 1e9, -1.0),
-    Table(tuple(np.linspace(0.0, 1.0, 50)), tuple(np.random.default_rng(2).normal(size=50))),
-    Table((0.0, 0.3, 0.5, 1.0), (2.0, 2.0, 2.0, 2.0)),
-]
-
-
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
-def test_a_law_lies_within_what_it_says_of_a_span_and_nearly_fills_it(law: TimeFunction) -> None:
-    edges = np.unique(np.concatenate([np.linspace(0.0, 1.0, 400), np.array(law.breaks)]))
-    first, last = edges[:-1], edges[1:]
-    low, high = law.values_over(first, last)
-    inside = first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 201)
-    values = law.series(np.minimum(inside, last[:, None]), 0)[..., 0]
-    assert (values >= low[:, None]).all()
-    assert (values <= high[:, None]).all()
-    whole = float(np.ptp(values))
-    # The second derivative of a span of 1/400 is all that is too much.
-    assert high.max() - low.min() <= 1.1 * whole + 1e-12 * np.abs(values).max()
 
 
 def test_the_boxes_of_a_way_are_found_as_one_by_one(strut: Any) -> None:
@@ -113,42 +85,3 @@ def test_a_way_is_followed_up_to_what_is_not_covered_and_no_further(strut: Any) 
     assert entered - 0.5 / 64 <= end <= 0.7
     table[0, 32] = -1
     assert covered_until(laws, coarse, Lookup(domain, table)) == -np.inf
-
-
-class Counting:
-    """A law that counts the spans that it is asked for."""
-
-    def __init__(self, law: TimeFunction) -> None:
-        self.law, self.spans = law, 0
-
-    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
-        self.spans += len(first)
-        return self.law.values_over(first, last)
-
-
-def test_what_comes_after_the_end_of_a_way_is_not_looked_at() -> None:
-    domain = Domain(PAPER_STRUT.mechanism(), {"arm_angle": (0.9, 1.1), "rack": (-20.0, 20.0)}, 6)
-    table = np.zeros((64, 64), dtype=np.int64)
-    table[:, 32:] = -1  # from a rack of 0 on
-    # Slow where it gets there, and fast behind.
-    laws = [Counting(law) for law in (Polynomial((1.0,)), Polynomial((-1e-3, 0.01, *[0.0] * 6, 19.0)))]
-    counted = [cast(TimeFunction, law) for law in laws]
-    edges = np.linspace(0.0, 1.0, 65)
-    end = covered_until(
-        counted, Spans.of([law.law for law in laws], edges[:-1], edges[1:]), Lookup(domain, table)
-    )
-    # A thousandth of the smallest box before it counts as there.
-    assert 0.0 < end <= 0.1
-    assert [law.spans for law in laws] == [0, 0]
-
-
-def test_a_way_of_one_span_ends_inside_it_or_where_it_begins() -> None:
-    domain = Domain(PAPER_STRUT.mechanism(), {"arm_angle": (0.9, 1.1), "rack": (-20.0, 20.0)}, 6)
-    laws = [Polynomial((1.0,)), Polynomial((-10.0, 20.0))]
-    one = Spans.of(laws, np.array([0.0]), np.array([1.0]))
-    for first_gap, entered in ((32, 0.5), (48, 1.0), (16, -np.inf)):
-        table = np.zeros((64, 64), dtype=np.int64)
-        table[:, first_gap:] = -1
-        end = covered_until(laws, one, Lookup(domain, table))
-        # A box is 1/32 s long, and a span that is a quarter of it tells all that can be told.
-        assert end == entered or entered - 0.25 / 32.0 - 1e-4 <= end < entered

@@ -7,12 +7,8 @@ import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Motion, MotionTooLong, PointcoordError, Scene, simulate
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import NEWTON, SERIES, Method
-from pointcoord.solve.assembly import assemble
-from pointcoord.solve.pointwise import solve_instants
 from pointcoord.solve.status import COMPLETE
-from pointcoord.solve.taylor import Settings, build_chain
 from validate.paper.printed import PRINTED
 
 ARM = (1.5, 1.0)  # rad: past the last angle, 152.013 degrees, at t = 1.153 s
@@ -76,16 +72,3 @@ def test_nothing_is_kept_where_no_instant_was_solved(
     monkeypatch.setattr("pointcoord.solve.taylor.on_branch", lambda *_: np.array(False))
     error = stopped_by(PointcoordError, make_scene(ARM, samples=2, stop=LAST), SERIES)
     assert error.partial is None
-
-
-def test_solvers_stop_without_an_exception(make_scene: Callable[..., Scene], strut: Mechanism) -> None:
-    scene = make_scene(ARM, samples=31, stop=1.5)
-    functions = {name: scene.functions[name] for name in strut.topology.required_inputs}
-    pose = assemble(strut, {name: f.series(0.0, 0)[..., 0] for name, f in functions.items()})
-    chain = build_chain(strut, functions, pose, 0.0, 1.5, Settings(1e-12, derivative=2))
-    solved = solve_instants(strut, functions, pose, scene.instants, 2)
-    assert 1.15 < chain.stop < 1.16
-    assert len(solved.times) == len(solved.states[2]) == 24
-    for status in (chain.status, solved.status):
-        assert not status.complete
-        assert isinstance(status.error(), AssemblyError)

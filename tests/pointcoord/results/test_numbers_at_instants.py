@@ -1,0 +1,340 @@
+"""Numbers at instants, one or many, close together or not: those of the plain formulas."""
+
+import tracemalloc
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from every_effect import every_effect
+
+from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import ANGLES
+from pointcoord.effects.toe import TOE
+from pointcoord.linkage.carried_points import carried_series
+from pointcoord.results.ways import ByChain
+
+EPS = float(np.finfo(float).eps)
+EVERY = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster", "damper")
+SCENES = ("bounce", "bounce-on-a-heaving-chassis", "double-wishbone", "off-axis-strut")
+AT_REST = {"constant": 1.5}
+Numbers = Mapping[str, Mapping[str, np.ndarray]]
+
+
+def solved(name: str, effects: tuple[str, ...] | None = None, **changes: object) -> Motion:
+    scene = every_effect(name)
+    if effects is not None:
+        changes["effects"] = tuple(effect for effect in effects if effect in scene.mechanism.effects)
+    return simulate(scene.model_copy(update=changes))
+
+
+def share_in_cells(motion: Motion, instants: np.ndarray) -> float:
+    assert isinstance(motion.solved, ByChain)
+    left = motion.solved._close.fill(instants, np.empty((motion.height, len(instants))))
+    return 1.0 - sum(last - first for first, last in left) / len(instants)
+
+
+def some(samples: Samples, which: np.ndarray) -> Samples:
+    numbers = {
+        quantity: channel.with_arrays({name: array[which] for name, array in channel.items()})
+        for quantity, channel in samples.numbers.items()
+    }
+    return Samples(samples.times[which], numbers)
+
+
+def most_of_what_is_claimed(motion: Motion, samples: Samples) -> float:
+    """How far numbers are off by what they claim, the worst of all of them."""
+    proof = motion.proof_of(samples, rates=True)
+    worst = 0.0
+    for quantity, arrays in proof.proven.items():
+        for name, proven in arrays.items():
+            assert np.isfinite(proven).all()
+            # Where nothing is claimed to be off, nothing may be.
+            claimed = proof.expected[quantity][name]
+            assert (proven[claimed == 0.0] == 0.0).all()
+            worst = max(worst, float((proven[claimed > 0.0] / claimed[claimed > 0.0]).max(initial=0.0)))
+    return worst
+
+
+def plain_rates(r: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least squares by numpy's own solver, with one row for each component of each point."""
+
+    def turning(edges: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        x, y, z = np.moveaxis(edges, -1, 0)
+        o = np.zeros_like(x)
+        rows = np.stack([np.stack(c, -1) for c in ((o, z, -y), (-z, o, x), (y, -x, o))], axis=-2)
+        matrix = rows.reshape(len(edges), -1, 3)
+        return (np.linalg.pinv(matrix) @ rates.reshape(len(edges), -1, 1))[..., 0]
+
+    r, v, a = (each - each.mean(axis=1, keepdims=True) for each in (r, v, a))
+    omega = turning(r, v)
+    spin = omega[:, None]
+    return omega, turning(r, a - np.cross(spin, np.cross(spin, r)))
+
+
+def plain(motion: Motion, instants: np.ndarray) -> Numbers:
+    """Every number by the plain formulas: Horner's rule for each point, and everything for all instants."""
+    chain, readout = motion.solved.chain, motion.solved.readout
+    mechanism, plan = readout.mechanism, readout.plan
+    topology, layout = mechanism.topology, mechanism.layout
+    starts = np.array([segment.start for segment in chain.segments])
+    which = np.maximum(np.searchsorted(starts, instants) - 1, 0)
+    found: list[dict[str, np.ndarray]] = [
+        {point: np.zeros((len(instants), 3)) for point in topology.points} for _ in range(3)
+    ]
+    for point in topology.chassis:
+        found[0][point] += mechanism.drawing.vectors[point] * mechanism.unit
+    for i, segment in enumerate(chain.segments):
+        here = which == i
+        s = (instants[here] - segment.start) / segment.scale
+        series = {p: segment.coefficients[:, list(layout.vector(p))] for p in topology.moving}
+        for point, carriers in topology.carried.items():
+            weights = mechanism.carrier_weights[point]
+            series[point] = carried_series(weights, *(series[carrier] for carrier in carriers))
+        for point, coefficients in series.items():
+            for d in range(3):
+                law = np.polynomial.polynomial.polyder(coefficients, d)
+                value = np.polynomial.polynomial.polyval(s, law).T
+                found[d][point][here] = value * mechanism.unit / segment.scale**d
+    shifts = readout.chassis.states(instants, 2) or [np.zeros(3)] * 3
+    added = [mechanism.origin + shifts[0], *shifts[1:]]
+    numbers: dict[str, dict[str, np.ndarray]] = {}
+    for d, quantity in enumerate(("position", "velocity", "acceleration")):
+        if d == 0 or quantity in plan.effects:
+            numbers[quantity] = {point: found[d][point] + added[d] for point in topology.points}
+    for effect in plan.computed:
+        for angle in (ANGLES[name] for name in effect.names or () if name in ANGLES):
+            start, end = (found[0][point] for point in angle.ends(topology))
+            numbers.setdefault("wheel", {})[angle.name] = angle.value(start, end, readout.axes)
+    if "damper" in plan.effects:
+        lower, upper = (found[0][point] for point in topology.damper)
+        numbers["dimension"] = {"damper_length": np.linalg.norm(upper - lower, axis=-1)}
+    if "knuckle_rates" in plan.effects:
+        body = [np.stack([each[p] for p in topology.bodies["knuckle"]], axis=1) for each in found]
+        omega, alpha = plain_rates(*body)
+        numbers |= {"angular_velocity": {"knuckle": omega}, "angular_acceleration": {"knuckle": alpha}}
+    return numbers
+
+
+def assert_plain(motion: Motion, samples: Samples, which: np.ndarray | slice = slice(None)) -> None:
+    """A sum of 21 terms is rounded some 21 times; terms of an acceleration are up to 50 times its sum, a turn
+    divides by edges that are a tenth of the car, and pinv squares no condition number."""
+    other = plain(motion, samples.times[which])
+    assert {q: set(part) for q, part in samples.numbers.items() if part} == {
+        q: set(p) for q, p in other.items()
+    }
+    for quantity, arrays in other.items():
+        size = max(1e-300, *(float(np.abs(array).max()) for array in arrays.values()))
+        for name, array in arrays.items():
+            off = np.abs(samples.numbers[quantity][name][which] - array).max()
+            assert off <= 21 * 50 * 10 * EPS * size, (quantity, name)
+
+
+@pytest.mark.parametrize("effects", [(), ("knuckle_rates",), ("acceleration", "toe"), EVERY], ids="+".join)
+@pytest.mark.parametrize("name", SCENES)
+def test_numbers_at_any_instants_are_those_of_the_plain_formulas(name: str, effects: tuple[str, ...]) -> None:
+    motion = solved(name, effects)
+    anywhere = np.random.default_rng(7).uniform(motion.times[0], motion.times[-1], 9000)
+    assert_plain(motion, motion.at(anywhere))
+    close = np.linspace(motion.times[0], motion.times[-1], 60_000)
+    assert share_in_cells(motion, close) > 0.3
+    assert_plain(motion, motion.at(close), np.arange(0, 60_000, 13))
+    assert_plain(motion, motion.at([motion.times[-1] / 3.0]))
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-3])
+@pytest.mark.parametrize("name", SCENES)
+def test_numbers_of_close_instants_are_as_near_the_exact_ones_as_they_claim(
+    name: str, tolerance: float
+) -> None:
+    motion = solved(name, tolerance=tolerance)
+    instants = np.linspace(motion.times[0], motion.times[-1], 150_000)
+    assert share_in_cells(motion, instants) > 0.9
+    which = np.unique(np.concatenate([np.arange(0, 150_000, 773), np.arange(100)]))
+    assert most_of_what_is_claimed(motion, some(motion.at(instants), which)) <= 1.0
+
+
+def test_a_motion_that_begins_from_rest_keeps_the_digits_of_its_first_rates() -> None:
+    laws = {"arm_angle": [1.5, 0.0, 0.0, 0.05, -0.02], "rack": [0.0, 0.0, 0.0, 3.0, 1.0]}
+    time = {"start": 0.0, "stop": 1.0, "samples": 11}
+    motion = solved("bounce", inputs={n: {"polynomial": law} for n, law in laws.items()}, time=time)
+    instants = np.linspace(0.0, 1.0, 400_000)
+    assert share_in_cells(motion, instants) > 0.9
+    which = np.unique(np.geomspace(1, 399_999, 600).astype(int))
+    quick = some(motion.at(instants), which)
+    slow = motion.at(instants[which])
+    for quantity in ("velocity", "acceleration"):
+        for name, array in quick.numbers[quantity].items():
+            size = np.abs(slow.numbers[quantity][name]).max(axis=-1, keepdims=True)
+            # Rates of t^3 are up to (17/15)^2 times as large elsewhere in a cell; some dozens of roundings.
+            assert (np.abs(array - slow.numbers[quantity][name]) <= 100 * EPS * size).all()
+    assert most_of_what_is_claimed(motion, quick) <= 1.0
+
+
+def test_instants_far_from_time_zero_lose_nothing_to_the_rounding_of_time() -> None:
+    inputs = {"arm_angle": AT_REST, "rack": {"sine": {"amplitude": 20.0, "angular_frequency": 5.0}}}
+    late = solved("steer", inputs=inputs, time={"start": 3000.0, "stop": 3000.4, "samples": 11})
+    instants = np.linspace(3000.0, 3000.4, 60_000)
+    assert share_in_cells(late, instants) > 0.8
+    which = np.arange(0, 60_000, 301)
+    quick, slow = some(late.at(instants), which), late.at(instants[which])
+    assert most_of_what_is_claimed(late, quick) <= 1.0
+    # Of a point that moves with 100 mm/s, the rounding of 3000 s is 5e-11 mm.
+    for name, array in quick.position.items():
+        assert np.abs(array - slow.position[name]).max() < 2e-12
+
+
+HEAVES = {
+    "a spline's third derivative jumps": (
+        {"table": {"times": [0.0, 0.5, 0.61, 0.8, 1.3, 2.6], "values": [0.0, 9.0, -7.0, 12.0, 3.0, -5.0]}},
+        (0.0, 0.0, 0.0),
+    ),
+    "an acceleration passes zero": ({"polynomial": [1.0, -3.0, 3.0, -1.0]}, (0.0, 0.0, 0.0)),
+    "a sine": (
+        {"sine": {"amplitude": 30.0, "angular_frequency": 7.0, "phase": 0.3, "offset": 4.0}},
+        (30.0, 30.0 * 7.0, 30.0 * 49.0),
+    ),
+    "a sine too fast for any cell": (
+        {"sine": {"amplitude": 3.0, "angular_frequency": 1e5}},
+        (3.0, 3e5, 3e10),
+    ),
+    "at rest": ({"constant": 12.5}, (0.0, 0.0, 0.0)),
+}
+
+
+@pytest.mark.parametrize(("heave", "swing"), HEAVES.values(), ids=HEAVES)
+def test_what_the_chassis_does_is_added_to_close_instants_as_exactly_as_to_others(
+    heave: dict[str, object], swing: tuple[float, ...]
+) -> None:
+    scene = Scene.load("bounce-on-a-heaving-chassis")
+    instants = np.linspace(0.0, 2.6, 50_000)
+    which = np.concatenate([np.arange(0, 50_000, 1009), np.arange(19_200, 19_260)])
+    motion = solved("bounce-on-a-heaving-chassis", inputs={**scene.inputs, "heave": heave})
+    assert share_in_cells(motion, instants) > 0.3
+    quick, slow = some(motion.at(instants), which), motion.at(instants[which])
+    for quantity, own in zip(("position", "velocity", "acceleration"), swing, strict=True):
+        for name in scene.mechanism.topology.chassis:
+            exact = slow.numbers[quantity][name]
+            # Some eight roundings of the law by its own size, of a sine by its swing.
+            off = np.abs(quick.numbers[quantity][name] - exact)
+            assert (off <= 8 * EPS * (np.abs(exact) + own)).all()
+    assert most_of_what_is_claimed(motion, quick) <= 1.0
+
+
+def test_an_angle_that_jumps_is_read_on_its_own_side() -> None:
+    toe = replace(TOE, numbers=(replace(TOE.numbers[0], cosine="inboard"),))
+    motion = solved("steer", inputs={"arm_angle": AT_REST, "rack": {"polynomial": [-40.0, 150.0]}})
+    readout = replace(motion.solved.readout, plan=plan_effects(["toe"], {"toe": toe}))
+    turned = replace(motion, solved=replace(motion.solved, readout=readout))
+    instants = np.linspace(0.0, 0.4, 50_000)
+    which = np.arange(0, 50_000, 17)
+    quick, slow = turned.at(instants).wheel["toe"][which], turned.at(instants[which]).wheel["toe"]
+    assert slow.min() < -3.0 < 3.0 < slow.max()
+    assert 0.2 < share_in_cells(turned, instants) < 1.0
+    aside = np.abs(slow) < np.pi - 1e-13
+    assert np.abs(quick - slow)[aside].max() < 40 * EPS * 600 / 90
+
+
+@pytest.mark.parametrize("bad", [-1e-9, 2.6 + 1e-9, np.nan, np.inf])
+@pytest.mark.parametrize("count", [0, 1, 5000])
+def test_an_instant_outside_the_motion_is_refused_among_others_too(bad: float, count: int) -> None:
+    motion = solved("bounce", ())
+    asked = np.insert(np.linspace(0.0, 2.6, count), count // 2, bad)
+    with pytest.raises(OutsideMotion, match=r"allowed: 0 to 2.6 s") as caught:
+        motion.at(asked)
+    assert caught.value.instant == bad or np.isnan(bad)
+    assert motion.at(np.full(5000, 1.0)).position["wheel_centre"].shape == (5000, 3)
+
+
+def test_results_are_written_where_they_are_wanted_and_nowhere_else() -> None:
+    motion = solved("bounce", EVERY)
+    instants = np.linspace(0.0, 2.6, 1000)
+    out = np.full((motion.height, 1000), np.nan)
+    samples = motion.at(instants, out=out)
+    assert not np.isnan(out).any()
+    for quantity, channel in motion.at(instants).numbers.items():
+        for name, array in channel.items():
+            assert np.shares_memory(samples.numbers[quantity][name], out)
+            np.testing.assert_array_equal(samples.numbers[quantity][name], array)
+    for wrong in (np.empty((3, 4)), np.empty((motion.height, 5)), np.empty((motion.height, 4), np.float32)):
+        with pytest.raises(ValueError, match="allowed: a writeable array"):
+            motion.at(np.zeros(4), out=wrong)
+
+
+@pytest.mark.parametrize("asked", [0.3, [0.3], [], [1.7, 0.2, 1.9, 0.2], [[0.1, 1.5], [0.3, 0.0]]])
+def test_instants_of_any_shape_and_order_give_arrays_of_that_shape(asked: object) -> None:
+    motion, instants = solved("bounce"), np.array(asked, dtype=float)
+    samples = motion.at(instants)
+    assert np.array_equal(samples.times, instants)
+    for name, channel in samples.numbers.items():
+        for key, array in channel.items():
+            assert array.shape == (instants.shape if channel.quantity.of == "car" else (*instants.shape, 3))
+            for place in np.ndindex(instants.shape):
+                alone = motion.at(instants[place]).numbers[name][key]
+                # One instant or many: a product of matrices may sum its 21 terms in another order.
+                assert np.abs(array[place] - alone).max() <= 1e4 * EPS * max(1.0, np.abs(array).max())
+
+
+@pytest.mark.parametrize("method", ["series", "newton"])
+@pytest.mark.parametrize("size", [1, 7, 131, 1000])
+def test_blocks_of_a_motion_are_its_parts_in_order(method: str, size: int) -> None:
+    motion = simulate(Scene.load("bounce"), method)
+    blocks = list(motion.blocks(size=size))
+    assert all(len(block.times) == size for block in blocks[:-1])
+    np.testing.assert_array_equal(np.concatenate([block.times for block in blocks]), motion.times)
+    for quantity, channel in motion.numbers.items():
+        for name, array in channel.items():
+            joined = np.concatenate([block.numbers[quantity][name] for block in blocks])
+            np.testing.assert_array_equal(joined, array)
+
+
+@pytest.mark.parametrize("count", [1, 2, 131, 16384, 20001])
+def test_any_number_of_instants_comes_in_blocks_as_a_scene_has_them(count: int) -> None:
+    motion, scene = solved("steer", ("velocity",)), Scene.load("steer")
+    blocks = list(motion.blocks(count, size=4096))
+    time = {"start": motion.times[0], "stop": motion.times[-1], "samples": max(count, 2)}
+    instants = scene.model_copy(update={"time": time}).instants[:count]
+    np.testing.assert_array_equal(np.concatenate([block.times for block in blocks]), instants)
+    whole = motion.at(instants).position["wheel_centre"]
+    given = [block.position["wheel_centre"] for block in motion.blocks(instants[::-1], 1000)]
+    for found in (np.concatenate([b.position["wheel_centre"] for b in blocks]), np.concatenate(given)[::-1]):
+        np.testing.assert_allclose(found, whole, rtol=0.0, atol=21 * 50 * EPS * 600)
+
+
+def test_blocks_that_make_no_sense_are_refused() -> None:
+    motion, newton = solved("steer", ()), simulate(Scene.load("steer"), "newton")
+    asked: list[tuple[Callable[[], object], type[Exception], str]] = [
+        (lambda: motion.blocks(10, size=0), ValueError, "a block of 0 instants"),
+        (lambda: motion.blocks(0), ValueError, "0 instants; allowed"),
+        (lambda: motion.blocks(np.zeros((2, 2))), ValueError, "shape"),
+        (lambda: list(motion.blocks([0.0, 1e9])), OutsideMotion, "allowed"),
+        (lambda: newton.blocks(10), NotComputed, "method 'series'"),
+        (lambda: newton.at(0.1), NotComputed, "method 'series'"),
+    ]
+    for work, kind, words in asked:
+        with pytest.raises(kind, match=words):
+            work()
+
+
+def peak(work: Callable[[], object]) -> int:
+    """The most memory that was taken at once while something ran, bytes; numpy's arrays among it."""
+    work()
+    tracemalloc.start()
+    try:
+        work()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_many_instants_take_no_more_memory_than_their_results_and_some_blocks() -> None:
+    motion = solved("bounce-on-a-heaving-chassis")
+    # Two blocks live at once: the one that was given out, and the next.
+    block = 8 * 16384 * (motion.height + 1)
+    many, few = (peak(lambda n=n: [None for _ in motion.blocks(n)]) for n in (300_000, 60_000))
+    assert many < 1.01 * few < 2.01 * block + 8e6
+    for order in (1, -1):
+        instants = np.linspace(0.0, 2.6, 200_000)[::order]
+        results = 8 * len(instants) * (motion.height + 1)
+        assert peak(lambda asked=instants: motion.at(asked)) - results < 50 * len(instants) + 8e6
