@@ -53,12 +53,6 @@ def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_make
     assert (proof.bound <= 1.1 * (error + before)).all()
 
 
-def test_a_proof_of_no_instants_says_nothing_that_is_off() -> None:
-    motion = simulate(Scene.load("steer"))
-    none = motion.proof_of(motion.at(np.empty(0)))
-    assert repr(none) == "<Proof of 0 instants: solved points within 0 mm, carried ones within 0 mm>"
-
-
 def test_terms_that_fall_as_before_leave_out_the_rest_of_a_geometric_series() -> None:
     """Of terms x^k, of which the last two and the two before them are known, x^2 = q."""
     for q in (0.1, 0.5, 0.9):

@@ -7,7 +7,6 @@ import pytest
 
 from pointcoord import Scene, built_in_scenes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.needed_part import needed_mechanism
 from pointcoord.simulation import scene_mechanism
 
 OFF = 1e-6  # of the unit: what is quadratic in it, some 1e-12, is far below the slack
@@ -30,13 +29,3 @@ def test_no_error_of_the_carriers_moves_a_carried_point_farther_than_the_gain(sc
     farthest = moved_by(mechanism, signs)
     # Among 2,000 corners of the cube of errors some come near the farthest.
     assert 0.5 * mechanism.carried_gain < farthest <= mechanism.carried_gain * (1.0 + 1e-4)
-
-
-@pytest.mark.parametrize("scene", CARRYING)
-def test_without_carried_points_nothing_is_farther_off_than_what_is_solved(scene: str) -> None:
-    mechanism = scene_mechanism(Scene.load(scene))
-    topology = mechanism.topology
-    solved = {point for carriers in topology.carried.values() for point in carriers} - topology.carried.keys()
-    part = needed_mechanism(mechanism, solved)
-    assert not part.topology.carried
-    assert part.carried_gain == 1.0

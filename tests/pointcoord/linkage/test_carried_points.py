@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from pointcoord.errors import MechanismError
 from pointcoord.linkage.carried_points import carried_gain, carried_place, carried_series, carrier_weights
 from pointcoord.linkage.drawing import Drawing
 
@@ -78,19 +77,6 @@ def test_cars_that_share_some_carriers_have_the_weights_that_they_have_alone(
         gains.append(carried_gain(alone, Drawing(own, np.array(1.0)), carriers))
     # Of a batch it is the largest.
     assert carried_gain(weights, together, carriers) == pytest.approx(max(gains), rel=1e-9)
-
-
-def test_a_point_is_carried_until_its_carriers_are_a_line_to_eight_roundings() -> None:
-    def thin(height: float) -> Drawing:
-        places = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.5, height, 0.0)}
-        return Drawing(
-            {n: np.array(p) for n, p in {**places, "rider": (0.2, 0.3, 0.4)}.items()}, np.array(1.0)
-        )
-
-    # |e1 x e2| = height against 8 eps |e1| |e2| = 4 eps
-    carrier_weights("rider", thin(4.01 * EPS), ("base", "first", "second"))
-    with pytest.raises(MechanismError, match="in one line, so they cannot carry rider"):
-        carrier_weights("rider", thin(3.99 * EPS), ("base", "first", "second"))
 
 
 @pytest.mark.parametrize(

@@ -40,10 +40,3 @@ def test_pieces_that_turn_over_are_found_in_each_car_and_the_first_such_pair_is_
         assert alone.shape == ()
         assert bool(alone) == any(turned)
         assert its_pair == (pairs[list(turned).index(True)] if any(turned) else None)
-
-
-def test_some_car_has_pieces_that_can_turn_over(strut: Mechanism) -> None:
-    assert len(strut.topology.paired_pieces[0]) > 1
-    away = strut.drawn + np.random.default_rng(1).normal(size=(200, len(strut.drawn)))
-    bad, _ = turned_over(strut, away)
-    assert 0 < np.sum(bad) < 200

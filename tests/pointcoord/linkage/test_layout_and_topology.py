@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from pointcoord import InputOutOfRange, UnknownName
-from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
@@ -30,14 +29,6 @@ def test_every_index_of_the_coordinates_is_used_once(topology: Topology) -> None
 
 
 @by_name
-def test_unknown_coordinates_come_first(topology: Topology) -> None:
-    layout = topology.layout
-    vectors = {i for name in (*layout.moving, *layout.vectors) for i in layout.vector(name)}
-    first = vectors | {layout.scalar(name) for name in layout.ratios}
-    assert first == set(range(layout.unknowns))
-
-
-@by_name
 def test_every_unknown_has_a_name_of_its_own(topology: Topology) -> None:
     layout = topology.layout
     names = [layout.describe(i) for i in range(layout.unknowns)]
@@ -54,32 +45,6 @@ def test_there_are_as_many_equations_as_unknowns_and_each_unknown_is_in_one(topo
     assert len(system.rows) == len(topology.labels) == len(set(topology.labels)) == layout.unknowns
     touched = {i for row in system.rows for product in row for i in (*product.left, *product.right)}
     assert touched >= set(range(layout.unknowns))
-
-
-@by_name
-def test_points_of_bodies_and_carriers_are_points_of_the_car(topology: Topology) -> None:
-    for points in (*topology.bodies.values(), *topology.carried.values()):
-        assert set(points) <= set(topology.points)
-    assert len(set(topology.points)) == len(topology.points)
-
-
-@by_name
-def test_unknown_name_raises_with_the_names_that_exist(topology: Topology) -> None:
-    layout = topology.layout
-    for read, near, valid in (
-        (layout.vector, layout.moving[0], (*layout.moving, *layout.chassis)),
-        (layout.scalar, layout.driven[0], (*layout.ratios, *layout.driven)),
-    ):
-        with pytest.raises(UnknownName, match=f"did you mean '{near}'") as caught:
-            read(f"{near}x")
-        assert set(valid) <= set(caught.value.valid)
-        assert all(name in str(caught.value) for name in caught.value.valid)
-
-
-@by_corner
-def test_unknown_link_raises_with_the_links_that_exist(topology: Topology) -> None:
-    with pytest.raises(UnknownName, match=topology.drives[-1].point):
-        topology.layout.squared_length(topology.inboard, topology.wheel_centre)
 
 
 @by_corner
@@ -133,23 +98,3 @@ def test_of_a_force_in_one_row_its_constraint_takes_part_and_no_other(topology: 
             assert topology.strongest(forces) == (constraint.name,)
             row += 1
     assert row == len(topology.labels)
-
-
-@by_name
-def test_a_constraint_takes_part_from_a_tenth_of_the_largest_force(topology: Topology) -> None:
-    one, *_, other = topology.constraints
-    forces = np.zeros(len(topology.labels))
-    for share, both in ((0.11, True), (-0.11, True), (0.09, False)):
-        forces[0], forces[-1] = 2.0, 2.0 * share
-        assert set(topology.strongest(forces)) == ({one.name, other.name} if both else {one.name})
-
-
-@by_name
-def test_of_two_links_the_one_that_pushes_harder_comes_first(topology: Topology) -> None:
-    links = [c for c in topology.constraints if isinstance(c, Link)][:2]
-    places = [topology.labels.index(link.labels[0]) for link in links]
-    for forces in ((1.0, -2.0), (-3.0, 2.0)):
-        every = np.zeros(len(topology.labels))
-        every[places] = forces
-        harder = int(abs(forces[1]) > abs(forces[0]))
-        assert topology.strongest(every) == (links[harder].name, links[1 - harder].name)

@@ -1,7 +1,7 @@
 """The part of a linkage that a point hangs on is a linkage of its own, with the same numbers and no more."""
 
 import numpy as np
-from sample_cars import GENERAL_STRUT, SampleCar, by_car
+from sample_cars import SampleCar, by_car
 
 from pointcoord.linkage.needed_part import needed_mechanism, needed_topology
 
@@ -52,12 +52,6 @@ def test_the_wheel_hangs_on_every_input_and_brings_the_knuckle_along(car: Sample
     assert wheel.required_inputs == car.topology.required_inputs
     assert wheel.bodies[wheel.knuckle] == car.topology.bodies[wheel.knuckle]
     assert tuple(wheel.carried) == ("wheel_centre",)
-
-
-def test_the_rod_of_a_strut_that_nobody_asks_for_is_left_out() -> None:
-    # Its end stands on the axis, and nothing hangs on it; of the collinear strut it lies on the line.
-    wheel = needed_topology(GENERAL_STRUT.topology, {"wheel_centre"})
-    assert set(GENERAL_STRUT.topology.moving) - set(wheel.points) == {"strut_rod_end"}
 
 
 @by_car

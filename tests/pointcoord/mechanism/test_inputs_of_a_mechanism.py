@@ -89,16 +89,6 @@ def test_travel_along_a_line_of_a_moving_body_is_its_length_in_mm() -> None:
     assert np.abs(reach - np.linspace(390.0, 410.0, SAMPLES)).max() < 1e-10
 
 
-def test_rates_are_the_derivatives_of_what_an_input_drives() -> None:
-    inputs = {"c": {"contact": ["wheel_axis_inner", "wheel_centre"]}}
-    part = {**WISHBONE, "wheel_radius": 300.0}
-    motion = simulate(with_inputs(part, inputs, c={"polynomial": [0.0, 0.0, 20.0]}, rack=RACK))
-    step = 1e-4
-    before, after = motion.at(np.array([0.5 - step])), motion.at(np.array([0.5 + step]))
-    slope = (after.position["wheel_centre"] - before.position["wheel_centre"]) / (2 * step)
-    assert np.abs(slope - motion.at(np.array([0.5])).velocity["wheel_centre"]).max() < 1e-5
-
-
 @pytest.mark.parametrize(
     ("laws", "words"),
     [

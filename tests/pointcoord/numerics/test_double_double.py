@@ -6,7 +6,6 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.double_double import (
     exact_square,
     pair_cross,
@@ -63,14 +62,3 @@ def test_sums_and_products_of_pairs_keep_twice_the_digits(seed: int) -> None:
             assert (
                 abs(Fraction(float(pair[0][i])) + Fraction(float(pair[1][i])) - exact) <= 20 * U**2 * largest
             )
-
-
-def test_squared_lengths_lack_what_they_have_rounded(strut: Mechanism) -> None:
-    lacking, uncertainty = strut.known_data(strut.drawn)
-    for start, end in strut.layout.squared_lengths:
-        place = strut.layout.squared_length(start, end)
-        a, b = (strut.drawing.vectors[name].tolist() for name in (start, end))
-        exact = sum((Fraction(p) - Fraction(q)) ** 2 for p, q in zip(a, b, strict=True))
-        found = Fraction(float(strut.drawn[place])) + Fraction(float(lacking[place]))
-        assert abs(found - exact) <= Fraction(float(uncertainty[place]))
-        assert abs(lacking[place]) <= 5 * float(U) * strut.drawn[place]

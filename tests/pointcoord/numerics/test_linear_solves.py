@@ -40,28 +40,6 @@ def test_solution_has_the_accuracy_of_an_lu_solve(seed: int, n: int, power: int)
     assert error <= 3 * n * EPS * float(factors.condition) * max(np.abs(x).max(), 1.0)
 
 
-@plain
-@given(seed=seeds)
-def test_rows_of_any_size_give_the_same_bits(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    matrix, right = rng.normal(size=(5, 5)), rng.normal(size=5)
-    powers = rng.integers(-200, 200, size=5)
-    plainly = factorise(matrix)
-    scaled = factorise(np.ldexp(matrix, powers[:, None]))
-    assert np.array_equal(scaled.solve(np.ldexp(right, powers)), plainly.solve(right))
-    assert scaled.condition == plainly.condition
-
-
-@plain
-@given(seed=seeds, n=st.integers(1, 12))
-def test_preconditioner_is_the_inverse_of_the_matrix_as_given(seed: int, n: int) -> None:
-    rng = np.random.default_rng(seed)
-    matrix = np.ldexp(graded(rng, n, 100.0), rng.integers(-50, 50, size=(n, 1)))
-    factors = factorise(matrix)
-    # The inverse by LU is a right inverse up to n eps times the condition number, with a growth factor.
-    assert np.abs(factors.preconditioner @ matrix - np.eye(n)).max() <= 3 * n * EPS * float(factors.condition)
-
-
 def test_condition_number_is_that_of_the_maximum_norm() -> None:
     matrix = np.array([[1.0, 1.0], [1.0, 0.75]])
     inverse = np.array([[-3.0, 4.0], [4.0, -4.0]])
@@ -82,18 +60,6 @@ SINGULAR = {
 
 
 @pytest.mark.parametrize("bad", SINGULAR.values(), ids=SINGULAR.keys())
-def test_singular_matrix_is_marked_and_not_raised(bad: Array) -> None:
-    factors = factorise(bad)
-    assert factors.singular
-    assert not factors.condition < 1.0 / (3 * EPS)
-
-
-@pytest.mark.parametrize("name", ["equal rows", "zero row", "zero column", "zero matrix"])
-def test_condition_number_of_an_exactly_singular_matrix_is_infinite(name: str) -> None:
-    assert factorise(SINGULAR[name]).condition == np.inf
-
-
-@pytest.mark.parametrize("bad", SINGULAR.values(), ids=SINGULAR.keys())
 def test_singular_member_of_a_batch_marks_only_itself(bad: Array) -> None:
     rng = np.random.default_rng(5)
     good = rng.normal(size=(2, 2, 3, 3))
@@ -107,17 +73,6 @@ def test_singular_member_of_a_batch_marks_only_itself(bad: Array) -> None:
         alone = factorise(good[member])
         assert factors.condition[member] == alone.condition
         assert np.array_equal(x[member], alone.solve(right[member]))
-
-
-def test_taking_and_replacing_members_touches_no_other() -> None:
-    rng = np.random.default_rng(6)
-    first, second = factorise(rng.normal(size=(4, 3, 3))), factorise(rng.normal(size=(2, 3, 3)))
-    members = np.array([3, 1])
-    mixed = first.replaced(members, second)
-    for field in ("matrix", "inverse", "row_scale", "condition"):
-        assert np.array_equal(getattr(mixed, field)[[0, 2]], getattr(first, field)[[0, 2]])
-        assert np.array_equal(getattr(mixed.taken(members), field), getattr(second, field))
-        assert getattr(mixed.reshaped((2, 2)), field).shape[:2] == (2, 2)
 
 
 @plain
@@ -148,19 +103,3 @@ def test_weakest_balance_of_rows_is_shortened_the_most(seed: int, n: int) -> Non
     # The smallest stretch is 1e-6; rounding of the product is n eps.
     assert abs(np.linalg.norm(balance) - 1.0) <= 4 * n * EPS
     assert np.linalg.norm(balance @ matrix) <= 1e-6 + 16 * n * EPS
-
-
-@plain
-@given(seed=seeds, n=st.integers(1, 12), power=st.integers(0, 15))
-def test_one_matrix_is_factorised_like_a_batch_of_one(seed: int, n: int, power: int) -> None:
-    rng = np.random.default_rng(seed)
-    matrix = np.ldexp(graded(rng, n, 10.0**power), rng.integers(-50, 50, size=(n, 1)))
-    one, batch = factorise(matrix), factorise(matrix[None])
-    for name in ("matrix", "inverse", "row_scale"):
-        assert np.array_equal(getattr(one, name), getattr(batch, name)[0])
-    # Two sums of n terms each, in another order.
-    assert abs(one.condition / batch.condition[0] - 1.0) <= 2 * n * EPS
-    right = matrix @ rng.normal(size=n)
-    x, same = one.solve(right), batch.solve(right[None])[0]
-    # Both are solutions of an LU solve, see above.
-    assert np.abs(x - same).max() <= 6 * n * EPS * float(one.condition) * np.abs(same).max()

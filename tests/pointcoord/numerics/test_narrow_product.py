@@ -22,10 +22,6 @@ def test_a_product_by_parts_is_the_product_in_its_place(batch: tuple[int, ...], 
     assert np.isnan(room[..., 3 + columns :]).all()
 
 
-def test_a_product_of_no_rows_has_none() -> None:
-    narrow_product(np.empty((0, 10)), np.ones((10, 5)), np.empty((0, 5)))
-
-
 def test_no_part_is_larger_than_what_one_thread_takes(monkeypatch: pytest.MonkeyPatch) -> None:
     sizes, product = [], np.matmul
 

@@ -51,10 +51,6 @@ def test_a_part_has_the_rows_of_what_moves_and_their_jacobian(
     assert np.array_equal(part.back(own), y)
 
 
-def test_where_nothing_moves_the_part_is_the_whole() -> None:
-    assert moving_part(SYSTEM, frozenset()).is_whole
-
-
 @pytest.mark.parametrize("batch", [(), (4,), (2, 3)])
 @pytest.mark.parametrize("alike", [False, True])
 def test_the_series_of_a_part_is_that_of_the_whole(batch: tuple[int, ...], alike: bool) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, simulate, standing
+from pointcoord import Scene, SceneError, built_in_scenes, simulate, standing
 
 CAR = dict(Scene.load("off-axis-strut").mechanism.points)
 Car = Mapping[str, tuple[float, ...]]
@@ -181,24 +181,6 @@ def test_what_names_no_scene_is_refused_as_it_is(name: object) -> None:
     built_in = ", ".join(built_in_scenes())
     with pytest.raises(SceneError, match=f"names no scene; allowed: a path, or one of {built_in}"):
         Scene.load(name)
-
-
-def test_the_input_that_runs_into_the_lock_is_the_one_to_bring_back(make_scene: Callable[..., Scene]) -> None:
-    # The rack creeps to its end while the arm swings back and forth inside its range.
-    arm = {"sine": {"amplitude": 0.1, "angular_frequency": 30.0, "offset": 1.63}}
-    with pytest.raises(AssemblyError) as caught:
-        simulate(make_scene(arm, [0.0, 215.0], points=CAR, stop=1.0, closure="drawn"))
-    error = caught.value
-    assert error.reduce == "rack"
-    assert error.reached["rack"] > 190.0
-
-
-def test_a_misspelt_point_and_a_short_one_are_told(make_scene: Callable[..., Scene]) -> None:
-    misspelt = {("strut_topp" if name == "strut_top" else name): at for name, at in CAR.items()}
-    with pytest.raises(SceneError, match="did you mean 'strut_top'"):
-        make_scene(points=misspelt, closure="drawn")
-    with pytest.raises(SceneError, match="a number is missing: there are 2 where three belong"):
-        make_scene(points={**CAR, "strut_top": (1.0, 2.0)}, closure="drawn")
 
 
 @pytest.mark.parametrize(

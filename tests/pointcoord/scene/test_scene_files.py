@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pointcoord import MechanismError, PointcoordError, Scene, SceneError, built_in_scenes, simulate
-from pointcoord.method import NEWTON, SERIES
-from validate.paper.printed import PRINTED
+from pointcoord import PointcoordError, Scene, SceneError, built_in_scenes, simulate
 
 POINTS = "\n".join(
     f"{name} = {place}"
@@ -199,27 +197,6 @@ def test_scene_that_is_not_there_is_answered_with_the_built_in_ones(name: str) -
         Scene.load(name)
 
 
-def test_folder_is_not_a_scene(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="cannot be read"):
-        Scene.load(tmp_path)
-
-
-@pytest.mark.parametrize("name", built_in_scenes())
-def test_built_in_scene_loads_and_moves_with_all_its_effects(name: str) -> None:
-    scene = Scene.load(name)
-    motion = simulate(scene)
-    assert len(motion.times) == scene.time.samples
-    for point in scene.mechanism.topology.points:
-        assert np.isfinite(motion.position[point]).all()
-    # Within the tolerance of the scene and the bound of its rounding of Newton's poses.
-    newton = simulate(scene, "newton")
-    proof = newton.proof()
-    assert np.isfinite(proof.bound).all()
-    for point in scene.mechanism.topology.moving:
-        gap = np.abs(motion.position[point] - newton.position[point]).max(axis=-1)
-        assert (gap <= scene.tolerance + 4 * proof.bound).all()
-
-
 def test_scenes_of_the_paper_are_built_in() -> None:
     assert {"bounce", "steer", "bounce-and-steer"} <= set(built_in_scenes())
     steer = Scene.load("steer").functions["rack"]
@@ -251,24 +228,6 @@ def test_scenes_of_the_paper_are_built_in() -> None:
         assert abs(np.rad2deg(bounce.series(t, 0)[0]) - degrees) <= 0.05
 
 
-def test_one_sample_is_one_instant(make_scene: Callable[..., Scene]) -> None:
-    scene = make_scene(start=1.0, stop=1.0, samples=1)
-    assert scene.instants.tolist() == [1.0]
-    for method in (SERIES, NEWTON, PRINTED):
-        assert simulate(scene, method).position["wheel_centre"].shape == (1, 3)
-
-
-def test_hardpoints_that_make_no_mechanism_are_a_fault_of_the_scene(
-    make_scene: Callable[..., Scene], table: Any
-) -> None:
-    points = dict(table)
-    points["strut_lower"] = points["lower_ball_joint"]
-    with pytest.raises(SceneError, match="has no length") as caught:
-        simulate(make_scene(points=points))
-    assert caught.value.key == "mechanism.points"
-    assert isinstance(caught.value.__cause__, MechanismError)
-
-
 LARGE: dict[str, dict[str, Any]] = {
     "rack of 1e308 t": {"inputs": {"rack": {"polynomial": [0.0, 1e308]}}},
     "rack of 1e200 t": {"inputs": {"rack": {"polynomial": [0.0, 1e200]}}},
@@ -288,10 +247,6 @@ def test_numbers_too_large_for_the_arithmetic_end_in_an_error_of_this_package(
         content[section].update(changes)
     with pytest.raises(PointcoordError):
         simulate(Scene.from_mapping(content))
-
-
-def test_effects_of_a_scene_file_are_those_that_exist(make_scene: Callable[..., Scene]) -> None:
-    assert simulate(make_scene(samples=2)).velocity.computed
 
 
 @pytest.mark.parametrize(

@@ -53,16 +53,6 @@ def test_poses_ahead_are_those_one_after_the_other(
     assert off <= 2.0 * (unit * allowed + float(motion.proof().bound.max()))
 
 
-def test_a_motion_that_ends_does_so_at_the_same_instant(make_scene: Make) -> None:
-    scene = make_scene([1.6], [0.0, 200.0], samples=400, stop=1.0, effects=())
-    plain, _, _ = plainly(scene)
-    with pytest.raises(AssemblyError) as caught:
-        simulate(scene, "newton")
-    assert caught.value.partial is not None
-    assert 100 < len(plain) < 400
-    assert len(caught.value.partial.times) == len(plain)
-
-
 def past_a_fold(make_scene: Make) -> Scene:
     """Two instants between which no pose exists: the arm goes a way that a fold cuts off at this rack."""
     return make_scene([np.radians(40.0), np.radians(-7.0)], [-0.1, 0.1], stop=1.0, samples=2, effects=())

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, simulate
-from pointcoord.solve.taylor import SHORT, Settings, gone_on, last_magnitudes, lengths_by_sizes
+from pointcoord.solve.taylor import SHORT, Settings, gone_on, lengths_by_sizes
 
 Array = NDArray[np.float64]
 
@@ -56,12 +56,6 @@ def test_a_motion_from_rest_keeps_what_it_claims(
     fastest = max(float(np.abs(array).max()) for array in exact.acceleration.values())
     gap = max(float(np.abs(motion.acceleration[n] - exact.acceleration[n]).max()) for n in exact.acceleration)
     assert gap <= fastest * (tolerance / motion.unit + 1e-12)
-
-
-def test_the_last_two_of_three_terms_are_themselves() -> None:
-    series = np.array([[1.0, -2.0], [0.5, 0.25], [0.125, -0.0625]])
-    # To the rounding of a logarithm, twice.
-    assert last_magnitudes(series) == pytest.approx(np.abs(series[1:]), rel=1e-14)
 
 
 def random_logs(rng: np.random.Generator, members: int) -> Array:

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from sample_cars import SAMPLES
 
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import orientation
-from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, quadratic_map
@@ -97,25 +95,6 @@ def test_no_series_is_proven_up_to_a_fold(w: float) -> None:
     assert 0.3 / (1.0 - w) < proven_on_the_parabola(w) < 1.0 / (1.0 - w)
 
 
-@pytest.mark.parametrize("w", [-1e-3, -1e-13, 0.0])
-def test_a_path_to_a_fold_or_across_it_is_left_to_the_tangents(w: float) -> None:
-    factors = factorise(PARABOLA.jacobian(AT_ONE))
-    assert proven_end(PARABOLA, AT_ONE, np.array([w, 0.0, 1.0]), factors, 0.0) is None
-
-
-def test_the_polynomial_of_a_piece_is_the_polynomial_there() -> None:
-    rng = np.random.default_rng(1)
-    order, pieces = 9, 4
-    coefficients = rng.normal(size=order + 1)
-    local = proven_path._about_middles(order, pieces) @ coefficients
-    for piece in range(pieces):
-        for t in np.linspace(-1.0, 1.0, 7):
-            s = (piece + 0.5 + 0.5 * t) / pieces
-            powers = np.arange(order + 1)
-            # Ten terms up to 2 in size, each shifted by sums of ten.
-            assert abs(t**powers @ local[piece] - s**powers @ coefficients) <= 200 * EPS * 10
-
-
 def test_what_is_left_out_is_the_residual_of_the_cut_series(strut: Mechanism) -> None:
     system, closed = strut.map, close_drawing(strut)
     n, order = system.unknowns, 6
@@ -139,14 +118,3 @@ def test_a_planted_fault_in_what_is_left_out_is_seen(monkeypatch: pytest.MonkeyP
     # However far a series is meant to reach, the condition cuts it where it no longer holds.
     assert 0.0 <= proven_on_the_parabola(-1.0) <= 0.5
     assert right < 0.5
-
-
-@pytest.mark.parametrize(("start", "w"), [(-1.0, 1.0), (1.0, -0.5)])
-def test_an_end_on_the_other_side_or_without_assembly_is_none(start: float, w: float) -> None:
-    # From u = -1 Newton's method finds the other root of w = 1, and of w < 0 there is none.
-    guess = np.array([start, 1.0, 0.0, 1.0])
-    side = orientation(PARABOLA, factorise(PARABOLA.jacobian(AT_ONE)))
-    assert proven_path._end(PARABOLA, guess, np.array([w, 0.0, 1.0]), side, 0.0, Work()) is None
-    right = proven_path._end(PARABOLA, AT_ONE.copy(), np.array([1.1, 0.0, 1.0]), side, 0.0, Work())
-    assert right is not None
-    assert right.y[0] == pytest.approx(np.sqrt(1.1), rel=1e-15)

@@ -4,20 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene, UnknownName, simulate
+from pointcoord import Motion, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import CHORD, MAP, METHODS, NEWTON, NEWTON_COLD, SERIES, Method
-from pointcoord.numerics.newton import newton_refine
-from pointcoord.solve.pointwise import square_velocity_term
 from validate.paper.printed import PRINTED
 
-Array = NDArray[np.float64]
-Points = dict[str, tuple[float, float, float]]
 EPS = np.finfo(float).eps
 ALL = (SERIES, MAP, NEWTON, NEWTON_COLD, CHORD, PRINTED)
-STEER = {"arm_angle": (np.pi / 2,), "rack": (0.0, 150.0, 25.0), "stop": 0.4}
 
 
 @pytest.mark.parametrize("method", ALL, ids=str)
@@ -59,28 +53,6 @@ def test_acceleration_is_the_derivative_of_the_velocity_and_the_printed_one_is_n
     # Eq. (23) lacks a factor of two and repeats a row: off by more than any rounding.
     assert gaps[PRINTED.name] > 1e3 * tolerance
     assert gaps[PRINTED.name] > 1.0  # mm/s^2
-
-
-def test_square_velocity_term_is_the_second_difference_of_the_constraints(strut: Mechanism) -> None:
-    rng = np.random.default_rng(1)
-    y, v = rng.integers(-50, 50, size=(2, strut.layout.size)).astype(float)
-    bend = strut.map.residual(y + v) - 2.0 * strut.map.residual(y) + strut.map.residual(y - v)
-    # A quadratic's second difference is its second derivative, exact for whole numbers.
-    assert np.array_equal(square_velocity_term(strut.map, v), bend)
-
-
-def test_unknown_method_is_refused_with_the_methods_that_exist(make_scene: Callable[..., Scene]) -> None:
-    with pytest.raises(UnknownName, match="series, map, newton"):
-        simulate(make_scene(), "newtom")
-
-
-def test_newton_at_every_instant_ends_at_rounding(make_scene: Callable[..., Scene], strut: Mechanism) -> None:
-    motion = simulate(make_scene(rack=(0.0, 20.0), samples=21, effects=(), tolerance=1e-13), "newton")
-    proof = motion.proof()
-    # eps times the condition number times the size of the car, with a margin of the row sums.
-    assert (proof.bound <= 64 * EPS * proof.condition * float(strut.unit)).all()
-    again = newton_refine(strut.map, motion.start.y)
-    assert again.first_step <= motion.start.bound
 
 
 # So near a fold no patch of a map can be proven.

@@ -1,7 +1,5 @@
 """Steps of proven paths: as long as their condition allows, and what stops them is told."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -62,29 +60,6 @@ def test_a_way_is_proven_where_the_condition_holds_in_one_of_three_norms(
 
 
 @by_mechanism
-def test_what_is_proven_of_one_place_is_that_of_many(mechanism: Mechanism) -> None:
-    poses = at(mechanism, [1.2, 1.5, 1.9], [-10.0, 0.0, 20.0])
-    system, inverses = mechanism.map, poses.factors.preconditioner
-    targets = driven(mechanism, poses.y, "rack travel", 0.3)
-    many = straight_way(system, inverses, poses.y, targets).best_proof(system, inverses)
-    for number, inverse in enumerate(inverses):
-        way = straight_way(system, inverse, poses.y[number], targets[number])
-        one = way.best_proof(system, inverse)
-        assert float(one.used) == pytest.approx(many.used[number], rel=1e-9)
-        assert float(one.alone) == pytest.approx(many.alone[number], rel=1e-9)
-        np.testing.assert_allclose(one.weights, many.weights[number], rtol=1e-9)
-
-
-@by_mechanism
-def test_the_residual_of_poses_is_that_of_each(mechanism: Mechanism) -> None:
-    poses = at(mechanism, np.linspace(1.2, 1.8, 5), np.linspace(-10.0, 10.0, 5))
-    apart = np.random.default_rng(5).uniform(-1e-3, 1e-3, poses.y.shape)
-    off = replace(poses, y=poses.y + apart)
-    each = [float(np.abs(mechanism.map.residual(y)).max()) for y in off.y]
-    np.testing.assert_allclose(off.residual, each, rtol=1e-12)
-
-
-@by_mechanism
 @pytest.mark.parametrize("moved", ["arm_angle", "rack"])
 def test_the_input_that_goes_on_is_the_one_to_bring_back(mechanism: Mechanism, moved: str) -> None:
     start, held = at(mechanism, 1.5, 20.0), {"arm_angle": 1.5, "rack": 20.0}
@@ -100,30 +75,6 @@ def test_the_input_that_goes_on_is_the_one_to_bring_back(mechanism: Mechanism, m
             assert status.reduce == moved
             assert status.wanted == pytest.approx(wanted, abs=1e-9)
     assert stopped > 0
-
-
-@by_mechanism
-def test_many_poses_are_led_where_each_is_led(mechanism: Mechanism) -> None:
-    start, ends = at(mechanism, 1.5, 0.0), at(mechanism, [1.2, 1.6, 1.9], [-20.0, 5.0, 25.0])
-    n, eps = mechanism.layout.unknowns, np.finfo(float).eps
-    many = follow(mechanism.map, start.y, ends.y[:, n:])
-    assert (many.done == 1.0).all()
-    for number, end in enumerate(ends.y):
-        one = follow(mechanism.map, start.y, end[n:])
-        assert one.done == 1.0
-        # Each ends with a Newton step that has shrunk to rounding, of coordinates up to 2.
-        allowed = 4 * eps * float(ends.condition[number])
-        assert np.abs(one.y - end).max() <= allowed
-        assert np.abs(many.y[number] - end).max() <= allowed
-
-
-@by_mechanism
-@pytest.mark.parametrize("moved", ["arm_angle", "rack"])
-def test_an_input_that_is_held_is_not_to_be_brought_back(mechanism: Mechanism, moved: str) -> None:
-    pose, inputs = at(mechanism, 1.3, 20.0), {"arm_angle": 1.3, "rack": 20.0}
-    inputs[moved] += 1e-3
-    goal = mechanism.known_series({name: np.array([value]) for name, value in inputs.items()})[0]
-    assert assembly.blocked(mechanism, "no way", pose, goal, np.array(True), None).reduce == moved
 
 
 @by_mechanism
