@@ -74,11 +74,6 @@ class TimeFunction(Protocol):
         """Whether it is constant by its form, whatever the instants."""
         ...
 
-    @property
-    def degree(self) -> int:
-        """The power of time up to which its own series may be nothing but zeros, and not beyond."""
-        ...
-
 
 @dataclass(frozen=True)
 class Polynomial:
@@ -153,18 +148,11 @@ class Polynomial:
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """None: a polynomial is analytic everywhere."""
         return ()
 
     @property
     def still(self) -> bool:
-        """Of degree 0."""
-        return self.degree == 0
-
-    @property
-    def degree(self) -> int:
-        """Of the polynomial."""
-        return max((k for k, c in enumerate(self.coefficients) if c), default=0)
+        return not any(self.coefficients[1:])
 
 
 @dataclass(frozen=True)
@@ -269,18 +257,11 @@ class Sine:
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """None: a sine is analytic everywhere."""
         return ()
 
     @property
     def still(self) -> bool:
-        """Without an amplitude, or without a frequency."""
         return not (self.amplitude and self.angular_frequency)
-
-    @property
-    def degree(self) -> int:
-        """Two: its first and second rate are nowhere zero together."""
-        return 2
 
 
 @dataclass(frozen=True)
@@ -347,18 +328,12 @@ class Table:
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """The inner times of the table."""
         return self.times[1:-1]
 
     @property
     def still(self) -> bool:
         """Of one value, which is what the spline then gives everywhere."""
         return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
-
-    @property
-    def degree(self) -> int:
-        """Three: the pieces are cubic."""
-        return 3
 
 
 @cache

@@ -63,7 +63,6 @@ class Ball:
     Attributes:
         proven: whether exactly one assembly lies in the ball; radius: its own, where it is.
         outer: no other assembly lies within this distance.
-        constant: h = 2 omega eta / (1 - z)^2, proven where it is below 1.
         contraction: z + omega radius.
         tail: z radius + omega radius^2 / 2.
     """
@@ -71,7 +70,6 @@ class Ball:
     proven: NDArray[np.bool_]
     radius: Array
     outer: Array
-    constant: Array
     contraction: Array
     tail: Array
 
@@ -90,7 +88,6 @@ def ball(eta: Array, z: Array, omega: Array) -> Ball:
         proven=proven,
         radius=np.where(proven, radius, np.inf),
         outer=np.where(proven, outer, 0.0),
-        constant=np.where(room > 0.0, constant, np.inf),
         contraction=np.where(proven, contraction, np.inf),
         tail=np.where(proven, tail, np.inf),
     )
@@ -103,7 +100,6 @@ class Certificate:
     Attributes:
         radius: exactly one assembly lies within it, (..., m); infinite where nothing could be proven.
         unique_within: no other assembly lies within this distance, (..., m).
-        newton_constant: h = 2 omega eta / (1 - z)^2, proven where it is at most 1, (..., m).
         contraction: z + omega radius >= |I - X C_u| everywhere within the radius, (..., m); infinite
             where nothing could be proven.
         defect: |I - X C_u(y)| element by element at any pose of the group, (..., unknowns, unknowns).
@@ -115,7 +111,6 @@ class Certificate:
 
     radius: Array
     unique_within: Array
-    newton_constant: Array
     contraction: Array
     defect: Array
     residual: Array
@@ -150,7 +145,6 @@ def certify(system: QuadraticMap, pose: Enclosed, factors: Factors) -> Certifica
     return Certificate(
         radius=found.radius,
         unique_within=found.outer,
-        newton_constant=found.constant,
         contraction=found.contraction,
         defect=defect,
         residual=middle,

@@ -223,7 +223,6 @@ class MechanismPart(Part):
         return standing | points
 
     def agree(self) -> None:
-        """It is of a mechanism, and its axes, its side and its spin axis have a meaning."""
         if _file_of(self.__dict__) is None:
             raise TableFault(("type",), "this key is missing", f"{', '.join(shipped())}, a path, or tables")
         self._orthonormal()
@@ -381,7 +380,6 @@ class TablePart(Part):
     values: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
 
     def agree(self) -> None:
-        """Its times increase, and its spline is finite."""
         if len(self.times) != len(self.values):
             raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
         if not all(earlier < later for earlier, later in pairwise(self.times)):
@@ -404,7 +402,6 @@ class InputPart(Part):
     table: TablePart | None = None
 
     def agree(self) -> None:
-        """It is of one kind."""
         given = [name for name in LAWS if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
@@ -433,7 +430,6 @@ class TimePart(Part):
     samples: Annotated[Whole, Field(ge=1, le=MOST_SAMPLES)]
 
     def agree(self) -> None:
-        """It goes forwards, within what a motion can count."""
         for name, instant in (("start", self.start), ("stop", self.stop)):
             if abs(instant) > FARTHEST:
                 raise ValueError(f"{name} is {instant} s; allowed: {-FARTHEST:g} to {FARTHEST:g} s")
@@ -512,7 +508,6 @@ class Scene(Part):
         return points
 
     def agree(self) -> None:
-        """Its effects and its inputs belong to its mechanism."""
         self._inputs_fit()
         self._effects_have_a_meaning()
 

@@ -146,14 +146,6 @@ class Chain:
         edges = [0, *np.searchsorted(instants, starts, side="left").tolist(), len(instants)]
         yield from zip(self.segments, map(slice, edges[:-1], edges[1:]), strict=True)
 
-    def summed(self, instants: Array, count: int, derivative: int = 0) -> Array:
-        """The first coordinates, or a rate of them, at instants in increasing order, (..., N, count)."""
-        parts = (
-            segment.powers(instants[part], derivative + 1)[derivative].T @ segment.coefficients[..., :count]
-            for segment, part in self.parts(instants)
-        )
-        return np.concatenate(list(parts), axis=-2)
-
 
 @dataclass(frozen=True)
 class Settings:

@@ -54,16 +54,13 @@ class Normal(Constraint):
 
     @property
     def name(self) -> str:
-        """The normal's own."""
         return self.normal
 
     @property
     def vectors(self) -> tuple[str, ...]:
-        """The normal."""
         return (self.normal,)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the two edges."""
         n, o, p, q = (layout.vector(name) for name in (self.normal, self.base, self.first, self.second))
         return tuple(
             (
@@ -75,7 +72,6 @@ class Normal(Constraint):
         )
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The normal of the drawn triangle."""
         base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
         return (Placed(layout.vector(self.normal), np.cross(first - base, second - base)),)
 
@@ -97,12 +93,10 @@ class AxisInBody(Constraint):
 
     @property
     def name(self) -> str:
-        """The axis' own."""
         return self.axis
 
     @property
     def vectors(self) -> tuple[str, ...]:
-        """The direction."""
         return (self.axis,)
 
     @property
@@ -111,7 +105,6 @@ class AxisInBody(Constraint):
         return weight_names(self.axis, self.normal)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the constants and the edges."""
         vector = layout.vector(self.axis), (layout.zero,) * 3
         return weighted_rows(layout, vector, self.normal, self.constants)
 
@@ -140,7 +133,6 @@ class PointInBody(Constraint):
 
     @property
     def name(self) -> str:
-        """The point and the body."""
         return f"{self.point} in {self.body}"
 
     @property
@@ -150,16 +142,13 @@ class PointInBody(Constraint):
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
-        """From the body's first point."""
         return ((self.normal.base, self.point),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the constants and the edges."""
         vector = layout.vector(self.point), layout.vector(self.normal.base)
         return weighted_rows(layout, vector, self.normal, self.constants)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The constants, with what they lack by rounding."""
         vector = two_sum(drawing.vectors[self.point], -drawing.vectors[self.normal.base])
         places = tuple(layout.scalar(name) for name in self.constants)
         return (Placed(places, *weights_in_body(drawing, vector, self.normal, self.point)),)

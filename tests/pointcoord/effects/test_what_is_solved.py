@@ -111,11 +111,6 @@ class Told:
         return self.law.breaks
 
     @property
-    def degree(self) -> int:
-        """The law's."""
-        return self.law.degree
-
-    @property
     def still(self) -> bool:
         """No."""
         return False
