@@ -149,9 +149,8 @@ class PointInBody(Constraint):
         return weighted_rows(layout, vector, self.normal, self.constants)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        vector = two_sum(drawing.vectors[self.point], -drawing.vectors[self.normal.base])
         places = tuple(layout.scalar(name) for name in self.constants)
-        return (Placed(places, *weights_in_body(drawing, vector, self.normal, self.point)),)
+        return (Placed(places, *carrier_weights(drawing, self.point, self.normal)),)
 
 
 def weight_names(name: str, body: Normal) -> tuple[str, ...]:
@@ -192,7 +191,7 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     if not (area > 16 * UNIT_ROUNDOFF * lengths).all():
         names = (body.base, body.first, body.second)
         raise MechanismError(
-            f"{', '.join(names)} lie in one line, so they cannot carry the {what}; move one off the line",
+            f"{', '.join(names)} lie in one line, so they cannot carry {what}; move one off the line",
             names,
         )
     inverse = np.linalg.inv(frame)
@@ -205,6 +204,12 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     again = _applied(np.abs(frame), _applied(spread, np.abs(rest)))
     doubt = _applied(spread, PAIRS * size + SOLVED * again) + PAIRS * np.abs(values)
     return values, lacks, doubt
+
+
+def carrier_weights(drawing: Drawing, point: str, body: Normal) -> tuple[Array, Array, Array]:
+    """The same of a drawn point from the base of the body."""
+    vector = two_sum(drawing.vectors[point], -drawing.vectors[body.base])
+    return weights_in_body(drawing, vector, body, point)
 
 
 def scaled_axis(drawing: Drawing, tail: str, head: str) -> Pair:

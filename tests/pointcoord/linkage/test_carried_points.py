@@ -7,11 +7,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from pointcoord.linkage.carried_points import carried_gain, carried_place, carried_series, carrier_weights
+from pointcoord.linkage.carried_points import carried_gain, carried_place, carried_series
+from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.drawing import Drawing
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
+BODY = Normal("", "base", "first", "second")
 seeds = st.integers(0, 2**32 - 1)
 
 
@@ -61,12 +63,12 @@ def test_cars_that_share_some_carriers_have_the_weights_that_they_have_alone(
     vectors = {name: rng.normal(size=(6, 3) if name in batched else 3) for name in names}
     together = Drawing(vectors, np.ones(6))
     carriers = ("base", "first", "second")
-    weights = carrier_weights("rider", together, carriers)
+    weights = carrier_weights(together, "rider", BODY)[0]
     assert weights.shape == (6, 3)
     gains = []
     for i in range(6):
         own = {name: place[i] if name in batched else place for name, place in vectors.items()}
-        alone = carrier_weights("rider", Drawing(own, np.array(1.0)), carriers)
+        alone = carrier_weights(Drawing(own, np.array(1.0)), "rider", BODY)[0]
         # One solve of a system of the condition number of the frame.
         frame = np.stack([own["first"] - own["base"], own["second"] - own["base"]])
         spread = np.linalg.cond(np.vstack([frame, np.cross(*frame)]))
