@@ -154,7 +154,7 @@ def solved(name: str) -> Any:
 
 
 FAULTS: list[tuple[Callable[..., Any], str, str]] = [
-    (kantorovich.ball, "2.0 * eta", "1.0 * eta"),
+    (kantorovich.smallest_radius, "least = 2.0 * eta", "least = eta"),
     (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(z * radius)"),
     (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(0.5 * omega * radius**2)"),
     (kantorovich.certify, "doubt = rows.radius[0] +", "doubt = 0.5 * rows.radius[0] +"),

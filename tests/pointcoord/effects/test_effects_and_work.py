@@ -6,8 +6,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+import pointcoord.solve.place
 import pointcoord.solve.pointwise
-import pointcoord.solve.standing_still
 import pointcoord.solve.taylor
 from pointcoord import Motion, NotComputed, Scene, UnknownName, simulate
 from pointcoord.effects.plan import plan_effects
@@ -118,7 +118,7 @@ def test_counts_are_what_was_done(
     solving = pointcoord.solve
     monkeypatch.setattr(solving.proven_path, "inverses", inverted)
     ways = (solving.pointwise, solving.proven_path)
-    own = (newton, assembly, solving.follower, solving.standing_still, flood)
+    own = (newton, assembly, solving.follower, solving.place, flood)
     for module in (*own, *ways):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)

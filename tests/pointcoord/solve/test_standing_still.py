@@ -7,7 +7,7 @@ import numpy as np
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.solve.assembly import Pose, assemble
-from pointcoord.solve.standing_still import starting_place
+from pointcoord.solve.place import starting_place
 from pointcoord.time_functions import Polynomial, TimeFunction
 
 STEER: dict[str, TimeFunction] = {"arm_angle": Polynomial((1.5,)), "rack": Polynomial((0.0, 10.0))}
