@@ -5,6 +5,7 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, lru_cache
@@ -87,26 +88,12 @@ def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
     if keys["type"] is not None:
         return mechanism_file(keys["type"])
     tables = {name: keys[name] for name in TABLES if keys[name] is not None}
-    return _inline(_hashable({"title": keys["title"], **tables})) if tables else None
+    return _inline(json.dumps({"title": keys["title"], **tables})) if tables else None
 
 
 @lru_cache(maxsize=64)
-def _inline(tables: tuple[tuple[str, Any], ...]) -> MechanismFile:
-    return MechanismFile.of(_tables(tables), "mechanism")
-
-
-def _hashable(value: Any) -> Any:
-    """Tables and lists as tuples, a table as one of a mark and its entries."""
-    if isinstance(value, Mapping):
-        return (Mapping, *((name, _hashable(each)) for name, each in value.items()))
-    return tuple(map(_hashable, value)) if isinstance(value, list | tuple) else value
-
-
-def _tables(value: Any) -> Any:
-    """What `_hashable` made so."""
-    if isinstance(value, tuple) and value and value[0] is Mapping:
-        return {name: _tables(each) for name, each in value[1:]}
-    return tuple(map(_tables, value)) if isinstance(value, tuple) else value
+def _inline(tables: str) -> MechanismFile:
+    return MechanismFile.of(json.loads(tables), "mechanism")
 
 
 def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -> object:

@@ -74,16 +74,14 @@ def test_misspelt_keys_are_told_together_each_with_the_key_that_was_meant() -> N
     with pytest.raises(SceneError) as caught:
         BOUNCE.model_copy(update={"inputs": {**BOUNCE.inputs, "rack": rack}})
     told = str(caught.value)
-    # Two faults, not four: a key that is misspelt is not missing too.
-    assert "rack.table.time: there is no such key (did you mean 'times'?)" in told
-    assert "(and 1 more: inputs.rack.table.value: there is no such key (did you mean 'values'?))" in told
+    assert "rack.table.time: there is no such key (did you mean 'times'?), nor value (did you mean" in told
     assert "missing" not in told
 
 
 def test_faults_are_told_up_to_a_number_and_all_are_counted() -> None:
-    many = {f"step{i}": 0.1 for i in range(9)}
-    with pytest.raises(SceneError, match=r"step0: .*\(and 8 more: step1: .*; step5: [^;]*; 3 others\)"):
-        BOUNCE.time.model_copy(update=many)
+    many = {"polynomial": ["a"] * 9}
+    with pytest.raises(SceneError, match=r"\.0: .*\(and 8 more: polynomial\.1: .*; 3 others\)"):
+        BOUNCE.inputs["arm_angle"].model_copy(update=many)
     # A key that is near to one that is given is no slip of that one.
     with pytest.raises(SceneError, match="starts: there is no such key; allowed"):
         BOUNCE.time.model_copy(update={"starts": 0.1})
