@@ -29,7 +29,6 @@ from pointcoord.numerics.quadratic import Product, quadratic_map
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 
 Array = NDArray[np.float64]
-
 # u u + 2 u p = q: one unknown, whose error counts by its square, and two known numbers.
 UNKNOWN, ZERO, ONE, P, Q = range(5)
 SYSTEM = quadratic_map(

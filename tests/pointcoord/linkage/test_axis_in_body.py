@@ -16,7 +16,6 @@ from pointcoord.linkage.layout import Layout
 Array = NDArray[np.float64]
 Vector = list[Fraction]
 U = 2.0**-53
-
 BODY = Normal("n", "base", "first", "second")
 AXIS = AxisInBody("axis", "tail", "head", BODY)
 HELD = HeldOnAxis("end", "head", AXIS, "held")
@@ -120,17 +119,6 @@ def test_no_axis_of_the_frame_is_special_to_a_place_in_a_body_or_to_its_doubt(
     # digits depend on the order of its terms and of the elimination; a tenth is the smallest of the terms.
     np.testing.assert_allclose(np.abs(other.values), np.abs(plain.values), rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(np.asarray(other.doubt), np.asarray(plain.doubt), rtol=1e-2)
-
-
-def test_cars_drawn_together_have_the_constants_that_they_have_alone() -> None:
-    cars = [drawn(seed, "anywhere", 1.0) for seed in range(5)]
-    together = Drawing({n: np.stack([car[n] for car in cars]) for n in cars[0]}, np.ones(5))
-    for kind in (AXIS, HELD, BODY):
-        for i, car in enumerate(cars):
-            for mine, all_of_them in zip(
-                kind.placed(LAYOUT, Drawing(car, np.array(1.0))), kind.placed(LAYOUT, together), strict=True
-            ):
-                assert np.array_equal(np.asarray(all_of_them.values)[i], mine.values)
 
 
 def _scale(vector: Vector) -> Fraction:

@@ -10,21 +10,18 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, scaled_axis
+from pointcoord.linkage.constraints.in_body import AxisInBody, Normal
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.on_line import FARTHEST, HeldOnAxis, OnAxis, OnChassisLine, OnLine
-from pointcoord.linkage.constraints.scalar_product import ScalarProduct
+from pointcoord.linkage.constraints.on_line import FARTHEST, HeldOnAxis, OnChassisLine, OnLine
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
 
 Array = NDArray[np.float64]
 U = 2.0**-53
-
 BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = HeldOnAxis("c", "b", AXIS, "held")
-SLIDES = OnAxis("b", "a", AXIS, "place")
 LINE = OnLine("c", "a", "b", "ratio")
 RACK = OnChassisLine("a", "o", "rack", "", "e", "travel", True)
 LAYOUT = Layout(
@@ -54,23 +51,6 @@ def value(kind: Constraint, car: Drawing) -> Array:
     (placed,) = kind.placed(LAYOUT, car)
     assert len(placed.places) == placed.values.shape[-1] == 1
     return np.asarray(placed.values[..., 0])
-
-
-# An axis of length 11, whose direction is brought to 11 / 16.
-LONG = {"a": (1.0, -1.0, 4.0), "b": (3.0, -7.0, 13.0)}
-
-
-def test_a_direction_is_brought_between_a_half_and_one() -> None:
-    high, low = scaled_axis(drawing(**LONG), "a", "b")
-    assert (high * 16.0).tolist() == [2.0, -6.0, 9.0]
-    assert (low == 0.0).all()
-
-
-def test_a_point_that_slides_stands_where_it_is_drawn_on_its_axis() -> None:
-    one, other = drawing(**LONG), drawing(a=(1.0, 2.0, 3.0), b=(1.0, 2.0, 3.0 + 5.0))
-    assert value(SLIDES, one) == 16.0
-    assert value(SLIDES, other) == 8.0
-    assert value(SLIDES, both_and(one, other)).tolist() == [16.0, 8.0, 16.0]
 
 
 def test_a_point_on_a_line_stands_at_its_foot() -> None:
@@ -133,20 +113,3 @@ def test_the_rows_of_a_distance_are_that_distance(kind: Constraint) -> None:
     moved[list(LAYOUT.vector("a" if kind is RACK else "c"))] += LENGTHS[kind]
     system = quadratic_map(kind.rows(LAYOUT), LAYOUT.unknowns, LAYOUT.size)
     assert np.linalg.norm(system.residual(moved) - system.residual(y)) == pytest.approx(7.0, rel=1e-13)
-
-
-def test_a_motion_ends_at_links_and_slides_and_bodies_join_nothing() -> None:
-    every = (
-        BODY,
-        AXIS,
-        HELD,
-        SLIDES,
-        LINE,
-        RACK,
-        Link("a", "b"),
-        ScalarProduct.rise("a", "o", "e", "travel"),
-    )
-    assert [kind for kind in every if kind.may_lock] == [SLIDES, Link("a", "b")]
-    assert [kind for kind in every if kind.holds_a_body] == [BODY, AXIS]
-    assert [kind for kind in every if kind.is_length] == [HELD, LINE, RACK]
-    assert [kind for kind in every if kind.aligned] == [LINE]

@@ -157,12 +157,6 @@ def test_a_turn_is_right_handed_about_the_hinge_and_goes_round_as_often_as_it_sa
     assert np.abs(turned_arm([7.0 * np.pi]).position["wheel_centre"][0] - across).max() < 1e-9
 
 
-def test_a_five_link_has_no_steering_axis_and_says_so() -> None:
-    content = Scene.load("five-link").model_dump(exclude_none=True)
-    with pytest.raises(SceneError, match="needs the role steering_axis"):
-        Scene.from_mapping({**content, "effects": ["caster"]})
-
-
 def test_a_tripod_of_rods_is_refused_as_a_structure() -> None:
     content = {
         "mechanism": {

@@ -14,7 +14,6 @@ from pointcoord.numerics.branch import (
     hidden,
     on_branch,
     regular_along,
-    same_signs,
     surely_regular,
 )
 from pointcoord.numerics.counters import Work
@@ -95,11 +94,6 @@ def test_a_zero_of_the_determinant_is_met_whatever_its_order(degree: int, place:
     assert regular(*u.coef, length=0.5 * place) == (place > 0.0)
 
 
-@pytest.mark.parametrize("apart", [1e-9, 1e-3, 0.1, 0.3])
-def test_a_motion_beyond_a_crossing_and_back_meets_it(apart: float) -> None:
-    assert not regular(*(np.polynomial.Polynomial([-0.5, 1.0]) ** 2 - apart**2).coef)
-
-
 def test_a_motion_that_turns_back_just_before_a_crossing_meets_none() -> None:
     # det C_u = 2 ((s - 1/2)^2 + beside^2) has its zeros beside the real axis: as near as that shows in parts
     # of the segment no such motion is refused, and nearer ones in shorter segments.
@@ -118,13 +112,6 @@ def test_a_pose_within_rounding_of_a_meeting_is_hidden_and_no_other() -> None:
         assert bool(hidden(PARABOLA, y, factorise(np.array([[2.0 * u]])))) is plain
         y = np.array([u, 1.0 + u * u, 0.0, 1.0, 1.0])
         assert bool(hidden(shifted, y, factorise(np.array([[2.0 * u]])))) is moved
-
-
-def test_two_folds_at_once_are_not_one_that_is_none() -> None:
-    every = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
-    assert np.array_equal(same_signs(every[:, None], every), np.eye(4, dtype=bool))
-    for none in (0.0, np.nan):
-        assert not same_signs(np.array([1.0, none]), np.array([1.0, none]))
 
 
 def path_to(w: float) -> tuple[float, float]:

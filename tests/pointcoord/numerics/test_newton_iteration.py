@@ -99,3 +99,12 @@ def test_what_a_step_leaves_is_known_where_the_theorem_is_sharp(start: float) ->
             assert found.left == pytest.approx(after - 1.0, abs=16 * EPS)
         assert after - 1.0 <= found.left + 16 * EPS
     assert newton_refine(parabola, y, 0.0, np.inf).noise == 0.0
+
+
+def test_wanted_residual_is_reached(strut: Mechanism, pose: Pose) -> None:
+    offset = 1e-4 * np.random.default_rng(2).uniform(-1.0, 1.0, size=17)
+    reached = newton_refine(strut.map, pose.y, offset)
+    assert reached.converged
+    # The residual is as far off as rounding of the coordinates makes it: below 16 eps of products up to 4.
+    assert np.abs(strut.map.residual(reached.y) - offset).max() <= 16 * EPS * 4
+    assert np.array_equal(reached.y[17:], pose.y[17:])

@@ -4,10 +4,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sample_cars import SampleCar, by_car
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
@@ -111,30 +109,6 @@ def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
     for cause in (0, 1, 2):
         driven = [cause + n in known and cause + n in block.reads for block in blocks]
         assert [cause in causes for causes in moved] == (reached @ np.array(driven)).tolist()
-
-
-@by_car
-def test_blocks_of_a_suspension_are_those_of_scipy_and_make_its_jacobian_a_block_triangle(
-    car: SampleCar,
-) -> None:
-    mechanism = car.mechanism()
-    system = mechanism.map
-    structure = system.structure
-    require_blocks(structure, Pattern(system.reads, system.unknowns))
-    assert {(frozenset(b.rows), frozenset(b.unknowns)) for b in structure.blocks} == by_scipy(
-        Pattern(system.reads, system.unknowns)
-    )
-    assert len(structure.blocks) > 1
-    jacobian = system.jacobian(mechanism.drawn)
-    solved: list[int] = []
-    for block in structure.blocks:
-        solved += block.unknowns
-        later = np.setdiff1d(np.arange(system.unknowns), solved)
-        assert not jacobian[np.ix_(block.rows, later)].any()
-    sign, size = np.linalg.slogdet(jacobian)
-    parts = [np.linalg.slogdet(jacobian[np.ix_(b.rows, b.unknowns)]) for b in structure.blocks]
-    assert sign != 0.0
-    assert sum(part[1] for part in parts) == pytest.approx(size, abs=1e-9)
 
 
 def test_the_blocks_of_a_long_chain_or_circle_are_no_recursion() -> None:

@@ -47,8 +47,8 @@ stop = 2.0
 samples = 5
 """
 RACK = "rack = { constant = 0.0 }"
-
 # name: (text to replace, by what, key at fault, value shown, what is allowed)
+# fmt: off
 FAULTS: dict[str, tuple[str, str, str, str, str]] = {
     "unknown top key": ("tolerance = 1e-9", "tolerence = 1e-9", "tolerence", "", "tolerance"),
     "unknown key of time": ("samples = 5", "samples = 5\nstep = 1", "time.step", "", "samples"),
@@ -66,84 +66,35 @@ FAULTS: dict[str, tuple[str, str, str, str, str]] = {
     "unknown point": ("strut_top = [", "strut_topp = [", "mechanism.points", "strut_topp", "strut_top"),
     "missing point": ("strut_top = [460, -180, 470]\n", "", "mechanism.points", "strut_top", "needed"),
     "point of two numbers": ("[460, -180, 470]", "[460, -180]", "mechanism.points.strut_top", "", ""),
-    "point of four numbers": (
-        "[460, -180, 470]",
-        "[460, -180, 470, 1]",
-        "mechanism.points.strut_top",
-        "",
-        "3",
-    ),
-    "point not a number": (
-        "[460, -180, 470]",
-        "[460, nan, 470]",
-        "mechanism.points.strut_top.1",
-        "nan",
-        "finite",
-    ),
+    "point of four numbers": ("[460, -180, 470]", "[460, -180, 470, 1]", "mechanism.points.strut_top", "",
+        "3"),
+    "point not a number": ("[460, -180, 470]", "[460, nan, 470]", "mechanism.points.strut_top.1", "nan",
+        "finite"),
     "point is text": ("[460, -180, 470]", '[460, "a", 470]', "mechanism.points.strut_top.1", "a", "number"),
-    "point is true": (
-        "[460, -180, 470]",
-        "[460, true, 470]",
-        "mechanism.points.strut_top.1",
-        "True",
-        "number",
-    ),
+    "point is true": ("[460, -180, 470]", "[460, true, 470]", "mechanism.points.strut_top.1", "True",
+        "number"),
     "up not a unit vector": ('"left"', '"left"\nup = [0, 0, 2]', "mechanism", "2", "unit"),
     "up along right": ('"left"', '"left"\nup = [0, 1, 0]', "mechanism", "(0.0, 1.0, 0.0)", "right angles"),
-    "unknown input": (
-        RACK,
-        RACK + "\nroll = { constant = 0.0 }",
-        "",
-        "roll",
-        "arm_angle, rack, wheel_travel, contact_travel, heave",
-    ),
+    "unknown input": (RACK, RACK + "\nroll = { constant = 0.0 }", "", "roll",
+        "arm_angle, rack, wheel_travel, contact_travel, heave"),
     "missing input": (RACK, "", "", "arm_angle", "drive 1 more of rack"),
-    "two kinds of input": (
-        "constant = 0.0",
-        "constant = 0.0, polynomial = [1.0]",
-        "inputs.rack",
-        "constant and polynomial",
-        "exactly one",
-    ),
+    "two kinds of input": ("constant = 0.0", "constant = 0.0, polynomial = [1.0]", "inputs.rack",
+        "constant and polynomial", "exactly one"),
     "no kind of input": (RACK, "rack = {}", "inputs.rack", "nothing", "exactly one"),
     "input is a number": (RACK, "rack = 5", "inputs.rack", "5", ""),
     "input infinite": ("constant = 0.0", "constant = inf", "inputs.rack.constant", "inf", "finite"),
     "empty polynomial": ("constant = 0.0", "polynomial = []", "inputs.rack.polynomial", "", "1 item"),
-    "sine without amplitude": (
-        "constant = 0.0",
-        "sine = { angular_frequency = 1.0 }",
-        "inputs.rack.sine.amplitude",
-        "",
-        "",
-    ),
-    "short table": (
-        "constant = 0.0",
-        "table = { times = [0, 1], values = [0, 1] }",
-        "inputs.rack.table.times",
-        "",
-        "4 items",
-    ),
-    "table of unequal lengths": (
-        "constant = 0.0",
-        "table = { times = [0, 1, 2, 3], values = [0, 1, 2, 3, 4] }",
-        "inputs.rack.table",
-        "4 times and 5 values",
-        "as many",
-    ),
-    "table out of order": (
-        "constant = 0.0",
-        "table = { times = [0, 2, 1, 3], values = [0, 1, 2, 3] }",
-        "inputs.rack.table",
-        "do not increase",
-        "strictly increasing",
-    ),
-    "table too short in time": (
-        "constant = 0.0",
-        "table = { times = [0, 0.5, 1, 1.5], values = [0, 1, 2, 3] }",
-        "",
-        "0.0 to 1.5",
-        "0.0 to 2.0",
-    ),
+    "sine without amplitude": ("constant = 0.0", "sine = { angular_frequency = 1.0 }",
+        "inputs.rack.sine.amplitude", "", ""),
+    "short table": ("constant = 0.0", "table = { times = [0, 1], values = [0, 1] }",
+        "inputs.rack.table.times", "", "4 items"),
+    "table of unequal lengths": ("constant = 0.0",
+        "table = { times = [0, 1, 2, 3], values = [0, 1, 2, 3, 4] }", "inputs.rack.table",
+        "4 times and 5 values", "as many"),
+    "table out of order": ("constant = 0.0", "table = { times = [0, 2, 1, 3], values = [0, 1, 2, 3] }",
+        "inputs.rack.table", "do not increase", "strictly increasing"),
+    "table too short in time": ("constant = 0.0",
+        "table = { times = [0, 0.5, 1, 1.5], values = [0, 1, 2, 3] }", "", "0.0 to 1.5", "0.0 to 2.0"),
     "time backwards": ("stop = 2.0", "stop = -2.0", "time", "-2.0", "start < stop"),
     "one sample of a stretch": ("samples = 5", "samples = 1", "time", "one sample", "start = stop"),
     "no samples": ("samples = 5", "samples = 0", "time.samples", "0", "greater than or equal to 1"),
@@ -151,6 +102,7 @@ FAULTS: dict[str, tuple[str, str, str, str, str]] = {
     "too many samples": ("samples = 5", "samples = 10000001", "time.samples", "10000001", "10000000"),
     "start not a number": ("start = 0.0", "start = nan", "time.start", "nan", "finite"),
 }
+# fmt: on
 
 
 def test_the_scene_that_the_faults_are_planted_in_is_right(tmp_path: Path) -> None:

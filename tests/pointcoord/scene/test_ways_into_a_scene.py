@@ -29,9 +29,8 @@ from pointcoord.toml_text import LARGEST, read_stream
 BOUNCE = Scene.load("bounce")
 CONTENT = BOUNCE.model_dump(exclude_none=True)
 plain = settings(deadline=None)
-
-# Red, the start of a line, a turned line, no width at all, a line that is none, half a character.
-STEERING = "\x1b[31m\r\n\u202etxt\u200b\u2028\udc80"
+# Red, the start of a line, a turned line, no width at all, a line that is none, half a character, no end.
+STEERING = "\x1b[31m\r\n\u202etxt\u200b\u2028\udc80" + 10_000 * "x"
 
 
 def bounce_text() -> str:
@@ -85,13 +84,6 @@ def test_faults_are_told_up_to_a_number_and_all_are_counted() -> None:
     # A key that is near to one that is given is no slip of that one.
     with pytest.raises(SceneError, match="starts: there is no such key; allowed"):
         BOUNCE.time.model_copy(update={"starts": 0.1})
-
-
-def test_a_scene_whose_dictionaries_were_written_later_is_refused_when_it_is_solved() -> None:
-    scene = Scene.from_mapping(CONTENT)
-    scene.mechanism.points["strut_top"] = (1.0, float("nan"), 2.0)
-    with pytest.raises(SceneError, match=r"mechanism\.points\.strut_top\.1: .*finite number, not nan"):
-        simulate(scene)
 
 
 def test_a_tolerance_that_the_method_cannot_hold_is_noted_with_the_one_that_it_held() -> None:
@@ -207,62 +199,33 @@ def test_devices_pipes_and_sockets_are_refused_and_never_waited_for(tmp_path: Pa
                 Scene.load(path)
 
 
-def misnamed(changes: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-    content: dict[str, Any] = pickle.loads(pickle.dumps(CONTENT))
-    changes(content)
-    return content
+def part_with(part: str, name: str, value: object) -> Scene:
+    return Scene.from_mapping({**CONTENT, part: {**CONTENT[part], name: value}})
 
 
 MISNAMED: dict[str, Callable[[], object]] = {
-    "title": lambda: simulate(
-        Scene.from_mapping(
-            misnamed(
-                lambda c: (
-                    c.update(title=STEERING[:-1]),  # no half characters in a scene
-                    c["mechanism"]["points"].update(strut_lower=c["mechanism"]["points"]["lower_ball_joint"]),
-                )
-            )
-        )
-    ),
     "file": lambda: Scene.load(STEERING),
     "key": lambda: Scene.from_mapping({**CONTENT, STEERING: 1}),
-    "key of time": lambda: Scene.from_mapping(misnamed(lambda c: c["time"].update({STEERING: 1}))),
-    "point": lambda: Scene.from_mapping(
-        misnamed(lambda c: c["mechanism"]["points"].update({STEERING: (1.0, 2.0, 3.0)}))
+    "key of time": lambda: part_with("time", STEERING, 1),
+    "point": lambda: part_with(
+        "mechanism", "points", {**CONTENT["mechanism"]["points"], STEERING: (1.0, 2.0, 3.0)}
     ),
-    "input": lambda: Scene.from_mapping(misnamed(lambda c: c["inputs"].update({STEERING: {"constant": 1}}))),
-    "law": lambda: Scene.from_mapping(misnamed(lambda c: c["inputs"]["rack"].update({STEERING: 1}))),
+    "input": lambda: part_with("inputs", STEERING, {"constant": 1}),
     "effect": lambda: Scene.from_mapping({**CONTENT, "effects": [STEERING]}),
     "value": lambda: Scene.from_mapping({**CONTENT, "tolerance": STEERING}),
     "source": lambda: Scene.from_mapping({**CONTENT, "tolerance": 0}, STEERING),
-    "stream": lambda: Scene.read(io.BytesIO(b"a = \x1b"), STEERING),
     "asked for": lambda: simulate(BOUNCE).position[STEERING],
-    "method": lambda: simulate(BOUNCE, STEERING),
 }
 
 
 @pytest.mark.parametrize("place", MISNAMED)
-def test_what_would_steer_a_terminal_is_shown_as_text(place: str) -> None:
+def test_what_would_steer_a_terminal_is_shown_as_text_in_a_few_lines(place: str) -> None:
     with pytest.raises(PointcoordError) as caught:
         MISNAMED[place]()
     message = str(caught.value)
     assert message.isprintable()
-    assert r"\x1b[31m" in message or place == "stream"
-    message.encode("utf-8")
-
-
-def test_a_name_of_any_length_makes_a_message_of_a_few_lines() -> None:
-    long = "x" * 10_000
-    for content in (
-        {**CONTENT, long: 1},
-        misnamed(lambda c: c["mechanism"]["points"].update({long: (1.0, 2.0, 3.0)})),
-        misnamed(lambda c: c["inputs"].update({long: {"constant": 1}})),
-        {**CONTENT, "effects": [long]},
-        {**CONTENT, "tolerance": long},
-    ):
-        with pytest.raises(SceneError) as caught:
-            Scene.from_mapping(content)
-        assert len(str(caught.value)) < 500
+    assert r"\x1b[31m" in message
+    assert len(message) < 600
 
 
 @given(text=st.text(st.characters(), max_size=40))

@@ -12,12 +12,9 @@ from pointcoord import (
     MotionTooLong,
     MotionTooRough,
     Scene,
-    SceneError,
     simulate,
 )
-from pointcoord.linkage.constraints.on_line import FARTHEST
 
-Points = dict[str, tuple[float, float, float]]
 Make = Callable[..., Scene]
 # The arm jumps by 0.01 rad within a nanosecond: cubics of size 1e25 that rounding cannot hold.
 JUMP = {
@@ -94,25 +91,3 @@ def test_a_law_is_not_named_where_nothing_hangs_on_its_doubt(make_scene: Make) -
     motion = simulate(cancelling(make_scene, start, law))
     # Off by less than a thousandth of a millimetre: the bound says so.
     assert 1e-4 < motion.proof().bound.max() < 1e-2
-
-
-def with_rod(table: Points, share: float) -> tuple[Points, float]:
-    """The rod's end at a share of the least distance from its top, and how far the ball joint is."""
-    top, ball = np.array(table["strut_top"]), np.array(table["lower_ball_joint"])
-    end = top + share / FARTHEST * (ball - top)
-    return {**table, "strut_rod_end": tuple(end.tolist())}, float(np.linalg.norm(ball - top))
-
-
-@pytest.mark.parametrize("share", [0.9, 0.1, 1e-3, 1e-8])
-def test_strut_points_too_near_are_told_with_their_distances(
-    make_scene: Make, table: Points, share: float
-) -> None:
-    points, reach = with_rod(table, share)
-    apart = share * reach / FARTHEST
-    with pytest.raises(SceneError, match="strut_top and strut_rod_end are") as caught:
-        simulate(make_scene(points=points))
-    message = str(caught.value)
-    assert f"are {apart:.3g} mm apart" in message
-    assert f"lower_ball_joint is {reach:.3g} mm along the line" in message
-    assert f"draw strut_rod_end at least {reach / FARTHEST:.2g} mm from strut_top" in message
-    assert caught.value.key == "mechanism.points"

@@ -12,7 +12,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.solve.assembly import assemble
 from pointcoord.solve.dense_output import evaluate
-from pointcoord.solve.taylor import Chain, Settings, build_chain
+from pointcoord.solve.taylor import Chain, Segment, Settings, build_chain
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 
 Array = NDArray[np.float64]
@@ -100,18 +100,6 @@ def largest_gap(series: Motion, newton: Motion, quantity: str) -> float:
     return max(float(np.abs(ours[name] - theirs[name]).max()) for name in ours)
 
 
-@pytest.mark.parametrize("tolerance", [1e-12, 1e-13, 1e-16, 1e-30])
-def test_tolerance_below_rounding_is_not_taken_for_a_singular_pose(
-    make_scene: Callable[..., Scene], tolerance: float
-) -> None:
-    # The condition number of the bounce stays below 200: nothing is singular. The tolerance is met as far
-    # as rounding allows.
-    series = simulate(make_scene(stop=2.6, tolerance=tolerance))
-    newton = simulate(make_scene(stop=2.6), "newton")
-    bound = float(newton.proof().bound.max())
-    assert largest_gap(series, newton, "position") <= tolerance + 4 * bound
-
-
 def test_motion_that_meets_the_end_of_its_range_stops_there_with_what_it_has(
     make_scene: Callable[..., Scene],
 ) -> None:
@@ -164,3 +152,30 @@ def test_a_motion_that_cannot_go_on_names_the_input_that_moves(
     assert abs(error.reached["rack"] - RACK_END) <= 1e-9 * 219
     assert error.limits[0].startswith("link ")
     assert all("tie_rod" in name or "strut_lower" in name for name in error.limits[:3])
+
+
+@pytest.mark.parametrize("batch", [(), (3,), (2, 3)])
+@pytest.mark.parametrize("size", [1, 9])
+@pytest.mark.parametrize("ordered", [True, False])
+def test_sums_are_those_of_the_polynomials(batch: tuple[int, ...], size: int, ordered: bool) -> None:
+    rng = np.random.default_rng(5)
+    ends, scales, orders = (0.0, 0.5, 0.75, 2.0), (1.0, 0.25, 2.0), (6, 3, 7)
+    segments = tuple(
+        Segment(start, stop, scale, rng.normal(size=(*batch, order + 1, size)))
+        for start, stop, scale, order in zip(ends[:-1], ends[1:], scales, orders, strict=True)
+    )
+    chain = Chain(segments, Work())
+    # More than a block of them in the last segment.
+    instants = np.sort(rng.uniform(0.0, 2.0, 3000))
+    if not ordered:
+        instants = rng.permutation(instants)
+    found = evaluate(chain, [segment.coefficients for segment in segments], instants, 2)
+    assert found.shape == (3, *batch, 3000, size)
+    for number, t in list(enumerate(instants.tolist()))[::149]:
+        segment = next(s for s in reversed(segments) if s.start <= t)
+        for place in np.ndindex(*batch):
+            for k in range(size):
+                series = np.polynomial.Polynomial(segment.coefficients[(*place, slice(None), k)])
+                for d in range(3):
+                    one = series.deriv(d)((t - segment.start) / segment.scale) / segment.scale**d
+                    assert found[(d, *place, number, k)] == pytest.approx(one, rel=1e-11, abs=1e-11)
