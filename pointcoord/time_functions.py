@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import comb, factorial, perm
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,6 +84,7 @@ class Polynomial:
     """
 
     coefficients: tuple[float, ...]
+    breaks: ClassVar[tuple[float, ...]] = ()  # analytic everywhere
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k).
@@ -147,10 +148,6 @@ class Polynomial:
         return _about(series, np.stack(doubts, axis=-1), half, own)
 
     @property
-    def breaks(self) -> tuple[float, ...]:
-        return ()
-
-    @property
     def still(self) -> bool:
         return not any(self.coefficients[1:])
 
@@ -163,6 +160,7 @@ class Sine:
     angular_frequency: float
     phase: float = 0.0
     offset: float = 0.0
+    breaks: ClassVar[tuple[float, ...]] = ()  # analytic everywhere
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
@@ -254,10 +252,6 @@ class Sine:
             rounded = np.maximum(self.rounding(first), self.rounding(last))
             rounded = 2.0 * (rounded + 8.0 * UNIT_ROUNDOFF * (swing + np.abs(most) + np.abs(least)))
         return least - rounded, most + rounded
-
-    @property
-    def breaks(self) -> tuple[float, ...]:
-        return ()
 
     @property
     def still(self) -> bool:

@@ -548,24 +548,19 @@ class Scene(Part):
                 f"a {part.name} has no freedom and no input is driven: it is a structure that nothing moves; "
                 "allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
             )
-        inputs = {name: one for name, one in part.structure.inputs.items() if not one.moves_the_chassis}
-        others = ", ".join(name for name in inputs if name not in self.inputs) or "none"
+        inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in inputs if name in self.inputs]
-        words = (
-            f"{len(told)} {'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
-        )
+        others = ", ".join(name for name in inputs if name not in told) or "none"
         count = part.freedoms
-        free = f"{count} freedom{'' if count == 1 else 's'}"
+        words = f"a {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
+        words += f"{'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
         if count < len(told):
             exact = "" if count else "; parallel hinges let it move only if they are drawn exactly so"
-            raise ValueError(
-                f"a {part.name} has {free}, and {words}; allowed: {count} inputs, so leave "
-                f"{len(told) - count} out{exact}"
-            )
+            raise ValueError(f"{words}; allowed: {count} inputs, so leave {len(told) - count} out{exact}")
         named = free_directions(part.topology, part.points, {"up": part.up, "right": part.right})
         raise ValueError(
-            f"a {part.name} has {free}, and {words}; free are {', '.join(named)}; allowed: {count} inputs, "
-            f"so drive {count - len(told)} more of {others}"
+            f"{words}; free are {', '.join(named)}; allowed: {count} inputs, so drive "
+            f"{count - len(told)} more of {others}"
         )
 
     def _name_what_fights(self, topology: Topology) -> None:
