@@ -33,6 +33,7 @@ from pointcoord.numerics.double_double import (
 )
 from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import lengths
 
 Array = NDArray[np.float64]
 
@@ -186,9 +187,8 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     edges = (two_sum(first, -base), two_sum(second, -base))
     columns = (*edges, pair_cross(*edges))
     frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
-    lengths = np.linalg.norm(edges[0][0], axis=-1) * np.linalg.norm(edges[1][0], axis=-1)
-    area = np.linalg.norm(columns[2][0], axis=-1)
-    if not (area > 16 * UNIT_ROUNDOFF * lengths).all():
+    sides = lengths(edges[0][0]) * lengths(edges[1][0])
+    if not (lengths(columns[2][0]) > 16 * UNIT_ROUNDOFF * sides).all():
         names = (body.base, body.first, body.second)
         raise MechanismError(
             f"{', '.join(names)} lie in one line, so they cannot carry {what}; move one off the line",
@@ -247,7 +247,6 @@ def _unexplained(vector: Pair, columns: tuple[Pair, Pair, Pair], weights: Array)
         weight = weights[..., i, None]
         part = pair_product((weight, np.zeros_like(weight)), column)
         total, size = pair_sum(total, minus_pair(part)), size + np.abs(part[0])
-    edges = np.abs(columns[0][0])[..., [1, 2, 0]], np.abs(columns[1][0])[..., [2, 0, 1]]
-    others = np.abs(columns[0][0])[..., [2, 0, 1]], np.abs(columns[1][0])[..., [1, 2, 0]]
-    crossed = edges[0] * edges[1] + others[0] * others[1]
-    return total[0] + total[1], size + np.abs(weights[..., 2, None]) * crossed
+    # Both products of a component of e1 x e2 are together no larger than |e1| |e2|.
+    crossed = lengths(columns[0][0]) * lengths(columns[1][0])
+    return total[0] + total[1], size + np.abs(weights[..., 2] * crossed)[..., None]

@@ -3,7 +3,6 @@
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -104,21 +103,6 @@ def test_a_point_is_held_at_its_drawn_distance_on_its_drawn_side(seed: int, plac
     assert found * side >= 0
     assert abs(error) <= doubt * Fraction(101, 100)
     assert abs(lacks) <= 5 * U * abs(found)
-
-
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("axes", [(1, 2, 0), (2, 0, 1), (1, 0, 2), (0, 2, 1), (2, 1, 0)])
-def test_no_axis_of_the_frame_is_special_to_a_place_in_a_body_or_to_its_doubt(
-    seed: int, axes: tuple[int, int, int]
-) -> None:
-    points = drawn(seed, "anywhere", 1.0)
-    turned = {name: place[list(axes)] for name, place in points.items()}
-    _, plain = AXIS.placed(LAYOUT, Drawing(points, np.array(1.0)))
-    _, other = AXIS.placed(LAYOUT, Drawing(turned, np.array(1.0)))
-    # Of a mirrored car the normal is the other way round. Of a doubt that is a sum of sizes only the last
-    # digits depend on the order of its terms and of the elimination; a tenth is the smallest of the terms.
-    np.testing.assert_allclose(np.abs(other.values), np.abs(plain.values), rtol=0.0, atol=1e-12)
-    np.testing.assert_allclose(np.asarray(other.doubt), np.asarray(plain.doubt), rtol=1e-2)
 
 
 def _scale(vector: Vector) -> Fraction:
