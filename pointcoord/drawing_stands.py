@@ -22,7 +22,8 @@ from pointcoord.results.closing import Closing, closing
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, scene_mechanism
 from pointcoord.solve.assembly import close_drawing, driven_to
-from pointcoord.solve.follower import Path, follow
+from pointcoord.solve.follower import follow
+from pointcoord.solve.place import Path
 
 Array = NDArray[np.float64]
 

@@ -30,7 +30,7 @@ from pointcoord.results.read_only import ReadOnly
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import assembled, close_drawing
-from pointcoord.solve.follower import Path
+from pointcoord.solve.place import Path
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]

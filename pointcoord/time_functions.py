@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import comb, factorial, perm
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,11 +74,6 @@ class TimeFunction(Protocol):
         """Whether it is constant by its form, whatever the instants."""
         ...
 
-    @property
-    def degree(self) -> int:
-        """The power of time up to which its own series may be nothing but zeros, and not beyond."""
-        ...
-
 
 @dataclass(frozen=True)
 class Polynomial:
@@ -89,6 +84,7 @@ class Polynomial:
     """
 
     coefficients: tuple[float, ...]
+    breaks: ClassVar[tuple[float, ...]] = ()  # analytic everywhere
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k).
@@ -152,19 +148,8 @@ class Polynomial:
         return _about(series, np.stack(doubts, axis=-1), half, own)
 
     @property
-    def breaks(self) -> tuple[float, ...]:
-        """None: a polynomial is analytic everywhere."""
-        return ()
-
-    @property
     def still(self) -> bool:
-        """Of degree 0."""
-        return self.degree == 0
-
-    @property
-    def degree(self) -> int:
-        """Of the polynomial."""
-        return max((k for k, c in enumerate(self.coefficients) if c), default=0)
+        return not any(self.coefficients[1:])
 
 
 @dataclass(frozen=True)
@@ -175,6 +160,7 @@ class Sine:
     angular_frequency: float
     phase: float = 0.0
     offset: float = 0.0
+    breaks: ClassVar[tuple[float, ...]] = ()  # analytic everywhere
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
@@ -268,19 +254,8 @@ class Sine:
         return least - rounded, most + rounded
 
     @property
-    def breaks(self) -> tuple[float, ...]:
-        """None: a sine is analytic everywhere."""
-        return ()
-
-    @property
     def still(self) -> bool:
-        """Without an amplitude, or without a frequency."""
         return not (self.amplitude and self.angular_frequency)
-
-    @property
-    def degree(self) -> int:
-        """Two: its first and second rate are nowhere zero together."""
-        return 2
 
 
 @dataclass(frozen=True)
@@ -347,18 +322,12 @@ class Table:
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """The inner times of the table."""
         return self.times[1:-1]
 
     @property
     def still(self) -> bool:
         """Of one value, which is what the spline then gives everywhere."""
         return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
-
-    @property
-    def degree(self) -> int:
-        """Three: the pieces are cubic."""
-        return 3
 
 
 @cache

@@ -38,8 +38,9 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.double_double import two_sum
+from pointcoord.numerics.double_double import PAIRS, two_sum
 from pointcoord.numerics.enclosed_rows import differences, twice_polar
 from pointcoord.numerics.enclosure import Enclosed, anchored, cross
 from pointcoord.numerics.kantorovich import applied
@@ -227,26 +228,8 @@ def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
 
 
 def exact_weights(mechanism: Mechanism, name: str) -> Enclosed:
-    """The weights that give the drawn point exactly, (3,).
-
-    What the computed ones leave of it is solved once more; |W| of what these then leave, W the inverse of
-    the frame up to a defect below one half, is at most half of what they are off.
-    """
-    carriers = mechanism.topology.carried[name]
-    vectors = {point: Enclosed.of(mechanism.drawing.vectors[point]) for point in (*carriers, name)}
-    edges = edges_of(vectors, carriers)
-    normals = [cross(*edges)]
-    target = vectors[name] - vectors[carriers[0]]
-    frame = np.stack([edges[0].middle, edges[1].middle, normals[0].middle], axis=-1)
-    lengths = np.linalg.norm(frame, axis=0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = np.linalg.inv(frame / lengths) / lengths[:, None]
-    sound = np.abs(np.eye(3) - (inverse * lengths[:, None]) @ (frame / lengths)).sum(axis=-1).max() < 0.5
-    first = Enclosed.of(mechanism.carrier_weights[name])
-    rest = target - _carried(first, [edges], normals)[0]
-    better = Enclosed.of(first.high, inverse @ rest.middle)
-    rest = target - _carried(better, [edges], normals)[0]
-    left = np.abs(rest.middle) + rest.radius[0]
-    scaled = np.abs(inverse * lengths[:, None]) @ left
-    proven = 2.0 * scaled.max() / lengths if sound else np.full(3, np.inf)
-    return Enclosed.of(better.high, better.low, proven, np.abs(inverse) @ rest.radius[1])
+    """The weights that give the drawn point exactly, (3,)."""
+    body = Normal("", *mechanism.topology.carried[name])
+    values, lacks, doubt = carrier_weights(mechanism.drawing, name, body)
+    # The doubt is PAIRS of magnitudes that plain doubles round some four times.
+    return Enclosed.of(values, lacks, doubt, 4.0 * UNIT_ROUNDOFF / PAIRS * doubt)

@@ -2,7 +2,8 @@ r"""Points that ride on a body, known by three points that carry them, with the 
 
     p = p_0 + a e1 + b e2 + c e1 x e2.
 
-The weights a, b, c come from the drawing and stay; so the point needs no equation of its own.
+The weights a, b, c come from the drawing (see `constraints.in_body`) and stay; so the point needs no equation
+of its own.
 """
 
 from __future__ import annotations
@@ -10,32 +11,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.errors import MechanismError
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.power_series import cross_series
-from pointcoord.numerics.rounding import EPS
-from pointcoord.numerics.vectors import cross, lengths
+from pointcoord.numerics.vectors import cross
 
 Array = NDArray[np.float64]
-
-
-def carrier_weights(name: str, drawing: Drawing, carriers: tuple[str, str, str]) -> Array:
-    """(a, b, c) of a drawn point, shape (..., 3).
-
-    Raises:
-        MechanismError: the carriers lie in one line.
-    """
-    base, first, second = (drawing.vectors[point] for point in carriers)
-    e1, e2 = first - base, second - base
-    normal = cross(e1, e2)
-    frame = np.stack([np.broadcast_to(edge, normal.shape) for edge in (e1, e2, normal)], axis=-1)
-    if not (lengths(normal) > 8 * EPS * lengths(e1) * lengths(e2)).all():
-        raise MechanismError(
-            f"{', '.join(carriers)} lie in one line, so they cannot carry {name}; move one off the line",
-            carriers,
-        )
-    offset = np.broadcast_to(drawing.vectors[name] - base, frame.shape[:-1])
-    return np.asarray(np.linalg.solve(frame, offset[..., None])[..., 0])
 
 
 def carried_gain(weights: Array, drawing: Drawing, carriers: tuple[str, str, str]) -> float:

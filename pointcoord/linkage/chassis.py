@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -23,7 +24,6 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
 from pointcoord.numerics.double_double import PAIRS
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
 
@@ -137,9 +137,10 @@ class ChassisMotion:
         for name in (name for name in self.centres if name in laws):
             vectors = self.directions[name], self.centres[name]
             k, about = (v if v.ndim == 1 else v[..., None, :] for v in vectors)
-            slopes = [(one[..., None], other[..., None]) for one, other in _slopes(laws[name])]
+            angle, *rates = (law[..., None] for law in laws[name])
+            slopes = _slopes(np.cos(angle), np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2, rates)
             jets = {p: [state[p] for state in states if p in state] for p in states[0]}
-            found = {p: _turned(jet, about, _across(k), _inward(k), slopes) for p, jet in jets.items()}
+            found = {p: _turned(jet, about, partial(_about, k), slopes) for p, jet in jets.items()}
             states = [{p: jet[d] for p, jet in found.items() if d < len(jet)} for d in range(len(states))]
         return states
 
@@ -187,12 +188,12 @@ class ChassisMotion:
         names = [name for name in self.centres if name in laws]
         for name in reversed(names) if back else names:
             k, about = self._along(name), Enclosed.of(self.centres[name] / unit)
-            rates = [-rate for rate in laws[name]] if back else laws[name]
-            slopes = [(one.spread_out, other.spread_out) for one, other in _enclosed_slopes(rates)]
+            angle, *rates = ((-law if back else law).spread_out for law in laws[name])
+            cosine, sine = within_a_turn(angle).cosine_sine()
+            slopes = _slopes(cosine, sine, Enclosed.of(1.0) - cosine, rates)
             # Every point has all derivatives here.
             jets = {p: [state[p] for state in points] for p in points[0]}
-            across, inward = _across_exactly(k), _inward_exactly(k)
-            found = {p: _turned(jet, about, across, inward, slopes) for p, jet in jets.items()}
+            found = {p: _turned(jet, about, partial(_about_exactly, k), slopes) for p, jet in jets.items()}
             points = [{p: jet[d] for p, jet in found.items()} for d in range(len(points))]
         return points
 
@@ -202,43 +203,22 @@ class ChassisMotion:
             return Enclosed.of(self.directions[name], self.lacks[name], PAIRS, PAIRS)
         return Enclosed.of(self.directions[name])
 
-    def rounding(self, instants: Array, origin: Array) -> Array:
-        """Rounding of the displacement and of its sum with an origin, (..., N, 3), mm.
-
-        k inputs take k products and k - 1 sums, each rounded by at most u of the sum of the products'
-        magnitudes; the sum with the origin is rounded by u of itself; the laws have their own. An axis
-        along which nothing moves is not rounded at all.
-        """
-        magnitude, laws = np.zeros((*np.shape(instants), 3)), np.zeros((*np.shape(instants), 3))
-        for name, function in self.functions.items():
-            if name in self.centres:
-                continue
-            along = np.abs(self.directions[name][..., None, :])
-            # A direction that is rounded is so by u of itself, as a product is.
-            rounded = 2.0 if name in self.lacks else 1.0
-            magnitude = magnitude + rounded * np.abs(function.series(instants, 0)) * along
-            laws = laws + function.rounding(instants)[:, None] * along
-        count = 2.0 * len(self.functions)
-        total = UNIT_ROUNDOFF * (count * magnitude + np.abs(origin[..., None, :]) + magnitude)
-        return np.where(magnitude + laws > 0.0, 1.01 * (total + laws), 0.0)
-
 
 def _turned(
     jet: Sequence[V],
     about: V,
-    across: Callable[[V], V],
-    inward: Callable[[V], V],
+    axes: Callable[[V], tuple[V, V]],
     slopes: Sequence[tuple[V, V]],
 ) -> list[V]:
     """A point and its time derivatives after a turn.
 
     Args:
-        across, inward: k x v and k (k . v) - v of a vector v.
+        axes: k x v and k (k . v) - v of a vector v.
         slopes: by derivative, those of the angle's sine and versine.
     """
     arm: list[V] = list(jet)
     arm[0] = jet[0] - about
-    parts: list[tuple[V, V]] = [(across(v), inward(v)) for v in arm]
+    parts = [axes(v) for v in arm]
     found: list[V] = []
     for state, orders in zip(jet, LEIBNIZ, strict=False):
         total = state
@@ -249,41 +229,20 @@ def _turned(
     return found
 
 
-def _slopes(angle: Sequence[Array]) -> list[tuple[Array, Array]]:
-    """Sine and versine 2 sin(a/2)^2 of an angle, and their time derivatives."""
-    sine, cosine = np.sin(angle[0]), np.cos(angle[0])
-    found = [(sine, 2.0 * np.sin(0.5 * angle[0]) ** 2)]
-    if len(angle) > 1:
-        found.append((cosine * angle[1], sine * angle[1]))
-    if len(angle) > 2:
-        square = angle[1] ** 2
-        found.append((cosine * angle[2] - sine * square, sine * angle[2] + cosine * square))
+def _slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tuple[V, V]]:
+    """Sine and versine of an angle, and their time derivatives, from its own."""
+    found = [(sine, versine)]
+    if len(rates) > 0:
+        found.append((cosine * rates[0], sine * rates[0]))
+    if len(rates) > 1:
+        square = rates[0] * rates[0]
+        found.append((cosine * rates[1] - sine * square, sine * rates[1] + cosine * square))
     return found
 
 
-def _enclosed_slopes(angle: Sequence[Enclosed]) -> list[tuple[Enclosed, Enclosed]]:
-    """The same, exactly."""
-    cosine, sine = within_a_turn(angle[0]).cosine_sine()
-    found = [(sine, Enclosed.of(1.0) - cosine)]
-    if len(angle) > 1:
-        found.append((cosine * angle[1], sine * angle[1]))
-    if len(angle) > 2:
-        square = angle[1] * angle[1]
-        found.append((cosine * angle[2] - sine * square, sine * angle[2] + cosine * square))
-    return found
+def _about(k: Array, v: Array) -> tuple[Array, Array]:
+    return cross(k, v), k * np.sum(k * v, axis=-1, keepdims=True) - v
 
 
-def _across(k: Array) -> Callable[[Array], Array]:
-    return lambda v: cross(k, v)
-
-
-def _inward(k: Array) -> Callable[[Array], Array]:
-    return lambda v: k * np.sum(k * v, axis=-1, keepdims=True) - v
-
-
-def _across_exactly(k: Enclosed) -> Callable[[Enclosed], Enclosed]:
-    return lambda v: enclosure.cross(k, v)
-
-
-def _inward_exactly(k: Enclosed) -> Callable[[Enclosed], Enclosed]:
-    return lambda v: k * enclosure.dot(k, v).spread_out - v
+def _about_exactly(k: Enclosed, v: Enclosed) -> tuple[Enclosed, Enclosed]:
+    return enclosure.cross(k, v), k * enclosure.dot(k, v).spread_out - v

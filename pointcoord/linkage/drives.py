@@ -77,7 +77,6 @@ class Square(Function):
     rounded = 1.0
 
     def series(self, value: Array) -> Array:
-        """The product with itself."""
         with np.errstate(over="ignore", invalid="ignore"):
             return _product(value, value)
 
@@ -97,11 +96,9 @@ class Square(Function):
         return x * x, (x * rate).scaled(2.0), (rate * rate + x * acceleration).scaled(2.0)
 
     def input_of(self, value: Array) -> Array:
-        """The positive root."""
         return np.asarray(np.sqrt(np.maximum(value, 0.0)))
 
     def extremes(self, farthest: Array) -> tuple[Array, Array]:
-        """Together, and far apart."""
         return np.zeros_like(farthest), farthest**2
 
 
@@ -113,7 +110,6 @@ class Circle(Function):
     rounded = 2.0  # 1 unit in the last place, at worst
 
     def series(self, value: Array) -> Array:
-        """The cosine's or the sine's."""
         with np.errstate(over="ignore", invalid="ignore"):
             return cosine_and_sine(value)[self.quarter]
 
@@ -146,7 +142,6 @@ class Circle(Function):
         return np.asarray(np.arcsin(value) if self.quarter else np.arccos(value))
 
     def extremes(self, farthest: Array) -> tuple[Array, Array]:
-        """At angles 0 and pi."""
         one = np.ones_like(farthest)
         return one, -one
 
@@ -314,11 +309,9 @@ class ArmAngle(Drive):
 
     @property
     def sign(self) -> str:
-        """From the arm along the direction on."""
         return f"from the arm pointing {self.direction}"
 
     def scale(self, drawing: Drawing) -> Array:
-        """d."""
         return drawing.distance(self.pivot, self.point)
 
     def scale_lacks(self, drawing: Drawing) -> Array:
@@ -329,11 +322,9 @@ class ArmAngle(Drive):
         return np.asarray(((square - own) + (rest - own_rest)) / (2.0 * length * length))
 
     def drawn(self, drawing: Drawing) -> Array:
-        """Height of the drawn point over its pivot."""
         return drawing.along(self.pivot, self.point, self.direction)
 
     def series(self, value: Array, drawing: Drawing) -> Array:
-        """Of an angle within 0 .. pi."""
         angle = value[..., 0]
         inside = (angle >= 0.0) & (angle <= np.pi)
         if not inside.all():
@@ -397,7 +388,6 @@ class TravelAlong(Drive):
 
     @property
     def sign(self) -> str:
-        """Along the line."""
         return f"along the {self.line.name}"
 
     def _inverse(self, drawing: Drawing) -> Pair:
@@ -409,12 +399,10 @@ class TravelAlong(Drive):
         return self._inverse(drawing)[0]
 
     def scale_lacks(self, drawing: Drawing) -> Array:
-        """The low part of the quotient."""
         inverse, rest = self._inverse(drawing)
         return np.asarray(rest / inverse)
 
     def drawn(self, drawing: Drawing) -> Array:
-        """The place at which the drawn point stands."""
         return self.line.foot(drawing)
 
 
@@ -431,7 +419,6 @@ class DistanceOf(Drive):
 
     @property
     def sign(self) -> str:
-        """A distance is positive."""
         return "apart"
 
     def scale(self, drawing: Drawing) -> Array:
@@ -439,11 +426,9 @@ class DistanceOf(Drive):
         return np.asarray(1.0 / drawing.unit**2)
 
     def drawn(self, drawing: Drawing) -> Array:
-        """The square of the drawn distance."""
         return np.asarray(drawing.distance(self.start, self.end) ** 2)
 
     def series(self, value: Array, drawing: Drawing) -> Array:
-        """Of a distance that is positive."""
         if not (value[..., 0] > 0.0).all():
             worst = float(np.atleast_1d(value[..., 0][~(value[..., 0] > 0.0)])[0])
             raise InputOutOfRange(self.input, worst, "a distance above 0 mm")
@@ -466,18 +451,14 @@ class TurnedBy(Drive):
 
     @property
     def function(self) -> Function:
-        """The one or the other."""
         return Circle(self.quarter)
 
     @property
     def sign(self) -> str:
-        """About the hinge."""
         return "right-handed about the hinge"
 
     def scale(self, drawing: Drawing) -> Array:
-        """1."""
         return np.ones_like(drawing.unit)
 
     def drawn(self, drawing: Drawing) -> Array:
-        """The drawing is not turned."""
         return (0.0 if self.quarter else 1.0) * np.ones_like(drawing.unit)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import MechanismError, UnknownName
-from pointcoord.linkage.carried_points import carrier_weights
+from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.directions import car_directions
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
@@ -77,7 +77,8 @@ def drawn_mechanism(
         drawn_lacks=lacks,
         drawn_doubt=doubt,
         carrier_weights={
-            name: carrier_weights(name, drawing, carriers) for name, carriers in topology.carried.items()
+            name: carrier_weights(drawing, name, Normal("", *carriers))[0]
+            for name, carriers in topology.carried.items()
         },
     )
 

@@ -15,7 +15,7 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Place, choices_of, compiled
 from pointcoord.mechanism.faults import TableFault, fault_of, no_such
-from pointcoord.mechanism.freedoms import freedoms_of, settled
+from pointcoord.mechanism.freedoms import Freedoms, settled
 from pointcoord.mechanism.structure import CHASSIS, CLOSING, TABLES, Name, Structure, known_keys, structure_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
@@ -182,7 +182,7 @@ class MechanismFile:
         topology = compiled(held, (), choices_of(held, (), drawn, along))
         if points is None:
             return topology.layout.unknowns - len(topology.labels)
-        return freedoms_of(topology, drawn, along)
+        return Freedoms.of(topology, drawn, along).count
 
     @cached_property
     def _compiled(self) -> dict[Hashable, Topology]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,26 +50,26 @@ class Freedoms:
     redundant: tuple[str, ...]
     kept: tuple[int, ...]
 
+    @classmethod
+    def of(cls, topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> Freedoms:
+        """Of a drawing.
 
-def freedoms(mechanism: Mechanism) -> Freedoms:
-    """Of a drawn mechanism, one car.
-
-    Raises:
-        MechanismError: the drawing does not close.
-    """
-    topology, system = mechanism.topology, mechanism.map
-    y = _closed(mechanism)
-    matrix = system.jacobian(y)
-    scale = np.abs(matrix).max(axis=1, keepdims=True)
-    matrix = matrix / np.where(scale > 0.0, scale, 1.0)
-    kept = _independent(matrix, _rows_of_inputs(topology))
-    _, _, directions = np.linalg.svd(matrix)
-    rank = len(kept)
-    null = directions[rank:]
-    free = tuple(topology.layout.describe(i) for i in dominant(null)) if len(null) else ()
-    left = np.linalg.svd(matrix.T)[2][rank:]
-    redundant = tuple(topology.labels[i] for i in dominant(left)) if len(left) else ()
-    return Freedoms(system.unknowns - rank, free, redundant, tuple(sorted(kept)))
+        Args:
+            axes: `up` and `right` of the car.
+        Raises:
+            MechanismError: it does not close.
+        """
+        mechanism = drawn_mechanism(topology, dict(points), dict(axes))
+        system = mechanism.map
+        matrix = system.jacobian(_closed(mechanism))
+        scale = np.abs(matrix).max(axis=1, keepdims=True)
+        matrix = matrix / np.where(scale > 0.0, scale, 1.0)
+        kept = _independent(matrix, _rows_of_inputs(topology))
+        rank = len(kept)
+        null, left = (np.linalg.svd(each)[2][rank:] for each in (matrix, matrix.T))
+        free = tuple(topology.layout.describe(i) for i in dominant(null)) if len(null) else ()
+        redundant = tuple(topology.labels[i] for i in dominant(left)) if len(left) else ()
+        return cls(system.unknowns - rank, free, redundant, tuple(sorted(kept)))
 
 
 def _rows_of_inputs(topology: Topology) -> list[int]:
@@ -131,21 +130,12 @@ def _closed(mechanism: Mechanism) -> Array:
     )
 
 
-def freedoms_of(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]) -> int:
-    """How many freedoms a drawing has.
-
-    Raises:
-        MechanismError: it does not close.
-    """
-    return freedoms(drawn_mechanism(topology, dict(points), dict(axes))).count
-
-
 def free_directions(
     topology: Topology, points: Mapping[str, Place], axes: Mapping[str, Place]
 ) -> tuple[str, ...]:
     """The coordinates of a drawing that its equations do not hold."""
     try:
-        return freedoms(drawn_mechanism(topology, dict(points), dict(axes))).free
+        return Freedoms.of(topology, points, axes).free
     except MechanismError:
         return ("what a drawing that does not close cannot tell",)
 
@@ -156,29 +146,7 @@ def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, 
     Raises:
         MechanismError: something is free, or inputs fight.
     """
-    there = topology.with_defaults(points)
-    places = tuple((name, there[name]) for name in topology.points)
-    return _settled(_ByIdentity(topology), places, (axes["up"], axes["right"]))
-
-
-class _ByIdentity:
-    """A topology as a key: those of one structure and its choices are one object."""
-
-    def __init__(self, topology: Topology) -> None:
-        self.topology = topology
-
-    def __hash__(self) -> int:
-        return id(self.topology)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _ByIdentity) and other.topology is self.topology
-
-
-@lru_cache(maxsize=64)
-def _settled(key: _ByIdentity, points: tuple[tuple[str, Place], ...], axes: tuple[Place, Place]) -> Topology:
-    topology = key.topology
-    mechanism = drawn_mechanism(topology, dict(points), dict(zip(("up", "right"), axes, strict=True)))
-    found = freedoms(mechanism)
+    found = Freedoms.of(topology, points, axes)
     lost = [row for row in range(len(topology.labels)) if row not in found.kept]
     fighting = not set(lost).isdisjoint(_rows_of_inputs(topology))
     if found.count or fighting:

@@ -11,7 +11,11 @@ takes the ball of radius r about u into itself and contracts there if
     omega  = Lipschitz constant of X C_u,
 
 in the maximum norm over the unknowns. Then exactly one assembly lies in the ball; the smallest such r
-is the error bound.
+
+    r = 2 eta / ((1 - z)(1 + sqrt(1 - h))),      h = 2 omega eta / (1 - z)^2 < 1,
+
+is the error bound, and no other assembly lies within the other root, 2 (1 - z) / omega - r. So it holds where
+z + sqrt(2 omega eta) < 1.
 
 Every coordinate has its own bound. With e = X C(y) and the mean value form of C,
 
@@ -63,7 +67,6 @@ class Ball:
     Attributes:
         proven: whether exactly one assembly lies in the ball; radius: its own, where it is.
         outer: no other assembly lies within this distance.
-        constant: h = 2 omega eta / (1 - z)^2, proven where it is below 1.
         contraction: z + omega radius.
         tail: z radius + omega radius^2 / 2.
     """
@@ -71,26 +74,34 @@ class Ball:
     proven: NDArray[np.bool_]
     radius: Array
     outer: Array
-    constant: Array
     contraction: Array
     tail: Array
 
 
-def ball(eta: Array, z: Array, omega: Array) -> Ball:
-    """The smallest ball about u that the test holds for; floating point warnings are the caller's."""
+def smallest_radius(eta: Array, z: Array, omega: Array) -> Array:
+    """The smallest r that the test holds for, infinite where it holds for none, all of one shape."""
     room = 1.0 - z
     constant = 2.0 * omega * eta / room**2
-    root = np.sqrt(np.maximum(1.0 - constant, 0.0))
-    radius = INFLATION * 2.0 * eta / (room * (1.0 + root))
-    outer = room * (1.0 + root) / omega / INFLATION
+    least = 2.0 * eta / (room * (1.0 + np.sqrt(np.maximum(1.0 - constant, 0.0))))
+    return np.where((room > 0.0) & (constant < 1.0) & np.isfinite(least), least, np.inf)
+
+
+def used(eta: Array, z: Array, omega: Array | float) -> Array:
+    """z + sqrt(2 omega eta), which is below 1 where the test holds, and goes with the length of a way."""
+    return np.asarray(z + np.sqrt(2.0 * omega * eta))
+
+
+def ball(eta: Array, z: Array, omega: Array) -> Ball:
+    """The smallest ball about u that the test holds for; floating point warnings are the caller's."""
+    least = smallest_radius(eta, z, omega)
+    radius, proven = INFLATION * least, np.isfinite(least)
+    outer = (2.0 * (1.0 - z) / omega - least) / INFLATION
     contraction = INFLATION * (z + omega * radius)
     tail = INFLATION * (z * radius + 0.5 * omega * radius**2)
-    proven = (room > 0.0) & (constant < 1.0) & np.isfinite(radius)
     return Ball(
         proven=proven,
-        radius=np.where(proven, radius, np.inf),
+        radius=radius,
         outer=np.where(proven, outer, 0.0),
-        constant=np.where(room > 0.0, constant, np.inf),
         contraction=np.where(proven, contraction, np.inf),
         tail=np.where(proven, tail, np.inf),
     )
@@ -103,7 +114,6 @@ class Certificate:
     Attributes:
         radius: exactly one assembly lies within it, (..., m); infinite where nothing could be proven.
         unique_within: no other assembly lies within this distance, (..., m).
-        newton_constant: h = 2 omega eta / (1 - z)^2, proven where it is at most 1, (..., m).
         contraction: z + omega radius >= |I - X C_u| everywhere within the radius, (..., m); infinite
             where nothing could be proven.
         defect: |I - X C_u(y)| element by element at any pose of the group, (..., unknowns, unknowns).
@@ -115,7 +125,6 @@ class Certificate:
 
     radius: Array
     unique_within: Array
-    newton_constant: Array
     contraction: Array
     defect: Array
     residual: Array
@@ -150,7 +159,6 @@ def certify(system: QuadraticMap, pose: Enclosed, factors: Factors) -> Certifica
     return Certificate(
         radius=found.radius,
         unique_within=found.outer,
-        newton_constant=found.constant,
         contraction=found.contraction,
         defect=defect,
         residual=middle,

@@ -8,12 +8,9 @@ LU with partial pivoting (see `linear`). A step ends the iteration
   noise, not progress;
 - or when what the *next* step would be at most is already below the tolerance. Because C is quadratic, a step
   d leaves C(y + d) = B(d, d) exactly. With X = C_u(y)^-1, q = |X B(d, d)|, omega = Lipschitz(X C_u) and
-  z = omega |d| >= |I - X C_u(y + d)|, Newton and Kantorovich's theorem (see `kantorovich`) about y + d says
-
-      h = 2 omega q / (1 - z)^2 <= 1:      |u* - u| <= 2 q / ((1 - z)(1 + sqrt(1 - h))),
-
-  and that no other solution lies nearby. So a tolerance saves the step that would only confirm it, and its
-  factorisation; an infinite one asks for no more than that the solution is the only one here.
+  z = omega |d| >= |I - X C_u(y + d)|, the theorem (see `kantorovich`) with eta = q bounds |u* - u|, and no
+  other solution lies nearby. So a tolerance saves the step that would only confirm it, and its factorisation;
+  an infinite one asks for no more than that the solution is the only one here.
 """
 
 from __future__ import annotations
@@ -25,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
@@ -194,10 +192,7 @@ def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Arra
     d[..., : system.unknowns] = step
     rows, inverse = system.residual(d), factors.preconditioner
     bent = inverse.dot(rows) if rows.ndim == 1 else (inverse @ rows[..., None])[..., 0]
-    q, room = np.abs(bent).max(axis=-1), 1.0 - omega * size
-    constant = 2.0 * omega * q / (room * room)
-    rest = 2.0 * q / (room * (1.0 + np.sqrt(1.0 - constant)))
-    return np.where((room > 0.0) & (constant < 1.0), rest, np.inf)
+    return smallest_radius(np.abs(bent).max(axis=-1), omega * size, omega)
 
 
 def implicit_rate(

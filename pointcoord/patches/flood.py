@@ -31,7 +31,8 @@ from pointcoord.patches.patch_proof import PatchProof, prove_patches
 from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.reported_points import reported_points
 from pointcoord.solve.assembly import assemble
-from pointcoord.solve.follower import Path, follow
+from pointcoord.solve.follower import follow
+from pointcoord.solve.place import Path
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]

@@ -5,6 +5,7 @@ A scene is checked when it is read. Every fault names the file, the key, the val
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, lru_cache
@@ -99,26 +100,12 @@ def _file_of(keys: Mapping[str, Any]) -> MechanismFile | None:
     if keys["type"] is not None:
         return mechanism_file(keys["type"])
     tables = {name: keys[name] for name in TABLES if keys[name] is not None}
-    return _inline(_hashable({"title": keys["title"], **tables})) if tables else None
+    return _inline(json.dumps({"title": keys["title"], **tables})) if tables else None
 
 
 @lru_cache(maxsize=64)
-def _inline(tables: tuple[tuple[str, Any], ...]) -> MechanismFile:
-    return MechanismFile.of(_tables(tables), "mechanism")
-
-
-def _hashable(value: Any) -> Any:
-    """Tables and lists as tuples, a table as one of a mark and its entries."""
-    if isinstance(value, Mapping):
-        return (Mapping, *((name, _hashable(each)) for name, each in value.items()))
-    return tuple(map(_hashable, value)) if isinstance(value, list | tuple) else value
-
-
-def _tables(value: Any) -> Any:
-    """What `_hashable` made so."""
-    if isinstance(value, tuple) and value and value[0] is Mapping:
-        return {name: _tables(each) for name, each in value[1:]}
-    return tuple(map(_tables, value)) if isinstance(value, tuple) else value
+def _inline(tables: str) -> MechanismFile:
+    return MechanismFile.of(json.loads(tables), "mechanism")
 
 
 def _by_dotted_name(table: object, whole: Callable[[Mapping[str, Any]], bool]) -> object:
@@ -256,7 +243,6 @@ class MechanismPart(Part):
         return standing | points
 
     def agree(self) -> None:
-        """It is of a mechanism, and its axes, its side and its spin axis have a meaning."""
         if _file_of(self.__dict__) is None:
             raise TableFault(("type",), "this key is missing", f"{', '.join(shipped())}, a path, or tables")
         self._orthonormal()
@@ -416,7 +402,6 @@ class TablePart(Part):
     values: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
 
     def agree(self) -> None:
-        """Its times increase, and its spline is finite."""
         if len(self.times) != len(self.values):
             raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
         if not all(earlier < later for earlier, later in pairwise(self.times)):
@@ -439,7 +424,6 @@ class InputPart(Part):
     table: TablePart | None = None
 
     def agree(self) -> None:
-        """It is of one kind."""
         given = [name for name in LAWS if getattr(self, name) is not None]
         if len(given) != 1:
             raise ValueError(
@@ -468,7 +452,6 @@ class TimePart(Part):
     samples: Annotated[Whole, Field(ge=1, le=MOST_SAMPLES)]
 
     def agree(self) -> None:
-        """It goes forwards, within what a motion can count."""
         for name, instant in (("start", self.start), ("stop", self.stop)):
             if abs(instant) > FARTHEST:
                 raise ValueError(f"{name} is {instant} s; allowed: {-FARTHEST:g} to {FARTHEST:g} s")
@@ -550,7 +533,6 @@ class Scene(Part):
         return points
 
     def agree(self) -> None:
-        """Its effects and its inputs belong to its mechanism."""
         self._inputs_fit()
         self._effects_have_a_meaning()
 
@@ -604,24 +586,19 @@ class Scene(Part):
                 f"a {part.name} has no freedom and no input is driven: it is a structure that nothing moves; "
                 "allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
             )
-        inputs = {name: one for name, one in part.structure.inputs.items() if not one.moves_the_chassis}
-        others = ", ".join(name for name in inputs if name not in self.inputs) or "none"
+        inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in inputs if name in self.inputs]
-        words = (
-            f"{len(told)} {'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
-        )
+        others = ", ".join(name for name in inputs if name not in told) or "none"
         count = part.freedoms
-        free = f"{count} freedom{'' if count == 1 else 's'}"
+        words = f"a {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
+        words += f"{'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
         if count < len(told):
             exact = "" if count else "; parallel hinges let it move only if they are drawn exactly so"
-            raise ValueError(
-                f"a {part.name} has {free}, and {words}; allowed: {count} inputs, so leave "
-                f"{len(told) - count} out{exact}"
-            )
+            raise ValueError(f"{words}; allowed: {count} inputs, so leave {len(told) - count} out{exact}")
         named = free_directions(part.topology, part.points, {"up": part.up, "right": part.right})
         raise ValueError(
-            f"a {part.name} has {free}, and {words}; free are {', '.join(named)}; allowed: {count} inputs, "
-            f"so drive {count - len(told)} more of {others}"
+            f"{words}; free are {', '.join(named)}; allowed: {count} inputs, so drive "
+            f"{count - len(told)} more of {others}"
         )
 
     def _name_what_fights(self, topology: Topology) -> None:

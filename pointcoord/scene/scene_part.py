@@ -7,9 +7,8 @@ not agree, or TableFault to name the place in it.
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping
-from types import UnionType
-from typing import Annotated, Any, Self, SupportsFloat, Union, get_args, get_origin
+from collections.abc import Mapping
+from typing import Annotated, Any, Self, SupportsFloat
 
 import numpy as np
 from pydantic import (
@@ -25,7 +24,8 @@ from pydantic import (
 from pydantic_core import ErrorDetails
 
 from pointcoord.errors import SceneError
-from pointcoord.wording import meant, nearest, shown, shown_key
+from pointcoord.mechanism.faults import TableFault
+from pointcoord.wording import meant, shown, shown_key
 
 Place = tuple[int | str, ...]
 
@@ -103,7 +103,7 @@ class Part(BaseModel):
         try:
             return cls.model_validate(content)
         except ValidationError as error:
-            raise scene_error(error, cls, content, source) from None
+            raise scene_error(error, source) from None
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
@@ -116,10 +116,23 @@ class Part(BaseModel):
         # Objects are checked again wherever they are put: their dictionaries can be written, for one.
         if isinstance(content, cls):
             content = content._as_given()
-        part = by_keys(cls.completed(dict(content)) if isinstance(content, Mapping) else content)
+        if isinstance(content, Mapping):
+            content = cls.completed(dict(content))
+            cls._require_known(content)
+        part = by_keys(content)
         part.agree()
         part._checked = part.model_dump()
         return part
+
+    @classmethod
+    def _require_known(cls, content: Mapping[Any, Any]) -> None:
+        free = [name for name in cls.model_fields if name not in content]
+        others = [key for key in content if key not in cls.model_fields]
+        if others:
+            hints = [meant(str(key), free) for key in others[:NAMED]]
+            more = zip(others[1:NAMED], hints[1:], strict=True)
+            problem = f"there is no such key{hints[0]}" + "".join(f", nor {shown_key(k)}{h}" for k, h in more)
+            raise TableFault((others[0],), problem, ", ".join(cls.model_fields))
 
     def agree(self) -> None:
         """Check what the keys make together.
@@ -148,9 +161,9 @@ class Part(BaseModel):
         return self.checked(copy.deepcopy(changed) if deep else changed, f"a changed {type(self).__name__}")
 
 
-def scene_error(error: ValidationError, kind: type[Part], content: object, source: str) -> SceneError:
+def scene_error(error: ValidationError, source: str) -> SceneError:
     """What pydantic found in a part as one line: the first fault, some others, and a count of the rest."""
-    (place, problem, allowed), *others = _faults(error, kind, content)
+    (place, problem, allowed), *others = map(_fault, error.errors(include_url=False))
     if others:
         named = [f"{_dotted(place)}: {problem}" for place, problem, _ in others[:NAMED]]
         if len(others) > NAMED:
@@ -159,25 +172,16 @@ def scene_error(error: ValidationError, kind: type[Part], content: object, sourc
     return SceneError(source, _dotted(place), problem, allowed)
 
 
-def _faults(error: ValidationError, kind: type[Part], content: object) -> Iterator[tuple[Place, str, str]]:
-    """Each fault's place, problem and what is allowed there."""
-    details = error.errors(include_url=False)
-    # A key that is missing because it is misspelt is one fault.
-    meant_keys = {
-        (*fault["loc"][:-1], nearest(str(fault["loc"][-1]), _free_keys(kind, content, fault["loc"][:-1])))
-        for fault in details
-        if fault["type"] == "extra_forbidden"
-    }
-    for fault in details:
-        place = fault["loc"]
-        if fault["type"] == "extra_forbidden":
-            near = meant(str(place[-1]), _free_keys(kind, content, place[:-1]))
-            yield place, f"there is no such key{near}", ", ".join(_part_at(kind, place[:-1]).model_fields)
-        elif fault["type"] == "value_error":
-            problem = fault["ctx"]["error"]
-            yield (*place, *getattr(problem, "place", ())), str(problem), getattr(problem, "allowed", "")
-        elif fault["type"] != "missing" or place not in meant_keys:
-            yield place, _problem(fault), ""
+def _fault(fault: ErrorDetails) -> tuple[Place, str, str]:
+    """A fault's place, problem and what is allowed there."""
+    if fault["type"] != "value_error":
+        return fault["loc"], _problem(fault), ""
+    problem = fault["ctx"]["error"]
+    return (
+        (*fault["loc"], *getattr(problem, "place", ())),
+        str(problem),
+        getattr(problem, "allowed", ""),
+    )
 
 
 def _problem(fault: ErrorDetails) -> str:
@@ -188,36 +192,6 @@ def _problem(fault: ErrorDetails) -> str:
     words = WORDS.get(fault["type"]) or fault["msg"].replace("Tuple", "List").replace(" after validation", "")
     told = fault["type"] in COMPLETE or isinstance(value, dict | Part)
     return words if told else f"{words}, not {shown(value)}"
-
-
-def _part_at(kind: type[Part], place: Place) -> type[Part]:
-    """The part that a place in another one holds."""
-    found: Any = kind
-    for name in place:
-        if isinstance(found, type) and issubclass(found, Part):
-            found = found.model_fields[str(name)].annotation
-        else:
-            found = get_args(found)[-1]  # of a table of parts
-        if get_origin(found) in (Union, UnionType):
-            found = get_args(found)[0]  # of a part that may be None
-    part: type[Part] = found
-    return part
-
-
-def _free_keys(kind: type[Part], content: object, place: Place) -> list[str]:
-    """The keys of the part at a place that are not given there."""
-    for name in place:
-        # A table of parts may be written with tables in it for the dots in its names.
-        for step in (name,) if name in _given(content) else str(name).split("."):
-            content = _given(content).get(step)
-    given = _given(content)
-    return [name for name in _part_at(kind, place).model_fields if name not in given]
-
-
-def _given(content: object) -> Mapping[Any, Any]:
-    """The entries of a table or a part; none of anything else."""
-    plain = content._as_given() if isinstance(content, Part) else content
-    return plain if isinstance(plain, Mapping) else {}
 
 
 def _dotted(place: Place) -> str:

@@ -7,9 +7,8 @@ What stops a path is told by the forces in the links that hold each other in bal
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +17,9 @@ from pointcoord.errors import AssemblyError
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
-from pointcoord.solve.follower import Path, follow, led
+from pointcoord.numerics.linear import factorise, smallest_left_singular_vector
+from pointcoord.solve.follower import follow, led
+from pointcoord.solve.place import Path, Place
 
 Array = NDArray[np.float64]
 
@@ -28,35 +28,26 @@ LONGEST = 1.0
 
 
 @dataclass(frozen=True)
-class Pose:
+class Pose(Place):
     """One assembled configuration or a batch of them.
 
     Attributes:
-        mechanism: what is assembled.
-        y: coordinates, shape (..., size), in the mechanism's units.
-        factors: factorisation of the Jacobian there.
+        mechanism: what is assembled; lengths of the place are in its units.
         iterations: Newton steps that the last correction took, shape (...,).
-        left: proven distance to the exact assembly, rounding apart, where a tolerance ended the correction,
-            shape (...,), in the mechanism's units; zero where it went on to rounding.
-        work: what it cost.
     """
 
     mechanism: Mechanism
-    y: Array
-    factors: Factors
     iterations: NDArray[np.int64]
-    left: Array
-    work: Work
 
     def taken(self, members: NDArray[np.intp]) -> Pose:
         """Some members of a batch of one dimension; what it cost is no part of them."""
         return Pose(
-            self.mechanism.taken(members),
             self.y[members],
             self.factors.taken(members),
-            self.iterations[members],
             self.left[members],
             Work(),
+            self.mechanism.taken(members),
+            self.iterations[members],
         )
 
     @cached_property
@@ -145,7 +136,7 @@ def assembled(
     target, path = driven_to(mechanism, inputs, drawing, tolerance)
     stopped = _stopped(mechanism, path, target, path.done < 1.0, "the mechanism cannot be assembled", instant)
     work = drawing.work + path.work
-    return Pose(mechanism, path.y, path.factors, path.iterations, path.left, work), stopped
+    return Pose(path.y, path.factors, path.left, work, mechanism, path.iterations), stopped
 
 
 def driven_to(
@@ -191,7 +182,7 @@ def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
         return path
     y = path.y[..., part.layout.places_in(whole.layout)]
     work = path.work + Work(factorisations=int(np.prod(y.shape[:-1])))
-    return Path(y, factorise(part.map.jacobian(y)), path.iterations, path.left, path.done, work)
+    return replace(path, y=y, factors=factorise(part.map.jacobian(y)), work=work)
 
 
 def _stopped(
@@ -208,20 +199,6 @@ def _stopped(
         one = (np.arange(which.size) == number).reshape(which.shape)
         found[number] = blocked(mechanism, problem, path, target, one, instant)
     return found
-
-
-class Place(Protocol):
-    """Where a path stands: coordinates y, shape (..., size), and the factors of C_u there."""
-
-    @property
-    def y(self) -> Array:
-        """Coordinates."""
-        ...
-
-    @property
-    def factors(self) -> Factors:
-        """Of C_u."""
-        ...
 
 
 def blocked(

@@ -37,7 +37,7 @@ from pointcoord.numerics.partial_map import PartialMap, stages
 from pointcoord.numerics.power_series import expand_moving
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.follower import follow
-from pointcoord.solve.standing_still import starting_place
+from pointcoord.solve.place import starting_place
 from pointcoord.solve.taylor import (
     MOST,
     SEGMENT,

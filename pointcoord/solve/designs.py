@@ -19,7 +19,6 @@ from pointcoord.errors import PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import assembled, closed_drawings
 from pointcoord.solve.box import follow_by_inputs
-from pointcoord.solve.follower import Path
 from pointcoord.solve.taylor import Chain, Settings, build_chains
 from pointcoord.time_functions import TimeFunction
 
@@ -104,7 +103,7 @@ def solve_designs(
 
     drawing, stopped = closed_drawings(mechanism, start, tolerance)
     places = left(stopped)
-    alive, drawing, mechanism = alive[places], _taken(drawing, places), mechanism.taken(places)
+    alive, drawing, mechanism = alive[places], drawing.taken(places), mechanism.taken(places)
     closed[alive] = drawing.y
     if not len(alive):
         return SolvedDesigns((), closed, failures)
@@ -124,11 +123,3 @@ def solve_designs(
         else:
             failures |= dict.fromkeys(alive[numbers].tolist(), chain.status.stopped)
     return SolvedDesigns(tuple(followed), closed, dict(sorted(failures.items())))
-
-
-def _taken(path: Path, members: Numbers) -> Path:
-    """The paths of some members."""
-    factors = path.factors.taken(members)
-    return Path(
-        path.y[members], factors, path.iterations[members], path.left[members], path.done[members], path.work
-    )

@@ -18,7 +18,7 @@ where no few of these are proven to reach the end, and tell where a path stops.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.solve.place import Path
 from pointcoord.solve.proven_path import proven_end
 from pointcoord.solve.proven_step import SHARES, beside_the_way, straight_way
 
@@ -49,35 +50,6 @@ STEPS = 2000
 # How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
 # proportion to the step: an end so near the tangent is far from where the step would double back.
 BESIDE = 0.25
-
-
-@dataclass(frozen=True)
-class Path:
-    """How far a batch of poses followed their paths: `done` is 1 where the end was reached.
-
-    Attributes:
-        iterations: Newton steps that the last correction took, shape (...,).
-        left: proven distance to the exact assembly, rounding apart, where a tolerance ended the correction,
-            shape (...,), where the end was reached.
-    """
-
-    y: Array
-    factors: Factors
-    iterations: NDArray[np.int64]
-    left: Array
-    done: Array
-    work: Work
-
-    def reshaped(self, batch: tuple[int, ...]) -> Path:
-        """The same with other batch dimensions."""
-        return Path(
-            self.y.reshape(*batch, self.y.shape[-1]),
-            self.factors.reshaped(batch),
-            self.iterations.reshape(batch),
-            self.left.reshape(batch),
-            self.done.reshape(batch),
-            self.work,
-        )
 
 
 def follow(
@@ -168,7 +140,7 @@ def follow(
         stopped = stopped[good]
         y[stopped], rest[stopped] = ends.y[good], 0.0
         factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))
-    return Path(y, factors, iterations, rest, done, work).reshaped(batch)
+    return Path(y, factors, rest, work, iterations, done).reshaped(batch)
 
 
 def _straight(start: Array, goals: Array) -> Law:
@@ -193,9 +165,7 @@ def led(
         first = factorise(system.jacobian(y)) if factors is None else factors
         end = proven_end(system, y, target, first, tolerance)
         if end is not None:
-            iterations, left = np.array(end.iterations), np.array(end.left)
-            work = end.work if factors is not None else end.work + Work(factorisations=1)
-            return Path(end.y, end.factors, iterations, left, np.array(1.0), work)
+            return end if factors is not None else replace(end, work=end.work + Work(factorisations=1))
     return follow(system, y, target, factors, tolerance)
 
 

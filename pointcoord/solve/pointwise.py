@@ -16,7 +16,7 @@ enough,
 
 from the end of the tangent T that X gives, one instant after the other. Where the theorem of Newton and
 Kantorovich holds all along y0 + s T, X contracts towards the end by k = z + omega r, r the radius of the
-theorem, which is k = 1 - sqrt((1 - z)^2 - 2 omega eta): after a step d, |u* - u| <= k |d| / (1 - k).
+theorem: after a step d, |u* - u| <= k |d| / (1 - k).
 
 Where neither leads on the path is followed in shorter proven steps. Or each instant is reached from the
 drawing (`solve_from_drawing`). The rates are solved for many instants at once in any case. This is what the
@@ -36,15 +36,16 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.branch import hidden
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import implicit_rate, newton_refine
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import LONGEST, Pose, blocked, close_drawing, driven_to
-from pointcoord.solve.follower import Path, follow
+from pointcoord.solve.follower import follow
+from pointcoord.solve.place import Path, starting_place, whole_place
 from pointcoord.solve.proven_step import SHARES, straight_way
-from pointcoord.solve.standing_still import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -292,14 +293,13 @@ def _by_chord(
     if not n * EPS * factors.condition <= ROUNDED or bool(hidden(system, start, factors)):
         return _Ahead(poses[0], np.empty(0), Work())
     inverse, here = factors.preconditioner, start
-    omega = float(system.lipschitz(inverse))
+    omega = system.lipschitz(inverse)
     for i, target in enumerate(targets):
         with np.errstate(all="ignore"):
             way = straight_way(system, inverse, here, target, None if beside is None else beside[i])
             eta, z = way.norms(np.ones(n))
-            rate = 1.0 - float(np.sqrt((1.0 - z) ** 2 - 2.0 * omega * eta))
-        # Not a number where nothing is proven.
-        if not (z < 1.0 and rate <= SLOW):
+            rate = float(z + omega * smallest_radius(eta, z, omega))
+        if not rate <= SLOW:
             break
         here = here + way.tangent
         here[n:] = target

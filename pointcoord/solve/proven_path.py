@@ -13,7 +13,7 @@ sum J_k t^k, which is linear in the series,
 
 element by element, and Newton and Kantorovich's theorem (see `kantorovich`) asks for
 
-    (1 - z)^2 >= 2 omega max Y
+    z + sqrt(2 omega max Y) <= 1
 
 in a weighted maximum norm. Then one assembly lies near p(s) for every s of the piece, C_u is regular there,
 and so the assemblies go on from each other. Neighbouring pieces share a place, where both find the same
@@ -25,7 +25,6 @@ that is proven.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 from math import comb
 
@@ -34,10 +33,12 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.kantorovich import used
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import LARGE, QuadraticMap
+from pointcoord.solve.place import Path
 from pointcoord.solve.proven_step import ROOM
 
 Array = NDArray[np.float64]
@@ -53,24 +54,9 @@ SMALLEST = float(np.finfo(float).tiny)
 WEIGHINGS = 3
 
 
-@dataclass(frozen=True)
-class Reached:
-    """The end of a path: its coordinates, the factors of C_u there, and Newton's last steps to it.
-
-    Attributes:
-        left: proven distance to the exact assembly, rounding apart.
-    """
-
-    y: Array
-    factors: Factors
-    iterations: int
-    left: float
-    work: Work
-
-
 def proven_end(
     system: QuadraticMap, y: Array, target: Array, factors: Factors, tolerance: float
-) -> Reached | None:
+) -> Path | None:
     """The end of a path from one pose, if a few series prove it to be reached; None if not.
 
     Args:
@@ -107,7 +93,7 @@ def _end(
     side: Array,
     tolerance: float,
     work: Work,
-) -> Reached | None:
+) -> Path | None:
     """The assembly near a guess with known coordinates, if Newton's method finds it on the same side."""
     guess[system.unknowns :] = target
     reached = newton_refine(system, guess, tolerance=tolerance)
@@ -116,7 +102,7 @@ def _end(
     if not (bool(reached.converged) and bool(same_side(system, reached.y, there, side, True))):
         return None
     work += reached.work + factorised
-    return Reached(reached.y, there, int(reached.iterations), float(reached.left), work)
+    return Path(reached.y, there, reached.left, work, reached.iterations, np.array(1.0))
 
 
 def _begun(system: QuadraticMap, y: Array, factors: Factors, change: Array) -> Array:
@@ -178,8 +164,7 @@ def _proven_share(system: QuadraticMap, series: Array, factors: Factors) -> floa
     for _ in range(WEIGHINGS + 1):
         z = (change.dot(weights) / weights).max(axis=-1)
         omega = system.lipschitz(preconditioner, weights)
-        room = ROOM - z
-        proven = (room > 0.0) & (room * room >= 2.0 * omega * (remaining / weights).max(axis=-1))
+        proven = used((remaining / weights).max(axis=-1), z, omega) <= ROOM
         if proven.all():
             return reach
         # Nearer to the weights for which the norm of a matrix of no negative elements is smallest.

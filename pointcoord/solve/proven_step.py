@@ -38,6 +38,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.block_inverse import product_of_few_entries
+from pointcoord.numerics.kantorovich import used
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 
@@ -104,7 +105,7 @@ class StraightWay:
     def proof(self, omega: Array | float, weights: Array) -> Proof:
         """In the norm of some weights."""
         eta, z = self.norms(weights)
-        return Proof(np.asarray(z + np.sqrt(2.0 * omega * eta)), np.asarray((1.0 - z) / omega), weights)
+        return Proof(used(eta, z, omega), np.asarray((1.0 - z) / omega), weights)
 
     def best_proof(self, system: QuadraticMap, inverse: Array) -> Proof:
         """In the best of three norms: plain, and two that weigh each coordinate by how far its path bends.
@@ -117,8 +118,8 @@ class StraightWay:
         )
         every = self.proof(system.lipschitz(inverse, weights), weights)
         best = np.argmin(np.where(np.isnan(every.used), np.inf, every.used), axis=0)[None]
-        used, alone = (np.take_along_axis(part, best, axis=0)[0] for part in (every.used, every.alone))
-        return Proof(used, alone, np.take_along_axis(weights, best[..., None], axis=0)[0])
+        most, alone = (np.take_along_axis(part, best, axis=0)[0] for part in (every.used, every.alone))
+        return Proof(most, alone, np.take_along_axis(weights, best[..., None], axis=0)[0])
 
 
 def straight_way(

@@ -41,7 +41,7 @@ from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
-from pointcoord.solve.standing_still import starting_place, whole_place
+from pointcoord.solve.place import starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -145,14 +145,6 @@ class Chain:
         starts = [segment.start for segment in self.segments[1:]]
         edges = [0, *np.searchsorted(instants, starts, side="left").tolist(), len(instants)]
         yield from zip(self.segments, map(slice, edges[:-1], edges[1:]), strict=True)
-
-    def summed(self, instants: Array, count: int, derivative: int = 0) -> Array:
-        """The first coordinates, or a rate of them, at instants in increasing order, (..., N, count)."""
-        parts = (
-            segment.powers(instants[part], derivative + 1)[derivative].T @ segment.coefficients[..., :count]
-            for segment, part in self.parts(instants)
-        )
-        return np.concatenate(list(parts), axis=-2)
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,6 @@ def certify_alone(system: QuadraticMap, y: Array, data: Array | None = None) -> 
     found = certify(system, pose, factorise(system.jacobian(y)))
     return replace(
         found,
-        **{
-            name: getattr(found, name)[..., 0]
-            for name in ("radius", "unique_within", "newton_constant", "contraction", "tail")
-        },
+        **{name: getattr(found, name)[..., 0] for name in ("radius", "unique_within", "contraction", "tail")},
         **{name: getattr(found, name)[..., 0, :] for name in ("residual", "step", "spread")},
     )

@@ -47,17 +47,14 @@ class ContactHeight(Constraint):
 
     @property
     def name(self) -> str:
-        """The wheel."""
         return f"height of the contact point of {self.centre}"
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """What each row says."""
         return (f"lean of {self.centre}", f"length of the axis to {self.centre}", self.name)
 
     @property
     def slides(self) -> tuple[str, ...]:
-        """a and q."""
         return (f"rise of the axis to {self.centre}", f"reach of the axis to {self.centre}")
 
     @property
@@ -67,7 +64,6 @@ class ContactHeight(Constraint):
         return tuple(f"{each} of {self.centre}" for each in what)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Quadratic in a and q, bilinear in r / L and q."""
         zero, one = layout.zero, (layout.one, layout.zero)
         zeros: Triple = (zero, zero, zero)
         i, c, e = (layout.vector(name) for name in (self.inner, self.centre, self.direction))

@@ -33,6 +33,7 @@ from pointcoord.numerics.double_double import (
 )
 from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import lengths
 
 Array = NDArray[np.float64]
 
@@ -54,16 +55,13 @@ class Normal(Constraint):
 
     @property
     def name(self) -> str:
-        """The normal's own."""
         return self.normal
 
     @property
     def vectors(self) -> tuple[str, ...]:
-        """The normal."""
         return (self.normal,)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the two edges."""
         n, o, p, q = (layout.vector(name) for name in (self.normal, self.base, self.first, self.second))
         return tuple(
             (
@@ -75,7 +73,6 @@ class Normal(Constraint):
         )
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The normal of the drawn triangle."""
         base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
         return (Placed(layout.vector(self.normal), np.cross(first - base, second - base)),)
 
@@ -97,12 +94,10 @@ class AxisInBody(Constraint):
 
     @property
     def name(self) -> str:
-        """The axis' own."""
         return self.axis
 
     @property
     def vectors(self) -> tuple[str, ...]:
-        """The direction."""
         return (self.axis,)
 
     @property
@@ -111,7 +106,6 @@ class AxisInBody(Constraint):
         return weight_names(self.axis, self.normal)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the constants and the edges."""
         vector = layout.vector(self.axis), (layout.zero,) * 3
         return weighted_rows(layout, vector, self.normal, self.constants)
 
@@ -140,7 +134,6 @@ class PointInBody(Constraint):
 
     @property
     def name(self) -> str:
-        """The point and the body."""
         return f"{self.point} in {self.body}"
 
     @property
@@ -150,19 +143,15 @@ class PointInBody(Constraint):
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
-        """From the body's first point."""
         return ((self.normal.base, self.point),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the constants and the edges."""
         vector = layout.vector(self.point), layout.vector(self.normal.base)
         return weighted_rows(layout, vector, self.normal, self.constants)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The constants, with what they lack by rounding."""
-        vector = two_sum(drawing.vectors[self.point], -drawing.vectors[self.normal.base])
         places = tuple(layout.scalar(name) for name in self.constants)
-        return (Placed(places, *weights_in_body(drawing, vector, self.normal, self.point)),)
+        return (Placed(places, *carrier_weights(drawing, self.point, self.normal)),)
 
 
 def weight_names(name: str, body: Normal) -> tuple[str, ...]:
@@ -198,12 +187,11 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     edges = (two_sum(first, -base), two_sum(second, -base))
     columns = (*edges, pair_cross(*edges))
     frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
-    lengths = np.linalg.norm(edges[0][0], axis=-1) * np.linalg.norm(edges[1][0], axis=-1)
-    area = np.linalg.norm(columns[2][0], axis=-1)
-    if not (area > 16 * UNIT_ROUNDOFF * lengths).all():
+    sides = lengths(edges[0][0]) * lengths(edges[1][0])
+    if not (lengths(columns[2][0]) > 16 * UNIT_ROUNDOFF * sides).all():
         names = (body.base, body.first, body.second)
         raise MechanismError(
-            f"{', '.join(names)} lie in one line, so they cannot carry the {what}; move one off the line",
+            f"{', '.join(names)} lie in one line, so they cannot carry {what}; move one off the line",
             names,
         )
     inverse = np.linalg.inv(frame)
@@ -216,6 +204,12 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     again = _applied(np.abs(frame), _applied(spread, np.abs(rest)))
     doubt = _applied(spread, PAIRS * size + SOLVED * again) + PAIRS * np.abs(values)
     return values, lacks, doubt
+
+
+def carrier_weights(drawing: Drawing, point: str, body: Normal) -> tuple[Array, Array, Array]:
+    """The same of a drawn point from the base of the body."""
+    vector = two_sum(drawing.vectors[point], -drawing.vectors[body.base])
+    return weights_in_body(drawing, vector, body, point)
 
 
 def scaled_axis(drawing: Drawing, tail: str, head: str) -> Pair:
@@ -253,7 +247,6 @@ def _unexplained(vector: Pair, columns: tuple[Pair, Pair, Pair], weights: Array)
         weight = weights[..., i, None]
         part = pair_product((weight, np.zeros_like(weight)), column)
         total, size = pair_sum(total, minus_pair(part)), size + np.abs(part[0])
-    edges = np.abs(columns[0][0])[..., [1, 2, 0]], np.abs(columns[1][0])[..., [2, 0, 1]]
-    others = np.abs(columns[0][0])[..., [2, 0, 1]], np.abs(columns[1][0])[..., [1, 2, 0]]
-    crossed = edges[0] * edges[1] + others[0] * others[1]
-    return total[0] + total[1], size + np.abs(weights[..., 2, None]) * crossed
+    # Both products of a component of e1 x e2 are together no larger than |e1| |e2|.
+    crossed = lengths(columns[0][0]) * lengths(columns[1][0])
+    return total[0] + total[1], size + np.abs(weights[..., 2] * crossed)[..., None]

@@ -26,16 +26,13 @@ class Link(Constraint):
 
     @property
     def name(self) -> str:
-        """Its ends."""
         return f"link {self.start} - {self.end}"
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
-        """The link."""
         return ((self.start, self.end),)
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Quadratic in the difference of the ends."""
         start, end = layout.vector(self.start), layout.vector(self.end)
         square = layout.squared_length(self.start, self.end)
         length = Product(-1.0, (square, layout.zero), (layout.one, layout.zero))
@@ -43,11 +40,9 @@ class Link(Constraint):
 
     @property
     def squared_lengths(self) -> tuple[tuple[str, str], ...]:
-        """Its own."""
         return ((self.start, self.end),)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The square of the drawn length."""
         return self.placed_together((self,), layout, drawing)
 
     @classmethod

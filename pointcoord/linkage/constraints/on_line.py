@@ -46,7 +46,6 @@ class Sliding(Constraint):
 
     @property
     def slides(self) -> tuple[str, ...]:
-        """The place, unless it is driven."""
         return () if self.driven else (self.place,)
 
     @abstractmethod
@@ -63,7 +62,6 @@ class Sliding(Constraint):
         return pair_root(pair_dot(d, d))
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the place and the direction."""
         p, o, (d, e) = layout.vector(self.point), layout.vector(self.origin), self.direction(layout)
         place, zero, one = layout.scalar(self.place), layout.zero, layout.one
         return tuple(
@@ -72,7 +70,6 @@ class Sliding(Constraint):
         )
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The place of the point's foot on the line, where that is free."""
         return tuple(Placed((layout.scalar(s),), self.foot(drawing)[..., None]) for s in self.slides)
 
     def foot(self, drawing: Drawing) -> Array:
@@ -96,20 +93,16 @@ class OnAxis(Sliding):
 
     @property
     def name(self) -> str:
-        """The point and the axis."""
         return f"{self.point} on the {self.axis.axis}"
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
-        """From the origin of the axis to the point."""
         return ((self.origin, self.point),)
 
     def direction(self, layout: Layout) -> tuple[Sequence[int], Sequence[int]]:
-        """The axis' own coordinates."""
         return layout.vector(self.axis.axis), (layout.zero,) * 3
 
     def drawn(self, drawing: Drawing) -> Pair:
-        """From the tail of the axis to its head."""
         return scaled_axis(drawing, self.axis.tail, self.axis.head)
 
 
@@ -125,12 +118,10 @@ class HeldOnAxis(OnAxis):
 
     @property
     def slides(self) -> tuple[str, ...]:
-        """None."""
         return ()
 
     @property
     def constants(self) -> tuple[str, ...]:
-        """The place."""
         return (self.place,)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
@@ -176,7 +167,6 @@ class OnChassisLine(Sliding):
 
     @property
     def name(self) -> str:
-        """The point and the line."""
         return f"{self.point} on the {self.line}"
 
     @property
@@ -190,16 +180,13 @@ class OnChassisLine(Sliding):
         return not self.driven
 
     def direction(self, layout: Layout) -> tuple[Sequence[int], Sequence[int]]:
-        """Known coordinates."""
         known = [layout.scalar(name) for name in self.constants] or layout.vector(self.head)
         return known, (layout.zero,) * 3
 
     def drawn(self, drawing: Drawing) -> Pair:
-        """From the tail to the head, or the direction of the car."""
         return scaled_axis(drawing, self.tail, self.head) if self.tail else drawing.pair(self.head)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """The direction too, where it is drawn."""
         own = super().placed(layout, drawing)
         if not self.tail:
             return own
@@ -224,21 +211,17 @@ class OnLine(Sliding):
 
     @property
     def name(self) -> str:
-        """The point and the line."""
         return f"{self.point} on the line {self.origin} - {self.end}"
 
     @property
     def aligned(self) -> tuple[str, str, str]:
-        """The line's start and end, and the point."""
         return (self.origin, self.end, self.point)
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
-        """The piece of the line up to the point."""
         return ((self.origin, self.point),)
 
     def direction(self, layout: Layout) -> tuple[Sequence[int], Sequence[int]]:
-        """From the start to the end."""
         return layout.vector(self.end), layout.vector(self.origin)
 
     def drawn(self, drawing: Drawing) -> Pair:

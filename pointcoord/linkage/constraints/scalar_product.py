@@ -60,12 +60,10 @@ class ScalarProduct(Constraint):
 
     @property
     def name(self) -> str:
-        """As it is given."""
         return self.what
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
-        """The distance that it is the square of."""
         return (self.one,) if self.one == self.other else ()
 
     @property
@@ -74,7 +72,6 @@ class ScalarProduct(Constraint):
         return (self.drawn,) if self.drawn else ()
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
-        """Bilinear in the edges."""
         zeros: Triple = (layout.zero, layout.zero, layout.zero)
         a, b, c, d = (layout.vector(name) if name else zeros for name in (*self.one, *self.other))
         scalars = (layout.scalar(name) for name in (self.drawn, self.driven) if name)
@@ -82,7 +79,6 @@ class ScalarProduct(Constraint):
         return ((*dot(a, b, c, d), *less),)
 
     def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """k and what it lacks by rounding."""
         if not self.drawn:
             return ()
         u, v = (_drawn(drawing, edge) for edge in (self.one, self.other))

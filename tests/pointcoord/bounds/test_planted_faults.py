@@ -29,7 +29,6 @@ from pointcoord.numerics.quadratic import Product, quadratic_map
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 
 Array = NDArray[np.float64]
-
 # u u + 2 u p = q: one unknown, whose error counts by its square, and two known numbers.
 UNKNOWN, ZERO, ONE, P, Q = range(5)
 SYSTEM = quadratic_map(
@@ -154,7 +153,7 @@ def solved(name: str) -> Any:
 
 
 FAULTS: list[tuple[Callable[..., Any], str, str]] = [
-    (kantorovich.ball, "2.0 * eta", "1.0 * eta"),
+    (kantorovich.smallest_radius, "least = 2.0 * eta", "least = eta"),
     (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(z * radius)"),
     (kantorovich.ball, "(z * radius + 0.5 * omega * radius**2)", "(0.5 * omega * radius**2)"),
     (kantorovich.certify, "doubt = rows.radius[0] +", "doubt = 0.5 * rows.radius[0] +"),

@@ -1,17 +1,28 @@
-"""A bound for every number that a motion reports: rates, body rates and angles as well as positions."""
+"""A bound for every number that a motion reports, by blocks and groups as alone, and its pieces."""
 
-from dataclasses import replace
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from sample_cars import SampleCar, by_car
 
 from pointcoord import Scene, simulate
-from pointcoord.bounds.proof import Numbers, unit_of_time
+from pointcoord.bounds.certified_poses import SHARED
+from pointcoord.bounds.proof import Numbers, Proof
+from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.errors import MechanismError
+from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
+from pointcoord.linkage.drawing import Drawing
+from pointcoord.numerics.rounding import EPS
 from pointcoord.results.motion import Motion
+from pointcoord.results.states import StatesOfChain
 
 Array = NDArray[np.float64]
-SCENES = ("bounce-and-steer", "bounce-on-a-heaving-chassis", "off-axis-strut", "double-wishbone")
 
 
 def short(name: str, **changes: object) -> Scene:
@@ -22,36 +33,6 @@ def short(name: str, **changes: object) -> Scene:
 
 def named(bounds: Numbers) -> dict[tuple[str, str], Array]:
     return {(quantity, name): array for quantity, part in bounds.items() for name, array in part.items()}
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_two_methods_differ_by_no_more_than_both_prove_and_prove_no_more_than_they_expect(name: str) -> None:
-    series, newton = (simulate(short(name), method) for method in ("series", "newton"))
-    one, other = series.proof(rates=True), newton.proof(rates=True)
-    for (quantity, part), bound in named(one.proven).items():
-        gap = np.abs(getattr(series, quantity)[part] - getattr(newton, quantity)[part])
-        assert (gap <= bound + other.proven[quantity][part]).all(), (quantity, part)
-        largest = max(float(np.abs(array).max()) for array in getattr(series, quantity).values())
-        assert (bound <= 1e-13 * largest).all(), (quantity, part)
-    for motion, proof in ((series, one), (newton, other)):
-        expected = named(proof.expected)
-        for (quantity, part), bound in named(proof.proven).items():
-            largest = max(float(np.abs(array).max()) for array in getattr(motion, quantity).values())
-            # A number that is exact is proven to be so up to the rounding of the proof, some u^2.
-            assert (bound <= expected[quantity, part] + 1e-27 * largest).all(), (quantity, part)
-
-
-def test_a_proof_by_blocks_is_the_proof_of_each_instant(monkeypatch: pytest.MonkeyPatch) -> None:
-    motion = simulate(short("bounce-on-a-heaving-chassis"))
-    whole = motion.proof(rates=True)
-    monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", 7)
-    parts = motion.proof(rates=True)
-    for bounds in ("proven", "expected"):
-        one, other = named(getattr(whole, bounds)), named(getattr(parts, bounds))
-        assert one.keys() == other.keys()
-        for key, bound in one.items():
-            # A product of matrices may be summed in another order: two roundings of a rounding.
-            assert other[key] == pytest.approx(bound, rel=1e-3, abs=1e-28), key
 
 
 def test_only_what_is_asked_for_is_bounded() -> None:
@@ -97,23 +78,135 @@ def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are() -
             assert other[quantity, name] == pytest.approx(scale * bound, rel=1e-3, abs=scale * 1e-25)
 
 
-def test_in_its_unit_of_time_the_fastest_of_a_motion_is_between_a_half_and_one() -> None:
-    """Rates, and roots of accelerations, of whatever size and sign."""
-    rng = np.random.default_rng(2)
-    count, size = 400, 6
-    speed, root = 10.0 ** rng.uniform(-100.0, 100.0, (2, count, 1))
-    shares = rng.uniform(-0.9, 0.9, (2, count, size))
-    shares[:, np.arange(count), rng.integers(size, size=count)] = rng.choice([-1.0, 1.0], (2, count))
-    rate, acceleration = speed * shares[0], root**2 * shares[1]
-    unit = unit_of_time([rng.normal(size=(count, size)), rate, acceleration])
-    assert (np.frexp(unit)[0] == 0.5).all()  # a power of two
-    fastest = np.maximum(speed, root)[:, 0] * unit
-    assert ((fastest > 0.5 - 1e-12) & (fastest < 1.0 + 1e-12)).all()
+SINE = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offset": 1.5}}
+HEAVE = {"sine": {"amplitude": 40.0, "angular_frequency": 3.1, "phase": -0.2}}
 
 
-@pytest.mark.parametrize("rate", [0.0, np.inf, np.nan, 5e-324, 1e308])
-def test_every_motion_has_a_unit_of_time_whose_square_is_a_number(rate: float) -> None:
-    (unit,) = unit_of_time([np.ones((1, 3)), np.full((1, 3), rate)])
-    assert np.frexp(unit)[0] == 0.5
-    assert 0.0 < unit**2 < np.inf
-    assert 0.0 < unit**-2 < np.inf
+@by_car
+@pytest.mark.parametrize("block", [7, 1, 30])
+def test_a_proof_in_blocks_is_the_proof_in_one(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch, block: int, car: SampleCar
+) -> None:
+    # Newton's states are looked up, so that a block changes no bit of them: every array must be the same.
+    motion = simulate(make_scene(SINE, [0.0, 5.0], car=car, heave=HEAVE, samples=30), "newton")
+    whole = motion.proof(rates=True)
+    monkeypatch.setattr("pointcoord.bounds.proof.BLOCK", block)
+    parts = motion.proof(rates=True)
+    for field in fields(Proof):
+        one, many = getattr(whole, field.name), getattr(parts, field.name)
+        if isinstance(one, np.ndarray):
+            assert np.array_equal(one, many), field.name
+            continue
+        assert one.keys() == many.keys()
+        assert all(one[quantity] for quantity in ("position", "velocity", "wheel", "dimension"))
+        for quantity in one:
+            bounds, others = one[quantity], many[quantity]
+            assert bounds.keys() == others.keys()
+            assert all(np.array_equal(bounds[name], others[name]) for name in bounds), quantity
+    # Every instant is another pose, so that no block may stand for another one.
+    assert len(np.unique(whole.condition)) == 30
+    assert np.isfinite(whole.carried_bound).all()
+
+
+@by_car
+@pytest.mark.parametrize("rates", [False, True])
+def test_neighbours_that_share_an_inverse_are_as_well_proven_as_each_alone_in_any_order(
+    make_scene: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch, car: SampleCar, rates: bool
+) -> None:
+    motion = simulate(make_scene(SINE, [0.0, 5.0], car=car, heave=HEAVE))
+    instants = np.linspace(motion.times[0], motion.times[-1], 4500)
+    mixed = np.random.default_rng(1).permutation(4500)
+    together, other = (motion.proof_of(motion.at(each), rates) for each in (instants, instants[mixed]))
+    monkeypatch.setattr("pointcoord.bounds.certified_poses.LARGEST", 1)
+    alone = motion.proof_of(motion.at(instants), rates)
+    assert not np.array_equal(together.pose_bound, alone.pose_bound)  # they were proven together
+    # Sharing may cost this part of the pose's error, of the step and of what it leaves; a carried point is
+    # off by that times its gain.
+    cost = 2.0 * SHARED * alone.pose_bound * alone.carried_gain + 2.0 * EPS
+    for name in ("pose_bound", "bound", "carried_bound"):
+        found, plain = getattr(together, name), getattr(alone, name)
+        assert np.array_equal(found[mixed], getattr(other, name)), name
+        assert (np.abs(found - plain) <= cost).all(), name
+    for quantity, part in together.proven.items():
+        for name, bound in part.items():
+            assert np.array_equal(bound[mixed], other.proven[quantity][name]), (quantity, name)
+            assert (bound <= together.expected[quantity][name] + 1e-24).all(), (quantity, name)
+
+
+BODY = Normal("", "base", "first", "second")
+
+
+def cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
+    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+
+@pytest.mark.parametrize("relative", [1e-5, 1e-4])
+def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_makes_of_it(
+    make_scene: Callable[..., Scene], relative: float
+) -> None:
+    sine = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offset": 1.5}}
+    motion = simulate(make_scene(sine, [0.0, 5.0]))
+    states = motion.solved.states
+    assert isinstance(states, StatesOfChain)
+    segments = list(states.chain.segments)
+    coefficients = segments[0].coefficients.copy()
+    layout = states.readout.mechanism.layout
+    for name, sign in (("lower_ball_joint", 1.0), ("tie_rod_outer", -1.0)):
+        coefficients[1, layout.vector(name)[1]] += sign * relative
+    segments[0] = replace(segments[0], coefficients=coefficients)
+    wrong_states = replace(states, chain=replace(states.chain, segments=tuple(segments)))
+    wrong = replace(motion, solved=replace(motion.solved, states=wrong_states))
+    instants = np.linspace(motion.times[0], segments[0].stop, 400)[:-1]
+    right, samples = motion.at(instants), wrong.at(instants)
+    names = states.readout.mechanism.topology.moving
+    error = np.max([np.abs(samples.position[n] - right.position[n]).max(axis=-1) for n in names], axis=0)
+    proof, before = wrong.proof_of(samples), motion.proof_of(right).bound
+    assert np.isfinite(proof.bound).all()
+    assert (proof.bound >= error - before).all()
+    assert (proof.pose_bound >= error - before).all()
+    assert (proof.bound <= 1.1 * (error + before)).all()
+
+
+def test_terms_that_cancel_are_rounded_with_the_condition_number() -> None:
+    terms, value = np.array([[3.0, 1.0], [3.0, 1.0]]), np.array([[1.0, 1.0], [-3.0, 1.0]])
+    summed = Summed(np.zeros((2, 2)), np.zeros((2, 2)), terms)
+    found = summed.expected(value, np.array([100.0, 100.0]), np.ones(2))
+    # Of the first pose 3 - 1 of the first coordinate has cancelled, of the second nothing.
+    np.testing.assert_allclose(found, EPS * np.array([[203.0, 201.0], [3.0, 1.0]]), rtol=1e-12)
+
+
+@pytest.mark.parametrize("thin", [(-15.0, -14.0), (-14.0, -6.0), (-6.0, 0.0)])
+def test_weights_of_carriers_however_nearly_in_line_are_within_their_doubt(thin: tuple[float, float]) -> None:
+    closest, told = 0.0, 0
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        base, e1, rider = rng.normal(size=(3, 3))
+        e2 = e1 * rng.uniform(0.5, 2.0) + 10.0 ** rng.uniform(*thin) * rng.normal(size=3)
+        vectors = {"base": base, "first": base + e1, "second": base + e2, "rider": rider}
+        try:
+            found = carrier_weights(Drawing(vectors, np.array(1.0)), "rider", BODY)
+        except MechanismError:
+            continue
+        told += 1
+        for exact, *parts in zip(by_cramer(vectors), *(part.tolist() for part in found), strict=True):
+            value, lacks, doubt = map(Fraction, parts)
+            assert abs(exact - value - lacks) <= doubt, seed
+            closest = max(closest, float(abs(exact - value - lacks) / doubt))
+    assert told > 50
+    assert closest > 1e-4
+
+
+def by_cramer(vectors: Mapping[str, Array]) -> list[Fraction]:
+    """By Cramer's rule."""
+    p = {name: [Fraction(float(c)) for c in place] for name, place in vectors.items()}
+    e1, e2, target = (
+        [a - b for a, b in zip(p[name], p["base"], strict=True)] for name in ("first", "second", "rider")
+    )
+    frame = [e1, e2, cross(e1, e2)]
+
+    def volume(*columns: list[Fraction]) -> Fraction:
+        a, b, c = columns
+        return sum((x * y for x, y in zip(a, cross(b, c), strict=True)), Fraction(0))
+
+    whole = volume(*frame)
+    return [volume(*(target if i == j else frame[j] for j in range(3))) / whole for i in range(3)]

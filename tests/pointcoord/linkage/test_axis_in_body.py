@@ -3,23 +3,18 @@
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal
-from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import HeldOnAxis
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout
-from pointcoord.numerics.quadratic import quadratic_map
 
 Array = NDArray[np.float64]
 Vector = list[Fraction]
 U = 2.0**-53
-
 BODY = Normal("n", "base", "first", "second")
 AXIS = AxisInBody("axis", "tail", "head", BODY)
 HELD = HeldOnAxis("end", "head", AXIS, "held")
@@ -110,59 +105,6 @@ def test_a_point_is_held_at_its_drawn_distance_on_its_drawn_side(seed: int, plac
     assert abs(lacks) <= 5 * U * abs(found)
 
 
-def test_an_axis_needs_two_points_apart_and_a_body_that_is_no_line() -> None:
-    points = drawn(1, "anywhere", 1.0)
-    with pytest.raises(MechanismError, match="tail - head has no length"):
-        AXIS.placed(LAYOUT, Drawing({**points, "head": points["tail"]}, np.array(1.0)))
-    flat = {**points, "second": 2.0 * points["first"] - points["base"]}
-    with pytest.raises(MechanismError, match=r"base, first, second lie in one line.*carry the axis"):
-        AXIS.placed(LAYOUT, Drawing(flat, np.array(1.0)))
-
-
-def test_a_body_carries_an_axis_until_its_triangle_is_a_line_to_sixteen_roundings() -> None:
-    def thin(height: float) -> Drawing:
-        ends = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.5, height, 0.0)}
-        axis = {"tail": (0.0, 0.0, 1.0), "head": (0.0, 0.0, 2.0)}
-        return Drawing({n: np.array(p) for n, p in {**ends, **axis}.items()}, np.array(1.0))
-
-    # |e1 x e2| = height against 16 u |e1| |e2| = 8 u
-    AXIS.placed(LAYOUT, thin(8.02 * U))
-    with pytest.raises(MechanismError, match="base, first, second lie in one line"):
-        AXIS.placed(LAYOUT, thin(7.98 * U))
-
-
-@pytest.mark.parametrize("seed", range(5))
-@pytest.mark.parametrize("axes", [(1, 2, 0), (2, 0, 1), (1, 0, 2), (0, 2, 1), (2, 1, 0)])
-def test_no_axis_of_the_frame_is_special_to_a_place_in_a_body_or_to_its_doubt(
-    seed: int, axes: tuple[int, int, int]
-) -> None:
-    points = drawn(seed, "anywhere", 1.0)
-    turned = {name: place[list(axes)] for name, place in points.items()}
-    _, plain = AXIS.placed(LAYOUT, Drawing(points, np.array(1.0)))
-    _, other = AXIS.placed(LAYOUT, Drawing(turned, np.array(1.0)))
-    # Of a mirrored car the normal is the other way round. Of a doubt that is a sum of sizes only the last
-    # digits depend on the order of its terms and of the elimination; a tenth is the smallest of the terms.
-    np.testing.assert_allclose(np.abs(other.values), np.abs(plain.values), rtol=0.0, atol=1e-12)
-    np.testing.assert_allclose(np.asarray(other.doubt), np.asarray(plain.doubt), rtol=1e-2)
-
-
-def test_cars_drawn_together_have_the_constants_that_they_have_alone() -> None:
-    cars = [drawn(seed, "anywhere", 1.0) for seed in range(5)]
-    together = Drawing({n: np.stack([car[n] for car in cars]) for n in cars[0]}, np.ones(5))
-    for kind in (AXIS, HELD, BODY):
-        for i, car in enumerate(cars):
-            for mine, all_of_them in zip(
-                kind.placed(LAYOUT, Drawing(car, np.array(1.0))), kind.placed(LAYOUT, together), strict=True
-            ):
-                assert np.array_equal(np.asarray(all_of_them.values)[i], mine.values)
-
-
-def test_a_constraint_brings_nothing_along_that_it_does_not_need() -> None:
-    link = Link("a", "b")
-    assert (link.vectors, link.slides, link.constants) == ((), (), ())
-    assert not link.is_length
-
-
 def _scale(vector: Vector) -> Fraction:
     """The power of two that brings a length between 1/2 and 1."""
     scale, squared = Fraction(1), dot(vector, vector)
@@ -181,27 +123,3 @@ def _is_right(placed: Placed, i: int, meant: Fraction) -> None:
     found, lacks, doubt = _numbers(placed, i)
     assert abs(found + lacks - meant) <= doubt
     assert abs(lacks) <= 5 * U * abs(found)
-
-
-@pytest.mark.parametrize("place", ["anywhere", "an edge", "the normal"])
-@pytest.mark.parametrize("seed", range(3))
-def test_an_axis_turns_with_its_body_and_no_other_way(seed: int, place: str) -> None:
-    points = drawn(seed, place, 1.0)
-    y = np.zeros(LAYOUT.size)
-    y[LAYOUT.one] = 1.0
-    for kind in (BODY, AXIS):
-        for own in kind.placed(LAYOUT, Drawing(points, np.array(1.0))):
-            y[list(own.places)] = own.values
-    for name in LAYOUT.moving:
-        y[LAYOUT.span(name)] = points[name]
-    turn, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    turn *= np.sign(np.linalg.det(turn))  # no mirror, which would take the normal the other way
-    for name in (*LAYOUT.moving, *LAYOUT.vectors):
-        y[LAYOUT.span(name)] = turn @ y[LAYOUT.span(name)] + (0.5 if name in LAYOUT.moving else 0.0)
-    system = quadratic_map((*BODY.rows(LAYOUT), *AXIS.rows(LAYOUT)), LAYOUT.unknowns, LAYOUT.size)
-    # Constants up to 10 of a triangle of height 1, products of numbers below 4: some hundred roundings.
-    assert np.abs(system.residual(y)).max() <= 4e3 * U
-    for i in LAYOUT.vector("axis"):
-        off = y.copy()
-        off[i] += 0.1
-        assert np.abs(system.residual(off)).max() > 0.09

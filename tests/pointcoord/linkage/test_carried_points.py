@@ -1,54 +1,19 @@
-"""Points carried by a body, for random rigid motions."""
+"""Points carried by a body: where they are, and how far they may be off."""
+
+from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from numpy.typing import NDArray
-from scipy.linalg import expm
 
-from pointcoord.errors import MechanismError
-from pointcoord.linkage.carried_points import carried_gain, carried_place, carried_series, carrier_weights
+from pointcoord import Scene, built_in_scenes
+from pointcoord.linkage.carried_points import carried_gain, carried_place
+from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.drawing import Drawing
+from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.simulation import scene_mechanism
 
-Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
-seeds = st.integers(0, 2**32 - 1)
-
-
-@settings(deadline=None)
-@given(seed=seeds)
-def test_carried_point_moves_with_its_carriers_and_keeps_its_distance(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    order = 18
-    carriers = rng.normal(size=(3, 3))
-    e1, e2 = carriers[1] - carriers[0], carriers[2] - carriers[0]
-    frame = np.stack([e1, e2, np.cross(e1, e2)], axis=1)
-    if np.linalg.cond(frame) > 1e3:
-        return
-    rider = rng.normal(size=3)
-    weights = np.linalg.solve(frame, rider - carriers[0])
-    # A body that turns steadily about the origin: the k-th coefficient of a point is K^k p / k!.
-    k = rng.normal(size=3) / 2
-    cross = np.array([[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]])
-
-    def series(p: Array) -> Array:
-        terms = [p]
-        for i in range(1, order + 1):
-            terms.append(cross @ terms[-1] / i)
-        return np.array(terms)
-
-    carried = carried_series(weights, *(series(p) for p in carriers))
-    size = 1 + np.abs(weights).max() * (1 + np.abs(frame).max()) ** 2
-    # Order by order, products of up to `order` pairs of terms below exp(|k|).
-    assert np.abs(carried - series(rider)).max() <= 64 * order * EPS * size * 10 * np.linalg.cond(frame)
-    turned = expm(cross)
-    whole = carried.sum(axis=0)
-    # |k|^19 / 19! and the coefficients of the products of truncated series are below 1e-10 here.
-    assert np.abs(whole - turned @ rider).max() <= 1e-6 * size
-    for p in carriers:
-        kept = np.linalg.norm(whole - turned @ p)
-        assert abs(kept - np.linalg.norm(rider - p)) <= 1e-6 * size
+BODY = Normal("", "base", "first", "second")
 
 
 @pytest.mark.parametrize(
@@ -62,12 +27,12 @@ def test_cars_that_share_some_carriers_have_the_weights_that_they_have_alone(
     vectors = {name: rng.normal(size=(6, 3) if name in batched else 3) for name in names}
     together = Drawing(vectors, np.ones(6))
     carriers = ("base", "first", "second")
-    weights = carrier_weights("rider", together, carriers)
+    weights = carrier_weights(together, "rider", BODY)[0]
     assert weights.shape == (6, 3)
     gains = []
     for i in range(6):
         own = {name: place[i] if name in batched else place for name, place in vectors.items()}
-        alone = carrier_weights("rider", Drawing(own, np.array(1.0)), carriers)
+        alone = carrier_weights(Drawing(own, np.array(1.0)), "rider", BODY)[0]
         # One solve of a system of the condition number of the frame.
         frame = np.stack([own["first"] - own["base"], own["second"] - own["base"]])
         spread = np.linalg.cond(np.vstack([frame, np.cross(*frame)]))
@@ -78,19 +43,6 @@ def test_cars_that_share_some_carriers_have_the_weights_that_they_have_alone(
         gains.append(carried_gain(alone, Drawing(own, np.array(1.0)), carriers))
     # Of a batch it is the largest.
     assert carried_gain(weights, together, carriers) == pytest.approx(max(gains), rel=1e-9)
-
-
-def test_a_point_is_carried_until_its_carriers_are_a_line_to_eight_roundings() -> None:
-    def thin(height: float) -> Drawing:
-        places = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.5, height, 0.0)}
-        return Drawing(
-            {n: np.array(p) for n, p in {**places, "rider": (0.2, 0.3, 0.4)}.items()}, np.array(1.0)
-        )
-
-    # |e1 x e2| = height against 8 eps |e1| |e2| = 4 eps
-    carrier_weights("rider", thin(4.01 * EPS), ("base", "first", "second"))
-    with pytest.raises(MechanismError, match="in one line, so they cannot carry rider"):
-        carrier_weights("rider", thin(3.99 * EPS), ("base", "first", "second"))
 
 
 @pytest.mark.parametrize(
@@ -108,3 +60,25 @@ def test_the_gain_is_the_sum_of_what_each_carrier_may_move_the_point(
     places = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.0, -2.0, 0.0)}
     drawing = Drawing({name: np.array(place) for name, place in places.items()}, np.array(1.0))
     assert carried_gain(np.array(weights), drawing, ("base", "first", "second")) == gain
+
+
+OFF = 1e-6  # of the unit: what is quadratic in it, some 1e-12, is far below the slack
+
+
+def moved_by(mechanism: Mechanism, off: np.ndarray) -> float:
+    """Largest coordinate that a carried point moves by where the solved ones are off, in parts of that."""
+    exact, moved = (mechanism.places(y) for y in (mechanism.drawn, mechanism.drawn + OFF * off))
+    carried = mechanism.topology.carried
+    return max(float(np.abs(moved[name] - exact[name]).max()) for name in carried) / OFF
+
+
+CARRYING = [name for name in built_in_scenes() if Scene.load(name).mechanism.topology.carried]
+
+
+@pytest.mark.parametrize("scene", CARRYING)
+def test_no_error_of_the_carriers_moves_a_carried_point_farther_than_the_gain(scene: str) -> None:
+    mechanism = scene_mechanism(Scene.load(scene))
+    signs = np.random.default_rng(5).choice([-1.0, 1.0], size=(2000, len(mechanism.drawn)))
+    farthest = moved_by(mechanism, signs)
+    # Among 2,000 corners of the cube of errors some come near the farthest.
+    assert 0.5 * mechanism.carried_gain < farthest <= mechanism.carried_gain * (1.0 + 1e-4)

@@ -26,7 +26,6 @@ from validate.paper.printed_parallel import PrintedParallel
 Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2
 LARGEST = 4.0
-
 BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = HeldOnAxis("c", "d", AXIS, "held")

@@ -10,21 +10,18 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, scaled_axis
+from pointcoord.linkage.constraints.in_body import AxisInBody, Normal
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.on_line import FARTHEST, HeldOnAxis, OnAxis, OnChassisLine, OnLine
-from pointcoord.linkage.constraints.scalar_product import ScalarProduct
+from pointcoord.linkage.constraints.on_line import FARTHEST, HeldOnAxis, OnChassisLine, OnLine
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
 
 Array = NDArray[np.float64]
 U = 2.0**-53
-
 BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = HeldOnAxis("c", "b", AXIS, "held")
-SLIDES = OnAxis("b", "a", AXIS, "place")
 LINE = OnLine("c", "a", "b", "ratio")
 RACK = OnChassisLine("a", "o", "rack", "", "e", "travel", True)
 LAYOUT = Layout(
@@ -56,51 +53,6 @@ def value(kind: Constraint, car: Drawing) -> Array:
     return np.asarray(placed.values[..., 0])
 
 
-# An axis of length 11, whose direction is brought to 11 / 16.
-LONG = {"a": (1.0, -1.0, 4.0), "b": (3.0, -7.0, 13.0)}
-
-
-def test_a_direction_is_brought_between_a_half_and_one() -> None:
-    high, low = scaled_axis(drawing(**LONG), "a", "b")
-    assert (high * 16.0).tolist() == [2.0, -6.0, 9.0]
-    assert (low == 0.0).all()
-
-
-def test_a_point_that_slides_stands_where_it_is_drawn_on_its_axis() -> None:
-    one, other = drawing(**LONG), drawing(a=(1.0, 2.0, 3.0), b=(1.0, 2.0, 3.0 + 5.0))
-    assert value(SLIDES, one) == 16.0
-    assert value(SLIDES, other) == 8.0
-    assert value(SLIDES, both_and(one, other)).tolist() == [16.0, 8.0, 16.0]
-
-
-@pytest.mark.parametrize(
-    ("off", "place"),
-    [
-        ((6.0, -18.0, 27.0), 48.0),
-        ((-6.0, 18.0, -27.0), -48.0),
-        ((3.0, 1.0, 0.0), np.sqrt(10.0) * 16.0 / 11.0),  # straight beside the end: 6 - 6 + 0
-        ((10.0, 4.0, 0.0), -np.sqrt(116.0) * 16.0 / 11.0),  # 20 - 24 + 0, behind it
-    ],
-)
-def test_a_point_is_held_at_its_distance_to_the_side_where_it_is_drawn(
-    off: tuple[float, float, float], place: float
-) -> None:
-    x, y, z = np.add(LONG["b"], off).tolist()
-    if place < 0.0 and off[2] == 0.0:
-        assert np.dot(off, (2.0, -6.0, 9.0)) < 0.0
-    (placed,) = HELD.placed(LAYOUT, drawing(**LONG, c=(x, y, z)))
-    assert placed.values[0] == pytest.approx(place, rel=4 * U, abs=0.0)
-    assert np.isfinite(placed.lacks).all()
-    assert np.abs(placed.lacks).max() <= 5 * U * abs(place)
-    assert np.max(placed.doubt) <= 1e3 * U**2 * abs(place)
-
-
-def test_a_point_that_is_held_where_it_is_measured_from_is_a_link_of_no_length() -> None:
-    x, y, z = LONG["b"]
-    with pytest.raises(MechanismError, match="has no length"):
-        HELD.placed(LAYOUT, drawing(**LONG, c=(x, y, z)))
-
-
 def test_a_point_on_a_line_stands_at_its_foot() -> None:
     one = drawing(a=(1.0, 2.0, 3.0), b=(3.0, 3.0, 5.0), c=(1.0 + 3.0, 2.0, 3.0 + 6.0))
     other = drawing(a=(0.0, 1.0, 0.0), b=(4.0, 1.0, 0.0), c=(-6.0, 9.0, 7.0))
@@ -130,15 +82,6 @@ def test_a_line_is_left_at_235_of_its_lengths() -> None:
                 assert words in str(caught.value)
 
 
-def test_the_normal_is_the_product_of_the_edges() -> None:
-    car = drawing(a=(1.0, 1.0, 1.0), b=(3.0, 1.0, 1.0), c=(8.0, 4.0, 1.0))
-    (placed,) = BODY.placed(LAYOUT, car)
-    assert placed.places == LAYOUT.vector("n")
-    assert placed.values.tolist() == [0.0, 0.0, 6.0]
-    # An unknown: the solver improves it, and nothing is said of its rounding.
-    assert (placed.lacks, placed.doubt) == (0.0, 0.0)
-
-
 def test_links_know_the_squares_of_their_lengths_to_their_doubt() -> None:
     rng = np.random.default_rng(3)
     # Of very different sizes, so that the differences are rounded too.
@@ -157,18 +100,6 @@ def test_links_know_the_squares_of_their_lengths_to_their_doubt() -> None:
             assert doubt[i, j] <= 1e3 * U**2 * exact
 
 
-def test_of_several_links_the_one_without_length_is_named() -> None:
-    good = drawing(a=(0.0, 0.0, 0.0), b=(3.0, 4.0, 0.0), c=(1.0, 1.0, 1.0))
-    bad = drawing(a=(0.0, 0.0, 0.0), b=(3.0, 4.0, 0.0), c=(3.0, 4.0, 0.0))
-    links = (Link("a", "b"), Link("b", "c"))
-    for car in (bad, both_and(good, bad), both_and(bad, good)):
-        with pytest.raises(MechanismError, match="b - c has no length"):
-            Link.placed_together(links, LAYOUT, car)
-    worse = drawing(a=(3.0, 4.0, 0.0), b=(3.0, 4.0, 0.0), c=(3.0, 4.0, 0.0))
-    with pytest.raises(MechanismError, match="a - b has no length"):
-        Link.placed_together(links, LAYOUT, worse)
-
-
 LENGTHS: Mapping[Constraint, Array] = {kind: np.array([2.0, -3.0, 6.0]) for kind in (RACK, LINE, HELD)}
 
 
@@ -182,20 +113,3 @@ def test_the_rows_of_a_distance_are_that_distance(kind: Constraint) -> None:
     moved[list(LAYOUT.vector("a" if kind is RACK else "c"))] += LENGTHS[kind]
     system = quadratic_map(kind.rows(LAYOUT), LAYOUT.unknowns, LAYOUT.size)
     assert np.linalg.norm(system.residual(moved) - system.residual(y)) == pytest.approx(7.0, rel=1e-13)
-
-
-def test_a_motion_ends_at_links_and_slides_and_bodies_join_nothing() -> None:
-    every = (
-        BODY,
-        AXIS,
-        HELD,
-        SLIDES,
-        LINE,
-        RACK,
-        Link("a", "b"),
-        ScalarProduct.rise("a", "o", "e", "travel"),
-    )
-    assert [kind for kind in every if kind.may_lock] == [SLIDES, Link("a", "b")]
-    assert [kind for kind in every if kind.holds_a_body] == [BODY, AXIS]
-    assert [kind for kind in every if kind.is_length] == [HELD, LINE, RACK]
-    assert [kind for kind in every if kind.aligned] == [LINE]

@@ -7,7 +7,6 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
-from numpy.typing import NDArray
 
 from pointcoord import InputOutOfRange
 from pointcoord.linkage.constraints.on_line import OnLine
@@ -15,7 +14,6 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.drives import ArmAngle, DistanceOf, Drive, Travel, TravelAlong, TurnedBy
 from pointcoord.numerics.enclosure import Enclosed
 
-Array = NDArray[np.float64]
 U = 2.0**-53
 UNIT = 256.0
 ARM = ArmAngle("rise", "arm_angle", "pivot", "ball", "up")
@@ -189,16 +187,3 @@ def test_a_distance_that_is_not_positive_is_refused(distance: float) -> None:
     drive, _, _ = CASES["distance"]
     with pytest.raises(InputOutOfRange, match="a distance above 0 mm"):
         drive.series(np.array([[distance, 1.0]]), DRAWING)
-
-
-def test_a_rack_goes_in_units_of_the_car_and_loses_nothing() -> None:
-    assert RACK.series(np.array([32.0, -8.0, 2.0]), DRAWING).tolist() == [0.125, -0.03125, 0.0078125]
-    series, doubts = RACK.series_over(np.array([32.0]), np.array([8.0]), 3, DRAWING)
-    assert series.tolist() == [[0.125, 0.03125, 0.0, 0.0]]
-    assert [float(d[0]) for d in doubts] == [0.0, 0.0, 0.0]
-    lacks, doubt = RACK.rounding(np.array([0.125, 1.0]), DRAWING, 16.0)
-    assert (lacks.tolist(), doubt.tolist()) == ([0.0, 0.0], [0.0625, 0.0625])
-    assert float(RACK.drawn(DRAWING)) == DRAWING.vectors["inner"][1] - DRAWING.vectors["centre"][1]
-    # No rod that is drawn within the car, of the size of 1, reaches as far.
-    assert [float(x) for x in RACK.extremes(DRAWING)] == [-8.0, 8.0]
-    assert (ARM.unit, ARM.pushes, RACK.unit, RACK.pushes) == ("rad", "", "mm", "inner")

@@ -1,11 +1,13 @@
-"""The order of coordinates and the topologies: every number has one place and every place one number."""
+"""The order of coordinates and the topologies: every number has one place, also in a part of them."""
 
 import numpy as np
 import pytest
+from sample_cars import SampleCar, by_car
 
 from pointcoord import InputOutOfRange, UnknownName
-from pointcoord.linkage.constraints.link import Link
+from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.needed_part import needed_mechanism, needed_topology
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file, shipped
 from validate.paper.printed import TOPOLOGY
@@ -30,56 +32,11 @@ def test_every_index_of_the_coordinates_is_used_once(topology: Topology) -> None
 
 
 @by_name
-def test_unknown_coordinates_come_first(topology: Topology) -> None:
-    layout = topology.layout
-    vectors = {i for name in (*layout.moving, *layout.vectors) for i in layout.vector(name)}
-    first = vectors | {layout.scalar(name) for name in layout.ratios}
-    assert first == set(range(layout.unknowns))
-
-
-@by_name
-def test_every_unknown_has_a_name_of_its_own(topology: Topology) -> None:
-    layout = topology.layout
-    names = [layout.describe(i) for i in range(layout.unknowns)]
-    assert len(set(names)) == layout.unknowns
-    for name in (*layout.moving, *layout.vectors):
-        assert [names[i] for i in layout.vector(name)] == [f"{axis} of {name}" for axis in "xyz"]
-    for name in layout.ratios:
-        assert names[layout.scalar(name)] == name
-
-
-@by_name
 def test_there_are_as_many_equations_as_unknowns_and_each_unknown_is_in_one(topology: Topology) -> None:
     layout, system = topology.layout, topology.map
     assert len(system.rows) == len(topology.labels) == len(set(topology.labels)) == layout.unknowns
     touched = {i for row in system.rows for product in row for i in (*product.left, *product.right)}
     assert touched >= set(range(layout.unknowns))
-
-
-@by_name
-def test_points_of_bodies_and_carriers_are_points_of_the_car(topology: Topology) -> None:
-    for points in (*topology.bodies.values(), *topology.carried.values()):
-        assert set(points) <= set(topology.points)
-    assert len(set(topology.points)) == len(topology.points)
-
-
-@by_name
-def test_unknown_name_raises_with_the_names_that_exist(topology: Topology) -> None:
-    layout = topology.layout
-    for read, near, valid in (
-        (layout.vector, layout.moving[0], (*layout.moving, *layout.chassis)),
-        (layout.scalar, layout.driven[0], (*layout.ratios, *layout.driven)),
-    ):
-        with pytest.raises(UnknownName, match=f"did you mean '{near}'") as caught:
-            read(f"{near}x")
-        assert set(valid) <= set(caught.value.valid)
-        assert all(name in str(caught.value) for name in caught.value.valid)
-
-
-@by_corner
-def test_unknown_link_raises_with_the_links_that_exist(topology: Topology) -> None:
-    with pytest.raises(UnknownName, match=topology.drives[-1].point):
-        topology.layout.squared_length(topology.inboard, topology.wheel_centre)
 
 
 @by_corner
@@ -116,13 +73,6 @@ def test_an_input_or_rate_that_is_not_finite_is_refused_by_name(strut: Mechanism
     assert np.array_equal(caught.value.value, bad, equal_nan=True)
 
 
-def test_rates_whose_products_are_not_finite_are_refused_with_the_largest(strut: Mechanism) -> None:
-    laws = {"rack": np.array([2.0, 5.0, 0.0]), "arm_angle": np.array([1.0, -1e200, 0.0])}
-    with pytest.raises(InputOutOfRange, match="stay finite in every product") as caught:
-        strut.known_series(laws)
-    assert (caught.value.name, caught.value.value) == ("arm_angle", 1e200)
-
-
 @by_name
 def test_of_a_force_in_one_row_its_constraint_takes_part_and_no_other(topology: Topology) -> None:
     row = 0
@@ -135,21 +85,84 @@ def test_of_a_force_in_one_row_its_constraint_takes_part_and_no_other(topology: 
     assert row == len(topology.labels)
 
 
-@by_name
-def test_a_constraint_takes_part_from_a_tenth_of_the_largest_force(topology: Topology) -> None:
-    one, *_, other = topology.constraints
-    forces = np.zeros(len(topology.labels))
-    for share, both in ((0.11, True), (-0.11, True), (0.09, False)):
-        forces[0], forces[-1] = 2.0, 2.0 * share
-        assert set(topology.strongest(forces)) == ({one.name, other.name} if both else {one.name})
+def flips(mechanism: Mechanism, y: np.ndarray) -> list[bool]:
+    """Pair by pair, whether the pieces lie less than a right angle apart in the drawing or in y only."""
+    found = []
+    for pair in mechanism.topology.paired_pieces[0]:
+        along = []
+        for numbers in (mechanism.drawn, y):
+            (a, b), (c, d) = (tuple(numbers[mechanism.layout.span(end)] for end in piece) for piece in pair)
+            along.append(float(np.dot(b - a, d - c)) > 0.0)
+        found.append(along[0] != along[1])
+    return found
 
 
-@by_name
-def test_of_two_links_the_one_that_pushes_harder_comes_first(topology: Topology) -> None:
-    links = [c for c in topology.constraints if isinstance(c, Link)][:2]
-    places = [topology.labels.index(link.labels[0]) for link in links]
-    for forces in ((1.0, -2.0), (-3.0, 2.0)):
-        every = np.zeros(len(topology.labels))
-        every[places] = forces
-        harder = int(abs(forces[1]) > abs(forces[0]))
-        assert topology.strongest(every) == (links[harder].name, links[1 - harder].name)
+@by_car
+@pytest.mark.parametrize("seed", range(3))
+def test_pieces_that_turn_over_are_found_in_each_car_and_the_first_such_pair_is_named(
+    car: SampleCar, seed: int
+) -> None:
+    mechanism = car.mechanism()
+    pairs, _ = mechanism.topology.paired_pieces
+    rng = np.random.default_rng(seed)
+    poses = mechanism.drawn + rng.normal(size=(40, len(mechanism.drawn))) * rng.choice(
+        [0.0, 1e-3, 0.5], (40, 1)
+    )
+    expected = np.array([flips(mechanism, y) for y in poses]).reshape(40, len(pairs))
+    bad, pair = turned_over(mechanism, poses)
+    assert bad.tolist() == expected.any(axis=1).tolist()
+    assert pair == (pairs[int(np.flatnonzero(expected.any(axis=0))[0])] if expected.any() else None)
+    for y, turned in zip(poses, expected, strict=True):
+        alone, its_pair = turned_over(mechanism, y)
+        assert alone.shape == ()
+        assert bool(alone) == any(turned)
+        assert its_pair == (pairs[list(turned).index(True)] if any(turned) else None)
+
+
+@by_car
+def test_what_a_point_hangs_on_is_solved_for_as_in_the_whole(car: SampleCar) -> None:
+    whole = car.mechanism()
+    y = whole.drawn + 0.1 * np.random.default_rng(3).normal(size=whole.drawn.shape)
+    y[whole.layout.zero], y[whole.layout.one] = 0.0, 1.0
+    rows = dict(zip(whole.topology.labels, whole.map.residual(y), strict=True))
+    for point in whole.topology.moving + tuple(whole.topology.carried):
+        part = needed_mechanism(whole, {point})
+        places = part.layout.places_in(whole.layout)
+        assert len(part.topology.labels) == part.layout.unknowns
+        assert np.array_equal(part.map.residual(y[places]), [rows[label] for label in part.topology.labels])
+        for name in ("drawn", "drawn_lacks", "drawn_doubt"):
+            assert np.array_equal(getattr(part, name), getattr(whole, name)[places])
+        assert point in part.topology.points
+        assert np.array_equal(part.places(y[places])[point], whole.places(y)[point])
+        assert (part.origin is whole.origin, part.unit is whole.unit) == (True, True)
+        assert set(part.carrier_weights) == set(part.topology.carried)
+        # And with it everything that rides on bodies that are there, if it was asked for, and nothing else.
+        assert set(part.topology.carried) == ({point} & set(whole.topology.carried))
+        there = set(part.topology.points)
+        assert set(part.topology.bodies) == {
+            b for b, ends in whole.topology.bodies.items() if set(ends) <= there
+        }
+
+
+@by_car
+def test_a_point_of_an_arm_hangs_on_the_arm_alone_and_one_of_the_rack_on_the_rack(car: SampleCar) -> None:
+    topology = car.topology
+    ball = needed_topology(topology, {"lower_ball_joint"})
+    assert ball.moving == ("lower_ball_joint",)
+    assert ball.required_inputs == ("arm_angle",)
+    assert len(ball.constraints) == 3  # two links and the height
+    rack = needed_topology(topology, {"tie_rod_inner"})
+    assert rack.moving == ("tie_rod_inner",)
+    assert rack.required_inputs == ("rack",)
+    both = needed_topology(topology, {"tie_rod_inner", "lower_ball_joint"})
+    assert set(both.moving) == {"tie_rod_inner", "lower_ball_joint"}
+    assert both.required_inputs == topology.required_inputs
+
+
+@by_car
+def test_where_everything_is_asked_for_or_nothing_moves_the_linkage_is_whole(car: SampleCar) -> None:
+    topology, mechanism = car.topology, car.mechanism()
+    assert needed_topology(topology, topology.points) is topology
+    assert needed_topology(topology, topology.chassis) is topology
+    assert needed_topology(topology, ()) is topology
+    assert needed_mechanism(mechanism, mechanism.topology.points) is mechanism

@@ -17,18 +17,14 @@ from closed_forms import PHASES, cross, dot, minus, number, numbers
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
-from numpy.typing import NDArray
 from suspensions_in_closed_form import FORMS, ClosedForm, rounded
 
 from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.method import METHODS
 
-Array = NDArray[np.float64]
 Points = dict[str, Any]
 Law = tuple[float, float, float]
 DIGITS, STEP = 60, mpf(10) ** -15
-
-
 # Numbers of few bits, so that the laws' values and rates at the instants are doubles.
 coefficients = st.integers(-32, 32).map(lambda n: n / 64)
 laws = st.tuples(coefficients, coefficients)

@@ -8,16 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import AssemblyError, Motion, Scene, SceneError, simulate
-from pointcoord.linkage.hardpoints import build_mechanism
-from pointcoord.mechanism import mechanism_file
-from pointcoord.numerics.linear import factorise
 from pointcoord.results.closing import NOTICED
-
-DRAWN = mechanism_file("macpherson").topology(points=Scene.load("off-axis-strut").mechanism.points)
 
 Array = NDArray[np.float64]
 Car = dict[str, tuple[float, ...]]
-AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 SCENE = Scene.load("off-axis-strut")
 CAR: Car = dict(SCENE.mechanism.points)
 
@@ -25,20 +19,6 @@ CAR: Car = dict(SCENE.mechanism.points)
 def drawn_angle(points: Car) -> float:
     arm = np.subtract(points["lower_ball_joint"], points["lower_arm_front"])
     return float(np.arccos(arm[2] / np.linalg.norm(arm)))
-
-
-def varied(seed: int, beside: float) -> Car:
-    """The car with every point elsewhere by up to 40 mm, the ball joint `beside` mm off the strut axis."""
-    rng = np.random.default_rng(seed)
-    car = {name: np.add(place, rng.uniform(-40.0, 40.0, 3)) for name, place in CAR.items()}
-    top, lower = car["strut_top"], car["strut_lower"]
-    along = (top - lower) / np.linalg.norm(top - lower)
-    aside = np.cross(along, rng.normal(size=3))
-    foot = lower + ((car["lower_ball_joint"] - lower) @ along) * along
-    car["lower_ball_joint"] = foot + beside * aside / np.linalg.norm(aside)
-    car["strut_rod_end"] = top + rng.uniform(-0.2, 1.2) * (lower - top)
-    car["rack_centre"] = car["tie_rod_inner"]
-    return {name: tuple(place.tolist()) for name, place in car.items()}
 
 
 def closed_collinear(make_scene: Callable[..., Scene], table: Car) -> Car:
@@ -65,68 +45,6 @@ def test_the_collinear_strut_is_the_general_one_with_its_ball_joint_on_the_axis(
         assert (gap <= np.maximum(bound, carried) + closing).all()
     assert np.allclose(straight.wheel["camber"], general.wheel["camber"], rtol=0.0, atol=1e-11)
     assert np.allclose(straight.wheel["kingpin"], general.wheel["kingpin"], rtol=0.0, atol=1e-11)
-
-
-@pytest.mark.parametrize("beside", [0.0, 1e-12, 1e-6, 1.0, 80.0])
-def test_rank_is_kept_wherever_the_ball_joint_lies_beside_the_axis(beside: float) -> None:
-    conditions = [
-        float(factorise(mechanism.map.jacobian(mechanism.drawn)).condition)
-        for mechanism in (build_mechanism(DRAWN, varied(3, b), AXES) for b in (beside, 20.0))
-    ]
-    assert conditions[0] < 10.0 * conditions[1]
-
-
-def test_the_axis_stays_in_the_knuckle_and_runs_through_the_strut_top() -> None:
-    motion = simulate(SCENE)
-    place = dict(motion.position)
-    base = place["lower_ball_joint"]
-    e1, e2 = place["tie_rod_outer"] - base, place["strut_lower"] - base
-    axis = place["strut_top"] - place["strut_lower"]
-    axis /= np.linalg.norm(axis, axis=-1, keepdims=True)
-    # The angles of the axis with both edges, and on which side of the knuckle's plane it leaves, are fixed.
-    for measure in (
-        np.sum(axis * e1, axis=-1),
-        np.sum(axis * e2, axis=-1),
-        np.sum(axis * np.cross(e1, e2), axis=-1),
-    ):
-        assert np.ptp(measure) <= 1e-12 * np.abs(measure).max()
-    rod = place["strut_rod_end"] - place["strut_top"]
-    assert np.abs(np.cross(rod, axis)).max() <= 1e-10
-    assert np.ptp(np.linalg.norm(rod, axis=-1)) <= 1e-10
-    assert np.ptp(np.linalg.norm(place["strut_lower"] - place["strut_top"], axis=-1)) > 10.0  # it slides
-
-
-def test_the_kingpin_axis_runs_from_the_ball_joint_to_the_strut_top() -> None:
-    motion = simulate(SCENE)
-    axis = motion.position["strut_top"] - motion.position["lower_ball_joint"]
-    assert np.allclose(motion.wheel["kingpin"], np.arctan2(axis[:, 1], axis[:, 2]), rtol=0.0, atol=1e-14)
-
-
-def test_camber_is_the_spin_axis_s_own() -> None:
-    own, default = (simulate(_with_axis(inner)) for inner in ((0.0, -640.0, 309.0), None))
-    # At the drawn inputs: the axis drops by 1 mm in 120, or as it runs from strut_lower.
-    assert own.wheel["camber"][0] == pytest.approx(-np.arctan(1.0 / 120.0), abs=1e-2)
-    start = own.position["wheel_axis_inner"], own.position["wheel_centre"]
-    spindle = start[1] - start[0]
-    assert np.allclose(own.wheel["camber"], np.arctan2(-spindle[:, 2], -spindle[:, 1]), rtol=0.0, atol=1e-14)
-    assert "wheel_axis_inner" not in default.position
-    spindle = default.position["wheel_centre"] - default.position["strut_lower"]
-    assert np.allclose(
-        default.wheel["camber"], np.arctan2(-spindle[:, 2], -spindle[:, 1]), rtol=0.0, atol=1e-14
-    )
-
-
-def _with_axis(inner: tuple[float, float, float] | None) -> Scene:
-    content = SCENE.model_dump()
-    points = content["mechanism"]["points"]
-    del points["wheel_axis_inner"]
-    if inner is not None:
-        points["wheel_axis_inner"] = inner
-    content["inputs"] = {
-        name: {key: value for key, value in law.items() if value is not None}
-        for name, law in content["inputs"].items()
-    }
-    return Scene.from_mapping(content)
 
 
 def moved(name: str, by: tuple[float, float, float]) -> Car:
@@ -210,13 +128,6 @@ def _ball_joint(front: Array, rear: Array, drawn: Array, angle: float) -> Array:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if turned(middle)[2] < rise else (low, middle)
     return front + turned(0.5 * (low + high))
-
-
-def test_what_can_lock_is_named_before_what_says_how_the_knuckle_is_made() -> None:
-    named = DRAWN.strongest(np.ones(len(DRAWN.labels)))
-    assert set(named[-2:]) == {"normal of the knuckle", "strut axis"}
-    locks = {name for name in named if name.startswith("link ")} | {"strut_top on the strut axis"}
-    assert set(named[: len(locks)]) == locks
 
 
 @pytest.mark.parametrize(("share", "refused"), [(0.0099, False), (0.0101, True)])

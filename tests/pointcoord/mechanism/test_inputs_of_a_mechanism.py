@@ -89,16 +89,6 @@ def test_travel_along_a_line_of_a_moving_body_is_its_length_in_mm() -> None:
     assert np.abs(reach - np.linspace(390.0, 410.0, SAMPLES)).max() < 1e-10
 
 
-def test_rates_are_the_derivatives_of_what_an_input_drives() -> None:
-    inputs = {"c": {"contact": ["wheel_axis_inner", "wheel_centre"]}}
-    part = {**WISHBONE, "wheel_radius": 300.0}
-    motion = simulate(with_inputs(part, inputs, c={"polynomial": [0.0, 0.0, 20.0]}, rack=RACK))
-    step = 1e-4
-    before, after = motion.at(np.array([0.5 - step])), motion.at(np.array([0.5 + step]))
-    slope = (after.position["wheel_centre"] - before.position["wheel_centre"]) / (2 * step)
-    assert np.abs(slope - motion.at(np.array([0.5])).velocity["wheel_centre"]).max() < 1e-5
-
-
 @pytest.mark.parametrize(
     ("laws", "words"),
     [
@@ -165,12 +155,6 @@ def test_a_turn_is_right_handed_about_the_hinge_and_goes_round_as_often_as_it_sa
     assert np.abs(there[1] - across).max() < 1e-9
     # A motion that starts rounds away from the drawing goes there round by round.
     assert np.abs(turned_arm([7.0 * np.pi]).position["wheel_centre"][0] - across).max() < 1e-9
-
-
-def test_a_five_link_has_no_steering_axis_and_says_so() -> None:
-    content = Scene.load("five-link").model_dump(exclude_none=True)
-    with pytest.raises(SceneError, match="needs the role steering_axis"):
-        Scene.from_mapping({**content, "effects": ["caster"]})
 
 
 def test_a_tripod_of_rods_is_refused_as_a_structure() -> None:

@@ -112,26 +112,6 @@ def test_what_rounds_changes_is_counted_and_no_more_than_that() -> None:
         assert max(shares) > 0.2, name
 
 
-def test_a_group_is_as_far_from_reported_numbers_as_it_says_and_a_quotient_is_within_its_radius() -> None:
-    rng = np.random.default_rng(5)
-    for reach in (0.0, 1e-3, 0.3):
-        a, b = group(rng, reach, 1e-17), group(rng, reach, 1e-17)
-        small = a * Enclosed.of(1e-16)
-        found = quotient(small, b)
-        reported = b.middle * (1.0 + 4.0 * U * rng.uniform(-1.0, 1.0, (5, 4)))
-        apart = b.apart(reported).ravel().tolist()
-        radius = np.broadcast_to(found.radius[0], (5, 4)).ravel().tolist()
-        for part in (-1.0, 1.0):
-            for x, y, r, most in zip(
-                exact_group(b, part), reported.ravel().tolist(), apart, apart, strict=True
-            ):
-                assert abs(x - Fraction(y)) <= Fraction(r) <= Fraction(most)
-            for n, d, q, r in zip(
-                exact_group(small, part), exact_group(b, -part), exact_group(found), radius, strict=True
-            ):
-                assert abs(n / d - q) <= Fraction(r)
-
-
 @pytest.mark.parametrize("reach", [0.0, 1e-6, 0.01, 0.4])
 def test_cosines_and_sines_of_a_group_lie_within_radii_that_they_share(reach: float) -> None:
     rng = np.random.default_rng(7)

@@ -7,16 +7,13 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from pointcoord.numerics.branch import (
     MOST_PARTS,
     NEAR,
     hidden,
     on_branch,
-    orientation,
     regular_along,
-    same_signs,
     surely_regular,
 )
 from pointcoord.numerics.counters import Work
@@ -24,8 +21,6 @@ from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import Converged
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.solve.follower import SMALLEST_STEP, follow
-
-Array = NDArray[np.float64]
 
 # y = (u, w, 0, 1)
 PARABOLA: QuadraticMap = quadratic_map(
@@ -73,13 +68,6 @@ def test_what_a_series_left_out_and_newtons_step_count_together(
     assert not ends_on_branch(*(share * above for share in shares), u=u)
 
 
-@pytest.mark.parametrize("u", [1.0, 1e-3])
-def test_a_series_as_near_to_the_other_assembly_is_not_on_the_branch(u: float) -> None:
-    # The other one is 2 u away.
-    assert not ends_on_branch(u, 0.0, 0.0, u=u)
-    assert not ends_on_branch(0.0, 0.0, u, u=u)
-
-
 def regular(*u: float, length: float = 1.0) -> bool:
     """Whether no branch is met where u is a polynomial of s, from its coefficients, up to a length."""
     series = np.zeros((len(u), 4))
@@ -106,18 +94,6 @@ def test_a_zero_of_the_determinant_is_met_whatever_its_order(degree: int, place:
     assert regular(*u.coef, length=0.5 * place) == (place > 0.0)
 
 
-@pytest.mark.parametrize("apart", [1e-9, 1e-3, 0.1, 0.3])
-def test_a_motion_beyond_a_crossing_and_back_meets_it(apart: float) -> None:
-    assert not regular(*(np.polynomial.Polynomial([-0.5, 1.0]) ** 2 - apart**2).coef)
-
-
-@pytest.mark.parametrize("waves", [1, 3, 6])
-def test_a_determinant_that_swings_is_seen_to_change_its_sign(waves: int) -> None:
-    swing = np.polynomial.Chebyshev.basis(waves, domain=[0.0, 1.0]).convert(kind=np.polynomial.Polynomial)
-    assert not regular(*(0.5 + swing).coef)
-    assert regular(*(1.5 + swing).coef)
-
-
 def test_a_motion_that_turns_back_just_before_a_crossing_meets_none() -> None:
     # det C_u = 2 ((s - 1/2)^2 + beside^2) has its zeros beside the real axis: as near as that shows in parts
     # of the segment no such motion is refused, and nearer ones in shorter segments.
@@ -138,34 +114,10 @@ def test_a_pose_within_rounding_of_a_meeting_is_hidden_and_no_other() -> None:
         assert bool(hidden(shifted, y, factorise(np.array([[2.0 * u]])))) is moved
 
 
-def test_an_end_beyond_the_fold_is_not_on_the_branch() -> None:
-    assert not regular(1.0, -2.0)
-    before, beyond = (factorise(PARABOLA.jacobian(np.array([u, 1.0, 0.0, 1.0]))) for u in (1.0, -1.0))
-    assert not same_signs(orientation(PARABOLA, before), orientation(PARABOLA, beyond))
-
-
-def test_two_folds_at_once_are_not_one_that_is_none() -> None:
-    every = np.array([[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]])
-    assert np.array_equal(same_signs(every[:, None], every), np.eye(4, dtype=bool))
-    for none in (0.0, np.nan):
-        assert not same_signs(np.array([1.0, none]), np.array([1.0, none]))
-
-
 def path_to(w: float) -> tuple[float, float]:
     """The share done of the path from w = 1, and u at its end."""
     path = follow(PARABOLA, np.array([1.0, 1.0, 0.0, 1.0]), np.array([w, 0.0, 1.0]))
     return float(path.done), float(path.y[0])
-
-
-def test_the_last_step_of_a_path_may_be_shorter_than_any_other() -> None:
-    # z = q omega sqrt(2) = left / (2 w) here, so a step is 0.8 of what is left until less than 4 w is: after
-    # 19 of them 5.2e-14 is left, which is less than the smallest step, and the path can be completed at once.
-    w = 2e-14
-    assert 0.2**18 * 0.8 > SMALLEST_STEP > 0.2**19
-    done, u = path_to(w)
-    assert done == 1.0
-    # Newton's last step has shrunk to rounding: u^2 = w to a few of them.
-    assert abs(u * u - w) <= 8 * np.finfo(float).eps * w
 
 
 @pytest.mark.parametrize("beyond", [1.0, 1e-3, 1e-9])

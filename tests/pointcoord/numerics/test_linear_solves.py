@@ -1,4 +1,6 @@
-"""One factorisation: accuracy, scaling, and batches in which some members are singular."""
+"""One factorisation: accuracy, singular members of a batch, and large matrices by their blocks."""
+
+from itertools import product
 
 import numpy as np
 import pytest
@@ -6,14 +8,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from pointcoord.numerics import block_inverse, quadratic
+from pointcoord.numerics import narrow_product as module
+from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.linear import (
     factorise,
     null_directions,
-    smallest_left_singular_vector,
 )
+from pointcoord.numerics.narrow_product import FEWEST, narrow_product
+from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
+from pointcoord.numerics.rounding import EPS
+from pointcoord.simulation import scene_mechanism
+from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.taylor import Settings, build_chain
+from validate.cost.chain import SWING, FourBarChain
 
 Array = NDArray[np.float64]
-EPS = np.finfo(float).eps
 seeds = st.integers(0, 2**32 - 1)
 plain = settings(deadline=None)
 
@@ -40,28 +50,6 @@ def test_solution_has_the_accuracy_of_an_lu_solve(seed: int, n: int, power: int)
     assert error <= 3 * n * EPS * float(factors.condition) * max(np.abs(x).max(), 1.0)
 
 
-@plain
-@given(seed=seeds)
-def test_rows_of_any_size_give_the_same_bits(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    matrix, right = rng.normal(size=(5, 5)), rng.normal(size=5)
-    powers = rng.integers(-200, 200, size=5)
-    plainly = factorise(matrix)
-    scaled = factorise(np.ldexp(matrix, powers[:, None]))
-    assert np.array_equal(scaled.solve(np.ldexp(right, powers)), plainly.solve(right))
-    assert scaled.condition == plainly.condition
-
-
-@plain
-@given(seed=seeds, n=st.integers(1, 12))
-def test_preconditioner_is_the_inverse_of_the_matrix_as_given(seed: int, n: int) -> None:
-    rng = np.random.default_rng(seed)
-    matrix = np.ldexp(graded(rng, n, 100.0), rng.integers(-50, 50, size=(n, 1)))
-    factors = factorise(matrix)
-    # The inverse by LU is a right inverse up to n eps times the condition number, with a growth factor.
-    assert np.abs(factors.preconditioner @ matrix - np.eye(n)).max() <= 3 * n * EPS * float(factors.condition)
-
-
 def test_condition_number_is_that_of_the_maximum_norm() -> None:
     matrix = np.array([[1.0, 1.0], [1.0, 0.75]])
     inverse = np.array([[-3.0, 4.0], [4.0, -4.0]])
@@ -82,18 +70,6 @@ SINGULAR = {
 
 
 @pytest.mark.parametrize("bad", SINGULAR.values(), ids=SINGULAR.keys())
-def test_singular_matrix_is_marked_and_not_raised(bad: Array) -> None:
-    factors = factorise(bad)
-    assert factors.singular
-    assert not factors.condition < 1.0 / (3 * EPS)
-
-
-@pytest.mark.parametrize("name", ["equal rows", "zero row", "zero column", "zero matrix"])
-def test_condition_number_of_an_exactly_singular_matrix_is_infinite(name: str) -> None:
-    assert factorise(SINGULAR[name]).condition == np.inf
-
-
-@pytest.mark.parametrize("bad", SINGULAR.values(), ids=SINGULAR.keys())
 def test_singular_member_of_a_batch_marks_only_itself(bad: Array) -> None:
     rng = np.random.default_rng(5)
     good = rng.normal(size=(2, 2, 3, 3))
@@ -107,17 +83,6 @@ def test_singular_member_of_a_batch_marks_only_itself(bad: Array) -> None:
         alone = factorise(good[member])
         assert factors.condition[member] == alone.condition
         assert np.array_equal(x[member], alone.solve(right[member]))
-
-
-def test_taking_and_replacing_members_touches_no_other() -> None:
-    rng = np.random.default_rng(6)
-    first, second = factorise(rng.normal(size=(4, 3, 3))), factorise(rng.normal(size=(2, 3, 3)))
-    members = np.array([3, 1])
-    mixed = first.replaced(members, second)
-    for field in ("matrix", "inverse", "row_scale", "condition"):
-        assert np.array_equal(getattr(mixed, field)[[0, 2]], getattr(first, field)[[0, 2]])
-        assert np.array_equal(getattr(mixed.taken(members), field), getattr(second, field))
-        assert getattr(mixed.reshaped((2, 2)), field).shape[:2] == (2, 2)
 
 
 @plain
@@ -134,33 +99,161 @@ def test_null_directions_span_the_null_spaces(seed: int, rows: int, columns: int
     # LAPACK's bound on its own error: a few times max(m, n) eps of the largest singular value.
     limit = 8 * 6 * EPS
     size = max(np.linalg.norm(matrix), 1.0)
-    for vectors, product in ((free, matrix @ free.T), (redundant, redundant @ matrix)):
+    for vectors, none in ((free, matrix @ free.T), (redundant, redundant @ matrix)):
         assert np.abs(vectors @ vectors.T - np.eye(len(vectors))).max(initial=0.0) <= limit
-        assert np.abs(product).max(initial=0.0) <= limit * size
+        assert np.abs(none).max(initial=0.0) <= limit * size
 
 
-@plain
-@given(seed=seeds, n=st.integers(2, 8))
-def test_weakest_balance_of_rows_is_shortened_the_most(seed: int, n: int) -> None:
+N = 120
+
+
+def hidden_triangle(rng: np.random.Generator, batch: tuple[int, ...] = ()) -> np.ndarray:
+    """Well conditioned matrices with blocks of 1 to 4 rows on the diagonal, rows and columns shuffled."""
+    matrix = np.zeros((*batch, N, N))
+    low = 0
+    while low < N:
+        high = min(low + int(rng.integers(1, 5)), N)
+        own = rng.uniform(-1.0, 1.0, (*batch, high - low, high - low)) + 3.0 * np.eye(high - low)
+        matrix[..., low:high, low:high] = own * rng.choice([-1.0, 1.0], (high - low, 1))
+        for row in range(low, high):
+            places = rng.integers(0, low, 3) if low else []
+            matrix[..., row, places] = rng.uniform(-0.3, 0.3, (*batch, len(places)))
+        low = high
+    return matrix[..., rng.permutation(N), :][..., rng.permutation(N)]
+
+
+def test_factors_by_blocks_say_what_others_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(5)
+    matrix, right = hidden_triangle(rng, (3,)), rng.uniform(-1.0, 1.0, (3, N))
+    by_blocks = factorise(matrix)
+    monkeypatch.setattr(block_inverse, "LARGE", np.inf)
+    plain = factorise(matrix)
+    assert by_blocks.condition == pytest.approx(plain.condition, rel=1e-10)
+    x = by_blocks.solve(right)
+    # Of one member by itself the processor may add in another order.
+    allowed = 8 * EPS * plain.condition.max() * np.abs(x).max()
+    assert (np.abs(x - plain.solve(right)).max(axis=-1) <= 8 * EPS * plain.condition * np.abs(x).max()).all()
+    # One of the matrices for several right sides.
+    one, several = by_blocks.taken(np.array([0])).reshaped(()), rng.uniform(-1.0, 1.0, (4, N))
+    for side, found in zip(several, one.solve(several), strict=True):
+        assert np.abs(found - one.solve(side)).max() <= 8 * EPS * one.condition * np.abs(found).max()
+    for some in (
+        by_blocks.taken(np.array([2, 0])),
+        by_blocks.reshaped((1, 3)).reshaped((3,)).taken(np.array([2, 0])),
+    ):
+        assert np.abs(some.solve(right[[2, 0]]) - x[[2, 0]]).max() <= allowed
+    turned = factorise(matrix[[1]] * np.where(np.arange(N) == 7, -1.0, 1.0))
+    replaced = by_blocks.replaced(np.array([1]), turned)
+    assert np.array_equal(replaced.preconditioner[1], turned.preconditioner[0])
+    assert np.array_equal(replaced.preconditioner[::2], by_blocks.preconditioner[::2])
+
+
+@pytest.mark.parametrize("batch", [(), (1,), (2, 3)])
+def test_by_blocks_a_nearby_matrix_with_entries_of_its_own_is_solved_with_its_own_residual(
+    batch: tuple[int, ...],
+) -> None:
+    rng = np.random.default_rng(7)
+    matrix, right = hidden_triangle(rng, batch), rng.uniform(-1.0, 1.0, (*batch, N))
+    change = 1e-9 * rng.uniform(-1.0, 1.0, matrix.shape) * (rng.uniform(0.0, 1.0, (N, N)) < 0.02)
+    factors = factorise(matrix)
+    assert factors.substitution is not None
+    moved = factors.moved(matrix + change)
+    for x, exact in ((factors.solve(right), matrix), (moved.solve(right), matrix + change)):
+        wanted = np.linalg.solve(exact, right[..., None])[..., 0]
+        # Rounding; of the moved one also z^2, z = |I - X A| <= 120 entries of 1e-9 times |X|, a few.
+        allowed = (8 * EPS * factors.condition + 1e-13) * np.abs(wanted).max(axis=-1)
+        assert (np.abs(x - wanted).max(axis=-1) <= allowed).all()
+
+
+def test_where_blocks_do_not_help_the_matrix_is_inverted_as_a_whole() -> None:
+    rng = np.random.default_rng(6)
+    circle = np.eye(N) + np.roll(np.eye(N), 1, axis=1) * 0.5
+    dense = rng.uniform(-1.0, 1.0, (N, N))
+    singular = hidden_triangle(rng)
+    singular[3] = 0.0
+    twice = hidden_triangle(rng)
+    twice[3] = twice[4]
+    for matrix in (np.eye(50), circle, dense):
+        assert inverse_by_blocks(matrix) is None
+        assert not factorise(matrix).singular
+    for matrix in (singular, twice):
+        assert factorise(matrix).singular
+
+
+def random_map(rng: np.random.Generator, unknowns: int) -> QuadraticMap:
+    """Rows of products of differences; unknowns in several rows, some products in more than one."""
+    shared = [tuple(rng.integers(0, unknowns + 3, 4).tolist()) for _ in range(unknowns)]
+    rows = []
+    for _ in range(unknowns):
+        chosen = rng.integers(0, len(shared), 3)
+        coefficients = rng.choice([-2.0, -1.0, 1.0, 0.5], 3)
+        rows.append(
+            tuple(
+                Product(float(c), shared[i][:2], shared[i][2:])
+                for c, i in zip(coefficients, chosen, strict=True)
+            )
+        )
+    return quadratic_map(rows, unknowns, unknowns + 3)
+
+
+@pytest.mark.parametrize("unknowns", [6, 104])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_lipschitz_constant_is_the_sum_over_all_pairs_of_unknowns(unknowns: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    matrix = graded(rng, n, 1e6)
-    balance = smallest_left_singular_vector(matrix)
-    # The smallest stretch is 1e-6; rounding of the product is n eps.
-    assert abs(np.linalg.norm(balance) - 1.0) <= 4 * n * EPS
-    assert np.linalg.norm(balance @ matrix) <= 1e-6 + 16 * n * EPS
+    system = random_map(rng, unknowns)
+    inverse = rng.uniform(-1.0, 1.0, (2, unknowns, unknowns))
+    weights = rng.uniform(0.1, 2.0, (3, 2, unknowns))
+    # By the definition: the Jacobian's derivative by each unknown, from the polar form of unit vectors.
+    units = np.eye(unknowns, system.size)
+    curvature = np.array([2.0 * system.polar(units, unit) for unit in units])  # (k, j, rows)
+    found = system.lipschitz(inverse, weights)
+    for one, member in product(range(3), range(2)):
+        g = weights[one, member]
+        bent = np.abs(curvature @ inverse[member].T)  # (k, j, i)
+        wanted = (np.einsum("kji,j,k->i", bent, g, g) / g).max()
+        assert found[one, member] == pytest.approx(wanted, rel=1e-12)
+        assert system.lipschitz(inverse[member], g) == pytest.approx(wanted, rel=1e-12)
+    plain = np.abs(np.einsum("kjr,mir->mkji", curvature, inverse)).sum(axis=(1, 2)).max(axis=-1)
+    assert system.lipschitz(inverse) == pytest.approx(plain, rel=1e-12)
+    assert system.lipschitz(inverse[0]) == pytest.approx(plain[0], rel=1e-12)
 
 
-@plain
-@given(seed=seeds, n=st.integers(1, 12), power=st.integers(0, 15))
-def test_one_matrix_is_factorised_like_a_batch_of_one(seed: int, n: int, power: int) -> None:
-    rng = np.random.default_rng(seed)
-    matrix = np.ldexp(graded(rng, n, 10.0**power), rng.integers(-50, 50, size=(n, 1)))
-    one, batch = factorise(matrix), factorise(matrix[None])
-    for name in ("matrix", "inverse", "row_scale"):
-        assert np.array_equal(getattr(one, name), getattr(batch, name)[0])
-    # Two sums of n terms each, in another order.
-    assert abs(one.condition / batch.condition[0] - 1.0) <= 2 * n * EPS
-    right = matrix @ rng.normal(size=n)
-    x, same = one.solve(right), batch.solve(right[None])[0]
-    # Both are solutions of an LU solve, see above.
-    assert np.abs(x - same).max() <= 6 * n * EPS * float(one.condition) * np.abs(same).max()
+def test_a_long_chain_goes_the_same_way_by_blocks_as_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    chain = FourBarChain.with_unknowns(114)
+    settings, stop = Settings(1e-12, 0), 0.25
+
+    def solved() -> tuple[np.ndarray, object]:
+        mechanism = scene_mechanism(chain.scene())
+        start = assemble(mechanism, {"arm_angle": SWING.series(0.0, 0)[0]}, closed=close_drawing(mechanism))
+        built = build_chain(mechanism, {"arm_angle": SWING}, start, 0.0, stop, settings)
+        last = built.segments[-1]
+        s = (stop - last.start) / last.scale
+        return s ** np.arange(last.order + 1.0) @ last.coefficients, (start.work, built.work)
+
+    by_blocks, work = solved()
+    monkeypatch.setattr(block_inverse, "LARGE", np.inf)
+    monkeypatch.setattr(quadratic, "LARGE", np.inf)
+    plain, plain_work = solved()
+    assert work == plain_work
+    # Truncation of either, and rounding of poses of condition numbers near 1000.
+    assert np.abs(by_blocks - plain).max() <= 2e-12 + 1e3 * 4 * EPS
+
+
+def test_no_part_is_larger_than_what_one_thread_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes, product = [], np.matmul
+
+    def counted(left: np.ndarray, right: np.ndarray, out: np.ndarray) -> None:
+        sizes.append(left.shape[-2] * left.shape[-1] * right.shape[-1])
+        product(left, right, out=out)
+
+    monkeypatch.setattr(module.np, "matmul", counted)
+    rng = np.random.default_rng(2)
+    for rows, inner in ((1, 10), (60, 10), (500, 10), (10, 600)):
+        sizes.clear()
+        narrow_product(rng.random((rows, inner)), rng.random((inner, 9000)), np.empty((rows, 9000)))
+        # OpenBLAS shares out none of 2^19 multiplications. Half of that is no smaller than it has to be.
+        assert min(2**18, rows * inner * 9000) <= max(sizes) <= 2**19
+    # But a part is never so narrow that calling costs more than computing.
+    sizes.clear()
+    narrow_product(rng.random((3000, 40)), rng.random((40, 100)), np.empty((3000, 100)))
+    assert sizes == [3000 * 40 * FEWEST, 3000 * 40 * (100 - FEWEST)]

@@ -63,23 +63,6 @@ def test_it_stops_at_rounding_wherever_it_starts_nearby(
     assert reached.iterations <= 6
 
 
-def test_polishing_a_polished_pose_takes_one_step_of_noise(strut: Mechanism, pose: Pose) -> None:
-    again = newton_refine(strut.map, pose.y)
-    assert again.converged
-    assert again.iterations == 1
-    # It shows what the pose is off, and its own rounding.
-    assert again.first_step <= float(pose.bound / strut.unit) + again.noise
-
-
-def test_wanted_residual_is_reached(strut: Mechanism, pose: Pose) -> None:
-    offset = 1e-4 * np.random.default_rng(2).uniform(-1.0, 1.0, size=17)
-    reached = newton_refine(strut.map, pose.y, offset)
-    assert reached.converged
-    # The residual is as far off as rounding of the coordinates makes it: below 16 eps of products up to 4.
-    assert np.abs(strut.map.residual(reached.y) - offset).max() <= 16 * EPS * 4
-    assert np.array_equal(reached.y[17:], pose.y[17:])
-
-
 BAD = {"not a number": np.nan, "infinite": np.inf, "huge": 1e200, "zero": 0.0}
 
 
@@ -97,57 +80,6 @@ def test_member_that_fails_is_marked_and_disturbs_no_other(
         assert reached.iterations[member] == alone.iterations
         # The same operations on each member: at most the order of a sum differs.
         assert np.abs(reached.y[member] - alone.y).max() <= 2 * float(pose.bound / strut.unit)
-
-
-def test_the_factors_are_those_that_the_last_step_was_made_with(
-    strut: Mechanism, pose: Pose, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(newton, "LIMIT", 1)
-    start = displaced(pose, 4, 1e-3)
-    for reached in (newton_refine(strut.map, start), newton_refine(strut.map, np.stack([start, start]))):
-        # Rows are scaled by powers of two.
-        matrices = reached.factors.matrix / reached.factors.row_scale[..., None]
-        assert (matrices == strut.map.jacobian(start)).all()
-
-
-def test_work_counts_every_member_at_every_step(strut: Mechanism, pose: Pose) -> None:
-    batch = np.stack([displaced(pose, 1, 1e-3), pose.y, pose.y])
-    reached = newton_refine(strut.map, batch)
-    assert reached.work.factorisations == reached.work.residuals == int(reached.iterations.sum())
-
-
-def test_known_coordinates_stay_as_they_are(strut: Mechanism, pose: Pose) -> None:
-    start = displaced(pose, 3, 1e-3)
-    kept = start.copy()
-    reached = newton_refine(strut.map, start)
-    assert np.array_equal(start, kept)
-    assert np.array_equal(reached.y[17:], kept[17:])
-
-
-@settings(deadline=None)
-@given(
-    seed=st.integers(0, 2**32 - 1), power=st.floats(-16.0, -2.0), tolerance=st.sampled_from([0.0, 1e-9, 1e-3])
-)
-def test_one_start_takes_the_steps_that_it_takes_in_a_batch(
-    strut: Mechanism, pose: Pose, seed: int, power: float, tolerance: float
-) -> None:
-    start = displaced(pose, seed, 10.0**power)
-    # Of the others one ends sooner, and one later.
-    batch = np.stack([displaced(pose, seed, 1e-14), start, displaced(pose, seed, 3e-2)])
-    one, many = (newton_refine(strut.map, each, 0.0, tolerance) for each in (start, batch))
-    converged, y, first, left, iterations = (
-        part[1] for part in (many.converged, many.y, many.first_step, many.left, many.iterations)
-    )
-    # Each solves C(y) = 0 to the noise of a step, at most n eps times the condition number of coordinates
-    # up to 2, or to what it proves to be left of it.
-    noise = 2 * 17 * EPS * float(pose.condition)
-    assert one.converged == converged
-    assert np.abs(one.y - y).max() <= noise + one.left + left
-    for found, right in ((one.first_step, first), (one.left, left)):
-        # A step's size is as uncertain as the step; what it leaves goes as its square.
-        assert abs(found - right) <= noise + 1e-6 * right
-    # Noise may end the iteration one step sooner or later.
-    assert abs(int(one.iterations) - int(iterations)) <= (1 if tolerance == 0.0 else 0)
 
 
 @pytest.mark.parametrize("start", [2.0, 1.2, 1.01, 0.9])
@@ -169,9 +101,10 @@ def test_what_a_step_leaves_is_known_where_the_theorem_is_sharp(start: float) ->
     assert newton_refine(parabola, y, 0.0, np.inf).noise == 0.0
 
 
-@pytest.mark.parametrize("value", BAD.values(), ids=BAD.keys())
-def test_one_start_that_leads_nowhere_is_marked(strut: Mechanism, pose: Pose, value: float) -> None:
-    start = pose.y.copy()
-    start[:17] = value
-    assert not newton_refine(strut.map, start).converged
-    assert not newton_refine(strut.map, start[None]).converged
+def test_wanted_residual_is_reached(strut: Mechanism, pose: Pose) -> None:
+    offset = 1e-4 * np.random.default_rng(2).uniform(-1.0, 1.0, size=17)
+    reached = newton_refine(strut.map, pose.y, offset)
+    assert reached.converged
+    # The residual is as far off as rounding of the coordinates makes it: below 16 eps of products up to 4.
+    assert np.abs(strut.map.residual(reached.y) - offset).max() <= 16 * EPS * 4
+    assert np.array_equal(reached.y[17:], pose.y[17:])

@@ -4,17 +4,12 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
-from sample_cars import SampleCar, by_car
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
-from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.structure import Structure, rows_too_many, structure_of
-from pointcoord.simulation import scene_mechanism
-from validate.cost.chain import FourBarChain
 
 
 @dataclass(frozen=True)
@@ -116,38 +111,6 @@ def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
         assert [cause in causes for causes in moved] == (reached @ np.array(driven)).tolist()
 
 
-@by_car
-def test_blocks_of_a_suspension_are_those_of_scipy_and_make_its_jacobian_a_block_triangle(
-    car: SampleCar,
-) -> None:
-    mechanism = car.mechanism()
-    system = mechanism.map
-    structure = system.structure
-    require_blocks(structure, Pattern(system.reads, system.unknowns))
-    assert {(frozenset(b.rows), frozenset(b.unknowns)) for b in structure.blocks} == by_scipy(
-        Pattern(system.reads, system.unknowns)
-    )
-    assert len(structure.blocks) > 1
-    jacobian = system.jacobian(mechanism.drawn)
-    solved: list[int] = []
-    for block in structure.blocks:
-        solved += block.unknowns
-        later = np.setdiff1d(np.arange(system.unknowns), solved)
-        assert not jacobian[np.ix_(block.rows, later)].any()
-    sign, size = np.linalg.slogdet(jacobian)
-    parts = [np.linalg.slogdet(jacobian[np.ix_(b.rows, b.unknowns)]) for b in structure.blocks]
-    assert sign != 0.0
-    assert sum(part[1] for part in parts) == pytest.approx(size, abs=1e-9)
-
-
-@pytest.mark.parametrize("rockers", [1, 2, 30])
-def test_a_chain_of_rockers_is_solved_rocker_after_rocker(rockers: int) -> None:
-    system = scene_mechanism(FourBarChain(rockers).scene()).map
-    assert [b.unknowns for b in system.structure.blocks] == [
-        (3 * j, 3 * j + 1, 3 * j + 2) for j in range(rockers)
-    ]
-
-
 def test_the_blocks_of_a_long_chain_or_circle_are_no_recursion() -> None:
     n = 30_000
     chain = [{i, i + 1} for i in range(n - 1)]
@@ -168,31 +131,3 @@ def test_rows_that_cannot_be_paired_with_unknowns_are_one_block_of_everything() 
         assert block.rows == tuple(range(len(reads)))
         assert block.unknowns == tuple(range(unknowns))
         assert set(block.reads) == set().union(*reads) - set(range(unknowns))
-
-
-@pytest.mark.parametrize(
-    ("product", "read"),
-    [
-        (Product(1.0, (0, 1), (1, 2)), {0, 1, 2}),
-        (Product(2.0, (0, 0), (1, 2)), set()),
-        (Product(2.0, (0, 1), (2, 2)), set()),
-    ],
-)
-def test_a_row_reads_the_coordinates_of_its_differences(product: Product, read: set[int]) -> None:
-    system: QuadraticMap = quadratic_map([(product,)], 1, 3)
-    assert system.reads == (read,)
-
-
-@settings(max_examples=20)
-@given(st.integers(0, 2**32 - 1))
-def test_block_order_does_not_depend_on_how_rows_are_numbered(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    n = 10
-    entries = rng.random((n, n)) < 0.15
-    entries[np.arange(n), rng.permutation(n)] = True
-    turned = rng.permutation(n)
-    plain, other = (
-        structure_of(Pattern([set(np.flatnonzero(row).tolist()) for row in m], n))
-        for m in (entries, entries[turned])
-    )
-    assert {b.unknowns for b in plain.blocks} == {b.unknowns for b in other.blocks}

@@ -19,7 +19,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from pointcoord import PointcoordError, Scene, SceneError, UnknownName, simulate
+from pointcoord import PointcoordError, Scene, SceneError, simulate
 from pointcoord.errors import visible
 from pointcoord.results.even_instants import even_instants
 from pointcoord.simulation import TRUNCATION_SHARE, scene_mechanism
@@ -29,10 +29,8 @@ from pointcoord.toml_text import LARGEST, read_stream
 BOUNCE = Scene.load("bounce")
 CONTENT = BOUNCE.model_dump(exclude_none=True)
 plain = settings(deadline=None)
-
-# Red, the start of a line, a turned line, no width at all, a line that is none, half a character.
-STEERING = "\x1b[31m\r\n\u202etxt\u200b\u2028\udc80"
-STEERED = r"\x1b[31m\r\n\u202etxt\u200b\u2028\udc80"
+# Red, the start of a line, a turned line, no width at all, a line that is none, half a character, no end.
+STEERING = "\x1b[31m\r\n\u202etxt\u200b\u2028\udc80" + 10_000 * "x"
 
 
 def bounce_text() -> str:
@@ -75,26 +73,17 @@ def test_misspelt_keys_are_told_together_each_with_the_key_that_was_meant() -> N
     with pytest.raises(SceneError) as caught:
         BOUNCE.model_copy(update={"inputs": {**BOUNCE.inputs, "rack": rack}})
     told = str(caught.value)
-    # Two faults, not four: a key that is misspelt is not missing too.
-    assert "rack.table.time: there is no such key (did you mean 'times'?)" in told
-    assert "(and 1 more: inputs.rack.table.value: there is no such key (did you mean 'values'?))" in told
+    assert "rack.table.time: there is no such key (did you mean 'times'?), nor value (did you mean" in told
     assert "missing" not in told
 
 
 def test_faults_are_told_up_to_a_number_and_all_are_counted() -> None:
-    many = {f"step{i}": 0.1 for i in range(9)}
-    with pytest.raises(SceneError, match=r"step0: .*\(and 8 more: step1: .*; step5: [^;]*; 3 others\)"):
-        BOUNCE.time.model_copy(update=many)
+    many = {"polynomial": ["a"] * 9}
+    with pytest.raises(SceneError, match=r"\.0: .*\(and 8 more: polynomial\.1: .*; 3 others\)"):
+        BOUNCE.inputs["arm_angle"].model_copy(update=many)
     # A key that is near to one that is given is no slip of that one.
     with pytest.raises(SceneError, match="starts: there is no such key; allowed"):
         BOUNCE.time.model_copy(update={"starts": 0.1})
-
-
-def test_a_scene_whose_dictionaries_were_written_later_is_refused_when_it_is_solved() -> None:
-    scene = Scene.from_mapping(CONTENT)
-    scene.mechanism.points["strut_top"] = (1.0, float("nan"), 2.0)
-    with pytest.raises(SceneError, match=r"mechanism\.points\.strut_top\.1: .*finite number, not nan"):
-        simulate(scene)
 
 
 def test_a_tolerance_that_the_method_cannot_hold_is_noted_with_the_one_that_it_held() -> None:
@@ -145,12 +134,6 @@ def test_a_number_of_numpy_is_a_number(kind: Callable[[int], Any]) -> None:
     assert type(scene.time.samples) is int
 
 
-@pytest.mark.parametrize("bad", [np.bool_(True), np.complex128(1.0), np.array([1.0]), np.float64("nan")])
-def test_what_is_no_number_of_numpy_is_none_here(bad: Any) -> None:
-    with pytest.raises(SceneError, match=r"inputs\.rack\.constant"):
-        Scene.from_mapping({**CONTENT, "inputs": {**CONTENT["inputs"], "rack": {"constant": bad}}})
-
-
 # --------------------------------------------------------------------------------------------- instants
 
 
@@ -172,35 +155,6 @@ def test_instants_are_the_decimal_numbers_that_a_person_would_write(
     assert (instants[0], instants[-1]) == (float(start), float(stop))
 
 
-def test_instants_of_a_scene_are_printed_short() -> None:
-    assert max(len(repr(t)) for t in BOUNCE.instants.tolist()) == len("0.02")
-    assert repr(even_instants(0.0, 2.6, 131)[47].item()) == "0.94"  # 0.02 * 47 is 0.9400000000000001
-
-
-@plain
-@given(
-    start=st.floats(-1e15, 1e15), stop=st.floats(-1e15, 1e15), samples=st.integers(2, 300) | st.just(100_000)
-)
-def test_instants_of_any_times_lie_between_them_and_do_not_go_back(
-    start: float, stop: float, samples: int
-) -> None:
-    start, stop = min(start, stop), max(start, stop)
-    instants = even_instants(start, stop, samples)
-    assert (instants[0], instants[-1]) == (start, stop)
-    assert (np.diff(instants) >= 0.0).all()
-    # The even numbers to some roundings of the larger end, in two ways.
-    even = np.linspace(start, stop, samples)
-    spare = 4 * np.finfo(float).eps * max(abs(start), abs(stop)) + samples * 5e-324
-    assert np.abs(instants - even).max() <= spare
-
-
-def test_instants_of_the_shortest_motions_do_not_pass_their_stop() -> None:
-    # Steps below the smallest normal number are rounded to whole units of 5e-324.
-    instants = even_instants(0.0, 1e-320, 131)
-    assert (instants <= 1e-320).all()
-    assert instants[-1] == 1e-320
-
-
 # ------------------------------------------------------------------------------------------------- text
 
 
@@ -210,20 +164,6 @@ def test_a_byte_order_mark_is_no_part_of_a_scene(tmp_path: Path, source: str) ->
     path = tmp_path / "scene.toml"
     path.write_bytes(text)
     assert (Scene.load(path) if source == "file" else Scene.read(io.BytesIO(text))) == BOUNCE
-
-
-def test_a_stream_is_read_to_its_end_in_pieces_and_told_by_its_name() -> None:
-    text = bounce_text().encode()
-    reader, writer = os.pipe()
-    with os.fdopen(reader, "rb", buffering=0) as pipe:
-        os.write(writer, text[:100])
-        os.write(writer, text[100:])
-        os.close(writer)
-        assert Scene.read(pipe) == BOUNCE
-    with pytest.raises(SceneError, match=r"^standard input: is not TOML"):
-        Scene.read(io.BytesIO(b"= 1"))
-    with pytest.raises(SceneError, match=r"^mine: is not TOML"):
-        Scene.read(io.BytesIO(b"= 1"), "mine")
 
 
 class Endless(io.RawIOBase):
@@ -249,14 +189,6 @@ def test_reading_stops_at_64_megabytes() -> None:
     assert len(read_stream(io.BytesIO(b"#" * LARGEST), "")) == LARGEST
 
 
-def test_a_file_of_more_than_64_megabytes_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    with path.open("wb") as stream:
-        stream.truncate(LARGEST + 1)  # takes no room on the disk
-    with pytest.raises(SceneError, match="at most 64 MB"):
-        Scene.load(path)
-
-
 def test_devices_pipes_and_sockets_are_refused_and_never_waited_for(tmp_path: Path) -> None:
     pipe, door = tmp_path / "pipe", tmp_path / "door"
     os.mkfifo(pipe)
@@ -267,62 +199,33 @@ def test_devices_pipes_and_sockets_are_refused_and_never_waited_for(tmp_path: Pa
                 Scene.load(path)
 
 
-def misnamed(changes: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-    content: dict[str, Any] = pickle.loads(pickle.dumps(CONTENT))
-    changes(content)
-    return content
+def part_with(part: str, name: str, value: object) -> Scene:
+    return Scene.from_mapping({**CONTENT, part: {**CONTENT[part], name: value}})
 
 
 MISNAMED: dict[str, Callable[[], object]] = {
-    "title": lambda: simulate(
-        Scene.from_mapping(
-            misnamed(
-                lambda c: (
-                    c.update(title=STEERING[:-1]),  # no half characters in a scene
-                    c["mechanism"]["points"].update(strut_lower=c["mechanism"]["points"]["lower_ball_joint"]),
-                )
-            )
-        )
-    ),
     "file": lambda: Scene.load(STEERING),
     "key": lambda: Scene.from_mapping({**CONTENT, STEERING: 1}),
-    "key of time": lambda: Scene.from_mapping(misnamed(lambda c: c["time"].update({STEERING: 1}))),
-    "point": lambda: Scene.from_mapping(
-        misnamed(lambda c: c["mechanism"]["points"].update({STEERING: (1.0, 2.0, 3.0)}))
+    "key of time": lambda: part_with("time", STEERING, 1),
+    "point": lambda: part_with(
+        "mechanism", "points", {**CONTENT["mechanism"]["points"], STEERING: (1.0, 2.0, 3.0)}
     ),
-    "input": lambda: Scene.from_mapping(misnamed(lambda c: c["inputs"].update({STEERING: {"constant": 1}}))),
-    "law": lambda: Scene.from_mapping(misnamed(lambda c: c["inputs"]["rack"].update({STEERING: 1}))),
+    "input": lambda: part_with("inputs", STEERING, {"constant": 1}),
     "effect": lambda: Scene.from_mapping({**CONTENT, "effects": [STEERING]}),
     "value": lambda: Scene.from_mapping({**CONTENT, "tolerance": STEERING}),
     "source": lambda: Scene.from_mapping({**CONTENT, "tolerance": 0}, STEERING),
-    "stream": lambda: Scene.read(io.BytesIO(b"a = \x1b"), STEERING),
     "asked for": lambda: simulate(BOUNCE).position[STEERING],
-    "method": lambda: simulate(BOUNCE, STEERING),
 }
 
 
 @pytest.mark.parametrize("place", MISNAMED)
-def test_what_would_steer_a_terminal_is_shown_as_text(place: str) -> None:
+def test_what_would_steer_a_terminal_is_shown_as_text_in_a_few_lines(place: str) -> None:
     with pytest.raises(PointcoordError) as caught:
         MISNAMED[place]()
     message = str(caught.value)
     assert message.isprintable()
-    assert r"\x1b[31m" in message or place == "stream"
-    message.encode("utf-8")
-
-
-def test_a_name_of_any_length_makes_a_message_of_a_few_lines() -> None:
-    long = "x" * 10_000
-    for content in (
-        {**CONTENT, long: 1},
-        misnamed(lambda c: c["mechanism"]["points"].update({long: (1.0, 2.0, 3.0)})),
-        misnamed(lambda c: c["inputs"].update({long: {"constant": 1}})),
-        {**CONTENT, "effects": [long]},
-        {**CONTENT, "tolerance": long},
-    ):
-        with pytest.raises(SceneError) as caught:
-            Scene.from_mapping(content)
-        assert len(str(caught.value)) < 500
+    assert r"\x1b[31m" in message
+    assert len(message) < 600
 
 
 @given(text=st.text(st.characters(), max_size=40))
@@ -333,20 +236,6 @@ def test_visible_text_prints_and_keeps_what_prints(text: str) -> None:
     assert visible(visible(10 * text)) == visible(10 * text)
     if text.isprintable():
         assert shown == text
-
-
-def test_of_a_long_word_in_a_message_the_beginning_is_shown_and_of_a_path_every_part() -> None:
-    path = "/".join(["folder"] * 20) + "/scene.toml"
-    assert visible(f"{path}: no {'x' * 10_000!r}, 1") == f"{path}: no '{'x' * 56}...', 1"
-
-
-def test_steering_characters_are_spelled_out() -> None:
-    assert visible(STEERING) == STEERED
-    assert visible("Straße 7 ½ \\") == "Straße 7 ½ \\"
-
-
-def test_names_that_exist_are_offered_in_visible_text() -> None:
-    assert r"\x1b" in str(UnknownName("point", "a", ["b\x1b"]))
 
 
 def test_a_scene_that_nobody_wrote_into_is_not_checked_again_and_one_that_was_is() -> None:

@@ -4,10 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
-from sample_cars import SAMPLES, SampleCar, by_car
+from sample_cars import SAMPLES
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
@@ -40,19 +38,6 @@ def chain_of(
     return build_chain(mechanism, functions, pose, 0.0, stop, Settings(tolerance, derivative=2))
 
 
-def plain_loop(chain: Chain, instants: Array, derivatives: int) -> Array:
-    """The definition: each instant on its own, each power on its own."""
-    result = np.zeros((derivatives + 1, len(instants), chain.segments[0].coefficients.shape[-1]))
-    for i, t in enumerate(instants):
-        segment = [s for s in chain.segments if s.start <= t][-1]
-        s = (t - segment.start) / segment.scale
-        for d in range(derivatives + 1):
-            for k in range(d, len(segment.coefficients)):
-                falling = float(np.prod(np.arange(k - d + 1, k + 1)))
-                result[d, i] += falling * segment.coefficients[k] * s ** (k - d) / segment.scale**d
-    return result
-
-
 def loop_size(chain: Chain, derivatives: int) -> Array:
     """Largest sum of magnitudes of the terms of each derivative, over the segments."""
     sizes = []
@@ -68,19 +53,6 @@ def loop_size(chain: Chain, derivatives: int) -> Array:
             ]
         )
     return np.max(sizes, axis=0)
-
-
-@by_mechanism
-@by_motion
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-10, 1e-12])
-def test_segments_follow_on_without_a_gap(
-    mechanism: Mechanism, functions: dict[str, TimeFunction], tolerance: float
-) -> None:
-    chain = chain_of(mechanism, functions, tolerance)
-    assert chain.segments[0].start == 0.0
-    assert chain.stop == 2.0
-    for before, after in zip(chain.segments[:-1], chain.segments[1:], strict=True):
-        assert before.stop == after.start
 
 
 @by_mechanism
@@ -123,77 +95,9 @@ def test_breaks_of_a_table_are_joints_of_the_chain(mechanism: Mechanism) -> None
         assert abs(rack * float(mechanism.unit) - TABLE["rack"].series(middle, 0)[0]) <= 1e3 * EPS * 30.0
 
 
-@settings(deadline=None, max_examples=max(10, settings.default.max_examples // 5))
-@given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, 40), derivatives=st.integers(0, 3))
-def test_evaluation_in_blocks_is_the_plain_loop_over_instants(
-    seed: int, count: int, derivatives: int
-) -> None:
-    rng = np.random.default_rng(seed)
-    joints = np.cumsum([0.0, *rng.uniform(0.1, 1.0, size=rng.integers(1, 5))])
-    segments = tuple(
-        Segment(a, b, float(2.0 ** rng.integers(-2, 2)), rng.normal(size=(6, 4)))
-        for a, b in zip(joints[:-1].tolist(), joints[1:].tolist(), strict=True)
-    )
-    chain = Chain(segments, Work())
-    instants = rng.permutation(np.concatenate([rng.uniform(0.0, joints[-1], size=count), joints, joints[:1]]))
-    values = evaluate(chain, [segment.coefficients for segment in segments], instants, derivatives)
-    assert values.shape == (derivatives + 1, len(instants), 4)
-    # Up to 16 roundings per term; at a joint both belong to the later segment.
-    tolerance = 32 * EPS * loop_size(chain, derivatives)[:, None, None] * 4
-    assert (np.abs(values - plain_loop(chain, instants, derivatives)) <= tolerance).all()
-
-
-def test_evaluation_of_more_instants_than_a_block_holds_is_the_plain_loop(strut: Mechanism) -> None:
-    chain = chain_of(strut, BOTH, 1e-9)
-    rng = np.random.default_rng(9)
-    instants = rng.uniform(0.0, 2.0, size=1500)
-    columns = [segment.coefficients[:, :3] for segment in chain.segments]
-    short = Chain(
-        tuple(Segment(s.start, s.stop, s.scale, c) for s, c in zip(chain.segments, columns, strict=True)),
-        Work(),
-    )
-    for order in (instants, np.sort(instants), np.sort(instants)[::-1].copy()):
-        values = evaluate(short, columns, order, 2)
-        # Up to 60 roundings per sum of 21 terms, twice.
-        tolerance = 2 * 60 * EPS * loop_size(short, 2)[:, None, None]
-        assert (np.abs(values - plain_loop(short, order, 2)) <= tolerance).all()
-
-
 def largest_gap(series: Motion, newton: Motion, quantity: str) -> float:
     ours, theirs = getattr(series, quantity), getattr(newton, quantity)
     return max(float(np.abs(ours[name] - theirs[name]).max()) for name in ours)
-
-
-@by_car
-@pytest.mark.parametrize(
-    "arm", [(0.8, 0.25, 0.0625), {"sine": {"amplitude": 0.4, "angular_frequency": 2.0, "offset": 1.5}}]
-)
-def test_error_against_newton_falls_with_the_tolerance_and_stays_below_it(
-    make_scene: Callable[..., Scene], arm: object, car: SampleCar
-) -> None:
-    finest = make_scene(arm, (0.0, 20.0), samples=201, tolerance=1e-13, car=car)
-    newton = simulate(finest, "newton")
-    bound = float(newton.proof().bound.max())
-    gaps = []
-    for tolerance in (1e0, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10):
-        series = simulate(make_scene(arm, (0.0, 20.0), samples=201, tolerance=tolerance, car=car))
-        gaps.append(largest_gap(series, newton, "position"))
-        # Rounding of the series adds to that of Newton's poses: as much again, and its 20 terms.
-        assert gaps[-1] <= tolerance + 4 * bound
-    # It does fall: a motion cut more finely is more accurate, down to rounding.
-    assert gaps[-1] < 1e-3 * gaps[0]
-
-
-@pytest.mark.parametrize("tolerance", [1e-12, 1e-13, 1e-16, 1e-30])
-def test_tolerance_below_rounding_is_not_taken_for_a_singular_pose(
-    make_scene: Callable[..., Scene], tolerance: float
-) -> None:
-    # The condition number of the bounce stays below 200: nothing is singular. The tolerance is met as far
-    # as rounding allows.
-    series = simulate(make_scene(stop=2.6, tolerance=tolerance))
-    newton = simulate(make_scene(stop=2.6), "newton")
-    bound = float(newton.proof().bound.max())
-    assert largest_gap(series, newton, "position") <= tolerance + 4 * bound
 
 
 def test_motion_that_meets_the_end_of_its_range_stops_there_with_what_it_has(
@@ -217,49 +121,6 @@ def test_motion_that_meets_the_end_of_its_range_stops_there_with_what_it_has(
     assert gap <= 1e-9 + 4 * float(partial["newton"].proof().bound.max())
     inside = partial["series"].at(end - 1e-4).position["strut_lower"]
     assert np.isfinite(inside).all()
-
-
-@by_car
-def test_motion_that_ends_where_it_starts_has_rates(make_scene: Callable[..., Scene], car: SampleCar) -> None:
-    one = simulate(make_scene(car=car, rack=(0.0, 40.0), start=0.7, stop=0.7, samples=1))
-    many = simulate(make_scene(car=car, rack=(0.0, 40.0), start=0.7, stop=1.4, samples=2))
-    gain = one.solved.readout.mechanism.carried_gain
-    for quantity in ("position", "velocity", "acceleration"):
-        first, other = getattr(one, quantity), getattr(many, quantity)
-        largest = max(np.abs(first[name]).max() for name in one.position)
-        for name in one.position:
-            # The same pose, solved the same way; products of longer series round the sums that make a carried
-            # point in another order, which are at most the gain times as large as its carriers' states.
-            assert np.abs(first[name][0] - other[name][0]).max() <= 8 * EPS * gain * largest
-
-
-@by_car
-def test_batch_of_cars_shares_its_segments_and_moves_as_each(car: SampleCar) -> None:
-    shifts = np.array([0.0, 3.0, -5.0])
-    points = {name: np.array([p] * 3, dtype=float) for name, p in car.points.items()}
-    points[car.topology.inboard][:, 1] += shifts
-    cars, n = car.mechanism(points), car.topology.layout.unknowns
-    batch = chain_of(cars, BOUNCE, 1e-9)
-    instants = np.linspace(0.0, 2.0, 7)
-    together = evaluate(batch, [s.coefficients for s in batch.segments], instants, 2)
-    for i in range(3):
-        alone = chain_of(car.mechanism({name: p[i] for name, p in points.items()}), BOUNCE, 1e-9)
-        values = evaluate(alone, [s.coefficients for s in alone.segments], instants, 2)
-        # Both chains keep the tolerance, relative to the size of each derivative.
-        tolerance = 2e-9 * np.maximum(loop_size(alone, 2), 1.0)[:, None, None]
-        assert (np.abs(together[:, i] - values)[..., :n] <= tolerance).all()
-
-
-@pytest.mark.parametrize("tolerance", [1e-9, 1.0, 10.0, 100.0])
-def test_no_tolerance_lets_a_motion_pass_the_end_of_its_branch(
-    make_scene: Callable[..., Scene], tolerance: float
-) -> None:
-    # With the rack a tenth of a millimetre off the middle the arm cannot go below 35.27 degrees.
-    scene = make_scene((1.0, -0.42), (-0.1,), stop=1.0, tolerance=tolerance)
-    for method in ("newton", "series"):
-        with pytest.raises(AssemblyError, match="bring 'arm_angle' back") as caught:
-            simulate(scene, method)
-        assert np.rad2deg(caught.value.reached["arm_angle"]) == pytest.approx(35.27, abs=0.01)
 
 
 @pytest.mark.parametrize("tolerance", [1e-9, 1e9])
@@ -291,3 +152,30 @@ def test_a_motion_that_cannot_go_on_names_the_input_that_moves(
     assert abs(error.reached["rack"] - RACK_END) <= 1e-9 * 219
     assert error.limits[0].startswith("link ")
     assert all("tie_rod" in name or "strut_lower" in name for name in error.limits[:3])
+
+
+@pytest.mark.parametrize("batch", [(), (3,), (2, 3)])
+@pytest.mark.parametrize("size", [1, 9])
+@pytest.mark.parametrize("ordered", [True, False])
+def test_sums_are_those_of_the_polynomials(batch: tuple[int, ...], size: int, ordered: bool) -> None:
+    rng = np.random.default_rng(5)
+    ends, scales, orders = (0.0, 0.5, 0.75, 2.0), (1.0, 0.25, 2.0), (6, 3, 7)
+    segments = tuple(
+        Segment(start, stop, scale, rng.normal(size=(*batch, order + 1, size)))
+        for start, stop, scale, order in zip(ends[:-1], ends[1:], scales, orders, strict=True)
+    )
+    chain = Chain(segments, Work())
+    # More than a block of them in the last segment.
+    instants = np.sort(rng.uniform(0.0, 2.0, 3000))
+    if not ordered:
+        instants = rng.permutation(instants)
+    found = evaluate(chain, [segment.coefficients for segment in segments], instants, 2)
+    assert found.shape == (3, *batch, 3000, size)
+    for number, t in list(enumerate(instants.tolist()))[::149]:
+        segment = next(s for s in reversed(segments) if s.start <= t)
+        for place in np.ndindex(*batch):
+            for k in range(size):
+                series = np.polynomial.Polynomial(segment.coefficients[(*place, slice(None), k)])
+                for d in range(3):
+                    one = series.deriv(d)((t - segment.start) / segment.scale) / segment.scale**d
+                    assert found[(d, *place, number, k)] == pytest.approx(one, rel=1e-11, abs=1e-11)
