@@ -17,7 +17,16 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, finite, short
+from validate.hardpoint_files.contents import (
+    Axle,
+    Contents,
+    FilePoint,
+    Place,
+    SpinAxis,
+    number_of,
+    place_of,
+    short,
+)
 from validate.tables.errors import FileError
 
 CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
@@ -63,18 +72,17 @@ class _Json:
         clean = _COMMENT.sub(_blank, text)
         try:
             data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=_no_number)
-        except json.JSONDecodeError as error:
-            raise FileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
         except (ValueError, RecursionError, DecimalException) as error:
-            raise FileError(source, 0, f"is no JSON: {error}", FORM) from None
+            raise FileError(source, getattr(error, "lineno", 0), f"is no JSON: {error}", FORM) from None
         if not isinstance(data, dict):
             raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
         return cls(source, data, clean)
 
     @property
-    def called(self) -> tuple[Any, Any]:
-        """Its type and its template, of which either may be anything."""
-        return self.data.get("Type"), self.data.get("Template")
+    def is_suspension(self) -> bool:
+        """Whether it has the points of one."""
+        template = self.data.get("Template")
+        return self.data.get("Type") == "Suspension" and isinstance(template, str) and bool(template)
 
     def refuse(self, told: str, allowed: str, *keys: str) -> FileError:
         """What is wrong at the place of keys."""
@@ -84,13 +92,9 @@ class _Json:
         """The line of a key inside others; 0 if it is not there as written."""
         at = 0
         for key in keys:
-            written = re.escape(json.dumps(key, ensure_ascii=False))
-            found = re.compile(written + r"\s*:").search(self.text, at) or re.compile(written).search(
-                self.text, at
-            )
-            if found is None:
+            at = self.text.find(json.dumps(key, ensure_ascii=False), at)
+            if at < 0:
                 return 0
-            at = found.start()
         return self.text.count("\n", 0, at) + 1
 
     def named(self, name: object, place: str, *keys: str) -> _Json:
@@ -106,29 +110,23 @@ class _Json:
         data = read_file(path, f"the path of a file that {self.source} names")
         return _Json.of(data.decode("utf-8-sig", "replace"), str(path))
 
-    def numbers(self, value: object, axes: str, name: str, *keys: str) -> list[Decimal]:
-        """A number for each axis, which are called so together."""
-        name, words = short(name), {3: "three", 4: "four"}[len(axes)]
-        if not isinstance(value, list) or len(value) != len(axes):
-            told = f"{len(value)} values" if isinstance(value, list) else f"{short(str(value))}"
-            raise self.refuse(f"{name} has {told}", f"a list of {words} numbers", *keys)
-        for axis, number in zip(axes, value, strict=True):
-            if not isinstance(number, Decimal):
-                raise self.refuse(f"{axis} of {name} is {short(str(number))}", "a number", *keys)
-            finite(number, self.source, self.line(*keys), f"{axis} of {name}")
-        return value
-
     def place(self, value: object, name: str, *keys: str) -> Place:
         """Three coordinates."""
-        x, y, z = self.numbers(value, "xyz", name, *keys)
-        return x, y, z
+        if not isinstance(value, list) or len(value) != 3:
+            told = f"{len(value)} values" if isinstance(value, list) else f"{short(str(value))}"
+            raise self.refuse(f"{short(name)} has {told}", "a list of three numbers", *keys)
+        numbers = [one if isinstance(one, Decimal) else str(one) for one in value]
+        return place_of(numbers, self.source, self.line(*keys), name)
 
     def angle(self, key: str) -> float:
         """An angle at a key, rad; 0 if it is not there."""
         value = self.data.get(key, Decimal(0))
-        if not isinstance(value, Decimal) or not abs(finite(value, self.source, self.line(key), key)) < 90:
-            raise self.refuse(f"{key} is {short(str(value))}", "an angle below 90 deg", key)
-        return radians(float(value))
+        number = number_of(
+            value if isinstance(value, Decimal) else str(value), self.source, self.line(key), key
+        )
+        if not abs(number) < 90:
+            raise self.refuse(f"{key} is {number}", "an angle below 90 deg", key)
+        return radians(float(number))
 
 
 def read(text: str, source: str) -> Contents:
@@ -139,27 +137,15 @@ def read(text: str, source: str) -> Contents:
             file that is not there.
         SceneError: a file that it names cannot be read.
     """
-    file, on_the_way = _Json.of(text, source), {source}
-    while not _is_suspension(file):
-        # A simulation's own files name the vehicle.
-        within = file.data.get("Vehicle")
-        name = within.get("Input File") if isinstance(within, dict) else file.data.get("Vehicle Input File")
-        inner = file.named(name, "vehicle") if isinstance(name, str) else file
-        if inner.source in on_the_way:
-            return _vehicle(file)
-        on_the_way.add(inner.source)
-        file = inner
+    file = _Json.of(text, source)
+    if not file.is_suspension:
+        return _vehicle(file)
     points, axle = _suspension(file)
     notes = (
         "points are in the frame of the suspension, which the car's own file puts somewhere",
         "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
     )
     return Contents(tuple(points), {"": replace(axle, notes=notes)})
-
-
-def _is_suspension(file: _Json) -> bool:
-    kind, template = file.called
-    return kind == "Suspension" and isinstance(template, str) and bool(template)
 
 
 def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
@@ -178,7 +164,7 @@ def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
         f"{key} {file.data[key]}" if key in file.data else f"no {key}, which is 0 then"
         for key in (CAMBER, TOE)
     )
-    return points, Axle(file.called[1], {}, SpinAxis(axis, " and ".join(taken)))
+    return points, Axle(file.data["Template"], {}, SpinAxis(axis, " and ".join(taken)))
 
 
 # A vehicle, and the files that it names.
@@ -186,12 +172,10 @@ def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
 
 def _vehicle(file: _Json) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
-    (kind, template), axles = file.called, file.data.get(AXLES)
+    kind, axles = file.data.get("Type"), file.data.get(AXLES)
     if kind != "Vehicle" or not isinstance(axles, list):
-        told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
-        if not isinstance(kind, str):
-            told = "is JSON without a Type, which every file of Chrono's has"
-        raise file.refuse(told, KINDS, "Type")
+        of = f"Type {short(str(kind))} and Template {short(str(file.data.get('Template')))}"
+        raise file.refuse(f"is a file of Chrono's of {of}", KINDS, "Type")
     if not axles or not all(isinstance(axle, dict) for axle in axles):
         raise file.refuse(f"has no {AXLES}", f"one with {SUSPENSION} each", AXLES)
     places = [
@@ -205,8 +189,8 @@ def _vehicle(file: _Json) -> Contents:
             told = f"{PLACE} of its {label} axle has y {place[1]}, beside the middle of the car"
             raise file.refuse(told, "y 0", PLACE)
         own = file.named(axle.get(SUSPENSION), f"{SUSPENSION} of an axle", AXLES)
-        if not _is_suspension(own):
-            told = f"is of Type {short(str(own.called[0]))}, and {file.source} has it as a suspension"
+        if not own.is_suspension:
+            told = f"is of Type {short(str(own.data.get('Type')))}, and {file.source} has it as a suspension"
             raise own.refuse(told, "Type Suspension with a Template", "Type")
         theirs, alone = _suspension(own)
         for point in theirs:
@@ -236,30 +220,24 @@ def _steering(axle: Mapping[str, Any], file: _Json) -> tuple[str, tuple[str, ...
     index, steerings = axle.get(STEERING), file.data.get(STEERINGS)
     # Chrono's -1 is an axle that is not steered.
     if index is None or index == -1:
-        return (
-            "the axle is not steered: the chassis holds the tie rod's inner end, as an unmoved rack does",
-            (),
-        )
+        held = "the axle is not steered: the chassis holds the tie rod's inner end, as an unmoved rack does"
+        return held, ()
     there = steerings if isinstance(steerings, list) else []
-    if not isinstance(index, Decimal) or index != int(index) or not 0 <= index < len(there):
+    if not isinstance(index, Decimal) or index not in range(len(there)):
         told = f"{STEERING} is {short(str(index))}, but there are {len(there)} {STEERINGS}"
         raise file.refuse(told, "the number of one, from 0", STEERING)
     one = there[int(index)] if isinstance(there[int(index)], dict) else {}
     name = one.get("Input File")
-    kind = short(str(file.named(name, f"Input File of {STEERINGS} {index}", STEERINGS).called[1]))
-    if kind != short(RACK):
-        note = f"it is steered by a {kind} ({name}), here by a straight rack"
-        return note, (
-            f"{note}, which moves the tie rod's inner end otherwise once it is steered; "
-            "with the rack as drawn they are the same",
+    kind = str(file.named(name, f"Input File of {STEERINGS} {index}", STEERINGS).data.get("Template"))
+    note = f"it is steered by a {short(kind)} ({name}), here by a rack straight across the car"
+    turned = one.get(ORIENTATION, [1, 0, 0, 0])
+    if kind == RACK and isinstance(turned, list) and len(turned) == 4:
+        w, x, y, z = (
+            float(number_of(str(one), file.source, file.line(ORIENTATION), ORIENTATION)) for one in turned
         )
-    turned = one.get(ORIENTATION, [Decimal(1), Decimal(0), Decimal(0), Decimal(0)])
-    w, x, y, z = (float(n) for n in file.numbers(turned, "wxyz", ORIENTATION, ORIENTATION))
-    # The rack slides along its own y axis (ChRackPinion.cpp), turned by the quaternion.
-    along = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
-    note = f"it is steered by a {kind} ({name}), which moves the tie rod's inner end across the car, as here"
-    if abs(along[0]) <= ACROSS and abs(along[2]) <= ACROSS:
-        return note, ()
-    words = ", ".join(f"{part:.6g}" for part in along)
-    note = f"it is steered by a {kind} ({name}) that runs along {words}, here straight across the car"
+        # The rack slides along its own y axis (ChRackPinion.cpp), turned by the quaternion.
+        along = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
+        if abs(along[0]) <= ACROSS and abs(along[2]) <= ACROSS:
+            return note, ()
+        note += f"; its own runs along {', '.join(f'{part:.6g}' for part in along)}"
     return note, (f"{note}; with the rack as drawn they are the same",)

@@ -25,9 +25,8 @@ class FilePoint:
         name: what the file calls it.
         place: its coordinates in the file's axes and unit.
         line: where it is, counted from 1.
-        side: the wheel that the file says it belongs to, left or right; empty if it does not say.
-        part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        error: why it is no point; None of one. value: the first number that such a line has, if any.
+        side, part: the wheel and the axle that the file says it belongs to; empty if it does not say.
+        error: why it is no point; None of one.
     """
 
     name: str
@@ -36,7 +35,6 @@ class FilePoint:
     side: str = ""
     part: str = ""
     error: FileError | None = None
-    value: str = ""
 
     def of(self, part: str, side: str) -> bool:
         """Whether it may belong to that wheel; an empty axle or side leaves it open."""
@@ -77,14 +75,12 @@ class Contents:
         points: in the order of the file.
         axles: by part; what is said of the whole file under the empty one.
         unit: of its lengths, if it says so.
-        axes: where x, y and z point, if it says so.
         spoilt: lines that hold no point; right unless they are called like one.
     """
 
     points: tuple[FilePoint, ...]
     axles: Mapping[str, Axle] = field(default_factory=dict)
     unit: str = ""
-    axes: tuple[str, ...] = ()
     spoilt: tuple[FilePoint, ...] = ()
 
     def axle(self, part: str) -> Axle:
@@ -92,42 +88,31 @@ class Contents:
         return self.axles.get(part) or self.axles.get("", Axle())
 
 
-def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
-    """A finite number with the digits of its text.
+def number_of(written: str | Decimal, source: str, line: int, what: str) -> Decimal:
+    """A number that a coordinate or an angle can be, with the digits of its text.
 
     Raises:
-        FileError: it is none.
+        FileError: it is none, not finite, or farther off than any car.
     """
     try:
-        number = Decimal(text.strip())
+        number = Decimal(written.strip() if isinstance(written, str) else written)
     except InvalidOperation:
-        raise FileError(source, line, f"{what} is {short(text)}", "a number") from None
-    return finite(number, source, line, what)
-
-
-def place_of(numbers: Sequence[str], source: str, line: int, name: str) -> Place:
-    """Three coordinates with the digits of their texts.
-
-    Raises:
-        FileError: one is no number.
-    """
-    x, y, z = (
-        decimal_of(number, source, line, f"{axis} of {short(name)}")
-        for axis, number in zip("xyz", numbers, strict=True)
-    )
-    return x, y, z
-
-
-def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
-    """A number that a coordinate or an angle can be.
-
-    Raises:
-        FileError: it is not finite, or farther off than any car.
-    """
+        raise FileError(source, line, f"{what} is {short(str(written))}", "a number") from None
     # The exponent first: 1e-999999999 compares as small and has a billion digits.
     if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
         raise FileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
     return number
+
+
+def place_of(numbers: Sequence[str | Decimal], source: str, line: int, name: str) -> Place:
+    """Three coordinates.
+
+    Raises:
+        FileError: one is no number.
+    """
+    axes = zip("xyz", numbers, strict=True)
+    x, y, z = (number_of(number, source, line, f"{axis} of {short(name)}") for axis, number in axes)
+    return x, y, z
 
 
 def plain(name: str) -> str:
@@ -142,5 +127,4 @@ def words_of(text: str) -> frozenset[str]:
 
 def short(text: str) -> str:
     """A text of a file in at most 60 characters, in quotes."""
-    quoted = repr(text if len(text) <= 60 else text[:57] + "...")
-    return shown(quoted)
+    return shown(repr(text if len(text) <= 60 else text[:57] + "..."))

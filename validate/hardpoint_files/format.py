@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Mapping
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated
 
@@ -16,15 +16,16 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict
 
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file
-from validate.hardpoint_files import chrono_json, columns, lotus_report
+from validate.hardpoint_files import chrono_json, lotus_report, table
 from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.contents import Contents, plain
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
+TABLE = "table"
 FORMS: Mapping[str, Callable[..., Contents]] = {
     "lotus_report": lotus_report.read,
-    "columns": columns.read,
+    TABLE: table.read,
     "chrono_json": chrono_json.read,
 }
 """How a text becomes points, by the form that a format names."""
@@ -58,8 +59,6 @@ class Format(BaseModel):
         axes, unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
         axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
-        vocabulary: by words of its names, others for these; words that say nothing are others for the empty
-            text. None at all if names are as they are listed.
         refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
         not_needed: patterns of names that are known and hold nothing that moves the wheel.
@@ -82,7 +81,6 @@ class Format(BaseModel):
     names: dict[str, tuple[str, ...]] = {}
     side: str = ""
     axes_told_by: str = ""
-    vocabulary: dict[str, tuple[str, ...]] = {}
     refused: str = ""
     refused_words: str = ""
     angles: dict[str, str] = {}
@@ -95,43 +93,12 @@ class Format(BaseModel):
         shared = {ours: self.names[ours] for ours in mechanism_file(kind).points if ours in self.names}
         return shared | self.suspensions[kind].names
 
-    @cached_property
-    def _phrases(self) -> dict[tuple[str, ...], tuple[str, ...]]:
-        """Words of the vocabulary for others, each a few."""
-        return {
-            tuple(plain(theirs).split()): tuple(ours.split())
-            for ours, others in self.vocabulary.items()
-            for theirs in others
-        }
-
-    def in_our_words(self, name: str) -> tuple[str, ...]:
-        """A name in few words: `LCA_IN_FRONT` and `Lower wishbone, front pivot` are one point.
-
-        They are in the order of the alphabet; numbers count where there is nothing else. Two names are one if
-        these are the same: a word too many, such as that of a damper, is another point, and so is one said
-        twice, as in `Rear upper rear pivot`.
-        """
-        left = plain(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)).split()
-        longest = max(map(len, self._phrases), default=1)
-        found: list[str] = []
-        while left:
-            size = next(
-                (n for n in range(min(longest, len(left)), 0, -1) if tuple(left[:n]) in self._phrases), 0
-            )
-            found += self._phrases[tuple(left[:size])] if size else left[:1]
-            left = left[max(size, 1) :]
-        return tuple(sorted([word for word in found if not word.isdigit()] or found))
-
     def called(self, said: str) -> str | None:
         """Our type of the suspension that a file calls so; None if it is none of ours."""
-        return next(
-            (
-                kind
-                for kind, words in self.suspensions.items()
-                if any(re.fullmatch(pattern, said, re.IGNORECASE) for pattern in words.called.values())
-            ),
-            None,
-        )
+        for kind, words in self.suspensions.items():
+            if any(re.fullmatch(pattern, said, re.IGNORECASE) for pattern in words.called.values()):
+                return kind
+        return None
 
     @property
     def known_suspensions(self) -> str:
@@ -149,7 +116,7 @@ class Format(BaseModel):
         Raises:
             FileError: it is not written as it must be.
         """
-        if said and self.form != "columns":
+        if said and self.form != TABLE:
             raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
         return FORMS[self.form](text, source, said) if said else FORMS[self.form](text, source)
 
@@ -179,8 +146,8 @@ def format_of(text: str, name: str | None, source: str) -> Format:
     for one in known.values():
         if one.refused and re.search(one.refused, text):
             raise FileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
-    if name is not None:
-        if name not in known:
-            raise UnknownName("format", name, known)
-        return known[name]
-    return next(one for one in known.values() if re.search(one.known_by, text[:HEAD]))
+    if name is None:
+        return next(one for one in known.values() if re.search(one.known_by, text[:HEAD]))
+    if name not in known:
+        raise UnknownName("format", name, known)
+    return known[name]

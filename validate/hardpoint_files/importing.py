@@ -7,7 +7,7 @@ without a name of ours, points of ours that the file lacks.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cached_property
@@ -23,12 +23,12 @@ from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.file import AS_DRAWN
 from pointcoord.toml_text import read_file
 from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
-from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, plain, short
+from validate.hardpoint_files.contents import Contents, FilePoint, Place, SpinAxis, plain, short
 from validate.hardpoint_files.derived import derived
 from validate.hardpoint_files.format import Format, format_of
-from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
+from validate.hardpoint_files.names_file import NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
+from validate.hardpoint_files.table import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.written_scene import ScenePoint, bounce_of, scene_of, scene_text
 from validate.plain_text import some_of
 from validate.tables.cells import text_of
@@ -114,9 +114,9 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
         AssemblyError: its points cannot be put together.
     """
     choices, source = Choices(**said), str(path)
-    own = NO_NAMES if choices.names is None else read_names(choices.names)
+    own = NamesFile() if choices.names is None else read_names(choices.names)
     found, text = _opened(source, choices)
-    return _Import(source, choices, found, found.read(text, source, own.table), own).result()
+    return _Import(source, choices, found, found.read(text, source, own.columns), own).result()
 
 
 def names_of(path: str | Path, format: str | None = None, suspension: str | None = None) -> str:
@@ -132,7 +132,7 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     except FileError:
         # Such as a table whose columns are not known: they can be said in the same file.
         contents = Contents(())
-    one = _Import(source, choices, found, contents, NO_NAMES)
+    one = _Import(source, choices, found, contents, NamesFile())
     kind = suspension or one.closest()[0]
     known, others = one.named(kind)
     return names_to_fill_in(source, kind, one.missing(kind, ()), dict(known), others)
@@ -151,14 +151,13 @@ class _Wheel:
     """The points of one wheel.
 
     Attributes:
-        ours: by our names. others: the file's others.
-        values: lines without a point that give a number, in words.
+        ours: by our names. others, spoilt: the file's others, and its lines that are no points.
         part, side: its axle and side, by the file; empty where that does not say.
     """
 
     ours: Mapping[str, FilePoint]
     others: tuple[FilePoint, ...]
-    values: tuple[str, ...]
+    spoilt: tuple[FilePoint, ...]
     part: str
     side: str
 
@@ -186,6 +185,11 @@ class _Import:
     def refuse(self, problem: str, allowed: str, line: int = 0) -> FileError:
         return FileError(self.source, line, problem, allowed)
 
+    @cached_property
+    def given(self) -> dict[str, FilePoint]:
+        """The points that the file of names has."""
+        return self.own.points(self.choices.names or "")
+
     def result(self) -> Imported:
         kind, topology = self.kind, self.topology
         if not (topology.wheel_axis and topology.inboard):
@@ -195,23 +199,22 @@ class _Import:
             )
         wheel = self.chosen()
         axle = self.contents.axle(wheel.part)
-        axis = self.spin_axis(axle)
+        axis = self.spin_axis(axle.spin_axis)
         self.require_all(wheel, axis)
         axes, axes_by, doubted = self.axes(wheel)
-        unit = self.unit()
+        unit, unit_by = self.unit()
         doubts = [*axle.doubts, *doubted, *self.against_unit(unit, wheel)]
         turned = {name: axes.to_scene(place, unit) for name, place in wheel.places.items()}
         side = self.side(wheel, turned, axes)
         points = self.placed(wheel, turned, axis, side)
-        unit_by = "the file" if self.contents.unit else "--unit" if self.choices.unit else "its format"
         facts = [
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm",
             *axle.notes,
+            *(self.format.suspensions[kind].notes if kind in self.format.suspensions else ()),
         ]
-        facts += self.format.suspensions[kind].notes if kind in self.format.suspensions else ()
-        if wheel.values:
-            facts.append(f"lines without a point: {some_of(wheel.values, NAMED)}")
+        if wheel.spoilt:
+            facts.append(f"lines without a point: {_listed(wheel.spoilt)}")
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         if self.choices.mirror:
@@ -249,10 +252,9 @@ class _Import:
         if self.choices.suspension:
             return self.choices.suspension
         if called := self.called:
-            part = self.one_of("part", "axle", self.choices.part, {*called})
+            part = self.one_of("part", self.choices.part, {*called})
             said = called.get(part) or next(iter(called.values()))
-            kind = self.format.called(said)
-            if kind is not None:
+            if kind := self.format.called(said):
                 return kind
             raise self.refuse(
                 f"holds a suspension called {short(said)}" + (f" at its axle {part}" if part else ""),
@@ -281,40 +283,17 @@ class _Import:
 
     def missing(self, kind: str, known: Iterable[str]) -> list[str]:
         """Points that a car of ours must have; its spin axis is not left to what may stand in for it."""
-        topology, there = mechanism_file(kind).topology(), {*known, *self.own.points}
+        topology, there = mechanism_file(kind).topology(), {*known, *self.given}
         needed = dict.fromkeys((*topology.required_points, *topology.wheel_axis))
         return [name for name in needed if name not in there]
 
-    def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
-        """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
-        ours = {plain(their): our for our, names in self.format.names_of(kind).items() for their in names}
-        if self.format.our_own_names:
-            ours |= {plain(name): name for name in mechanism_file(kind).points}
-        # What the user says goes before what the format says, of this point and of that name.
-        taken = self.own.names.keys() | self.own.points.keys()
-        ours = {their: our for their, our in ours.items() if our not in taken}
-        ours |= {plain(their): our for our, their in self.own.names.items()}
-        in_words = self.format.in_our_words
-        worded = {in_words(their): our for their, our in ours.items()} if self.format.vocabulary else {}
-
-        def found(point: FilePoint) -> tuple[str, FilePoint]:
-            for base, (side, part) in self.readings(point.name):
-                if our := ours.get(plain(base)) or worded.get(in_words(base), ""):
-                    if side and point.side and side != point.side:
-                        told = f"has {short(point.name)} for the {point.side} wheel"
-                        raise self.refuse(told, "one side", point.line)
-                    return our, replace(point, side=side or point.side, part=part or point.part)
-            return "", point
-
-        return found
-
     def readings(self, name: str) -> Iterator[tuple[str, Wheel]]:
         """A name whole, and without words of a wheel that it begins or ends with, and the wheel."""
-        yield name, NO_WHEEL
-        words = re.findall(r"[^\W_]+", name) if self.format.our_own_names else []
+        yield plain(name), NO_WHEEL
+        words = plain(name).split() if self.format.our_own_names else []
         for ahead, behind in ((0, 1), (1, 0), (1, 1), (2, 0), (2, 1)):
             base = words[ahead : len(words) - behind]
-            edge = [plain(word) for word in (*words[:ahead], *words[len(words) - behind :])]
+            edge = [*words[:ahead], *words[len(words) - behind :]]
             if base and all(word in WHEELS for word in edge):
                 yield " ".join(base), wheel_of(edge)
 
@@ -322,53 +301,66 @@ class _Import:
         """Whether a point is known and not needed, whatever tells its wheel."""
         return any(self.format.holds_nothing(base) for base, _ in self.readings(point.name))
 
-    def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
-        """The file's points that are ours, by our names, and the others."""
-        found = [*map(self.lookup(kind), self.contents.points)]
-        return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
+    def named(self, kind: str, spoilt: bool = False) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
+        """The file's points that are ours, by our names, with the wheel of theirs, and the others."""
+        ours = {plain(their): our for our, names in self.format.names_of(kind).items() for their in names}
+        if self.format.our_own_names:
+            ours |= {plain(name): name for name in mechanism_file(kind).points}
+        # What the user says goes before what the format says, of this point and of that name.
+        ours = {their: our for their, our in ours.items() if our not in self.own.names}
+        ours |= {plain(their): our for our, their in self.own.theirs.items()}
+        known, others = [], []
+        for point in self.contents.spoilt if spoilt else self.contents.points:
+            readings = (one for one in self.readings(point.name) if one[0] in ours)
+            base, (side, part) = next(readings, ("", NO_WHEEL))
+            if not base:
+                others.append(point)
+                continue
+            if side and point.side and side != point.side:
+                told = f"has {short(point.name)} for the {point.side} wheel"
+                raise self.refuse(told, "one side", point.line)
+            known.append((ours[base], replace(point, side=side or point.side, part=part or point.part)))
+        return known, others
 
     def chosen(self) -> _Wheel:
         """The points of the wheel that is asked for."""
         known, others = self.named(self.kind)
         theirs = {plain(point.name) for _, point in known}
-        for their in self.own.names.values():
+        for their in self.own.theirs.values():
             if plain(their) not in theirs:
                 raise UnknownName(f"point in {self.source}", their, {p.name for p in self.contents.points})
         parts = {point.part for _, point in known}
-        part = self.one_of("part", "axle", self.choices.part, parts)
+        part = self.one_of("part", self.choices.part, parts)
         # A file that does not say its axle is of the one that is said.
         part = part if part in parts else ""
         known = [(ours, point) for ours, point in known if point.of(part, "")]
         labels = {point.side for _, point in known} - {""}
-        side = self.one_of("side", "side", self.choices.side if len(labels) > 1 else None, labels)
+        side = self.one_of("side", self.choices.side if len(labels) > 1 else None, labels)
         found: dict[str, FilePoint] = {}
         for ours, point in known:
             other = found.setdefault(ours, point) if point.of(part, side) else point
             if other.place != point.place:
                 told = f"has {ours} twice, {short(other.name)} on line {other.line} and {short(point.name)} "
-                more = "; the points of one wheel of one axle"
-                more = more if other.name == point.name else ", or a file of names (--names) that says which"
-                raise self.refuse(f"{told}elsewhere", f"one of them{more}", point.line)
-        spoilt = [one for one in self.contents.spoilt if one.of(part, side)]
-        for our, own in map(self.lookup(self.kind), spoilt):
-            if our and own.error and own.of(part, side) and our not in {*found, *self.own.points}:
-                raise own.error
-        values = dict.fromkeys(
-            f"{short(one.name)} {one.value} on line {one.line}" for one in spoilt if one.value
+                more = "the points of one wheel of one axle, or a file of names (--names) that says which"
+                raise self.refuse(f"{told}elsewhere", more, point.line)
+        for our, point in self.named(self.kind, spoilt=True)[0]:
+            if point.error and point.of(part, side) and our not in {*found, *self.given}:
+                raise point.error
+        theirs_too, spoilt = (
+            tuple(one for one in some if one.of(part, side)) for some in (others, self.contents.spoilt)
         )
-        others = [point for point in others if point.of(part, side)]
-        return _Wheel(found | dict(self.own.points), tuple(others), tuple(values), part, side)
+        return _Wheel(found | self.given, theirs_too, spoilt, part, side)
 
-    def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
+    def one_of(self, option: str, chosen: str | None, there: set[str]) -> str:
         """The part or side of a file that may hold several."""
         labels = sorted(there - {""})
         every = " or ".join(f"--{option} {label}" for label in labels)
         if chosen and labels and chosen not in labels:
-            raise self.refuse(f"has no points of {what} {chosen}", every)
+            raise self.refuse(f"has no points of {option} {chosen}", every)
         if not chosen and len(labels) > 1:
             called = self.called
             told = [f"{label} ({called[label]})" if label in called else label for label in labels]
-            raise self.refuse(f"has points of more than one {what}: {', '.join(told)}", every)
+            raise self.refuse(f"has points of more than one {option}: {', '.join(told)}", every)
         return chosen or (labels[0] if labels else "")
 
     # What is needed and is not there.
@@ -387,23 +379,21 @@ class _Import:
             f"{name} (looked for: {', '.join(map(short, names[name]))})" if name in names else name
             for name in lost
         ]
-        unknown = [p for p in wheel.others if not self.holds_nothing(p)]
-        listed = some_of([f"{short(point.name)} on line {point.line}" for point in unknown], NAMED)
+        told = f"lacks {', '.join(theirs)} of a {self.kind}"
+        if unknown := [*wheel.spoilt, *(p for p in wheel.others if not self.holds_nothing(p))]:
+            told += f"; not known in it: {_listed(unknown)}"
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
         if self.topology.wheel_axis[0] in lost:
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
-        told = f"lacks {', '.join(theirs)} of a {self.kind}"
-        told += f"; not known in it: {listed}" if listed else ""
-        told += f"; no points: {some_of(wheel.values, NAMED)}" if wheel.values else ""
         raise self.refuse(told, advice)
 
-    def spin_axis(self, axle: Axle) -> SpinAxis | None:
+    def spin_axis(self, by_file: SpinAxis | None) -> SpinAxis | None:
         """Where the file or the user says that the wheel's spin axis points."""
         camber, toe = self.choices.camber, self.choices.toe
         if camber is None and toe is None:
-            return axle.spin_axis
-        if axle.spin_axis is not None:
+            return by_file
+        if by_file is not None:
             raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
         if camber is None or toe is None:
             raise self.refuse("has one static angle said of it", "both --camber and --toe, or neither")
@@ -433,13 +423,12 @@ class _Import:
         ways = [(one.option, SIDES[one.to_scene(outboard, "mm")[1] > 0]) for one in both]
         said, by = self.axes_said(wheel)
         if said is None:
-            told = "does not say where x, y and z point"
-            if seen is None:
-                raise self.refuse(told, f"--axes with {ALLOWED}")
             # A wheel of a known side shows it.
             known = self.choices.side or wheel.side
             some = [f"--axes {one} of a {side} wheel" for one, side in ways if known in ("", side)]
-            raise self.refuse(told, f"{' or '.join(some)}, as {words} lie; or others, if they are so")
+            fitting = f"{' or '.join(some)}, as {words} lie; or others, if they are so"
+            allowed = f"--axes with {ALLOWED}" if seen is None else fitting
+            raise self.refuse("does not say where x, y and z point", allowed)
         if seen is None or said in both:
             return said, by, []
         told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
@@ -452,9 +441,7 @@ class _Import:
         """The axes that somebody says, and who; points under our own names have our own axes."""
         if self.choices.axes is not None:
             return Axes.of(self.choices.axes), "--axes"
-        if self.contents.axes:
-            return Axes.of(self.contents.axes), "its titles"
-        read = {name: point.name for name, point in wheel.ours.items() if name not in self.own.points}
+        read = {name: point.name for name, point in wheel.ours.items() if name not in self.given}
         if self.format.our_own_names and all(_is_our_own(*one) for one in read.items()):
             return OUR_AXES, "its points' names, which are ours"
         told_by = self.format.axes_told_by
@@ -463,13 +450,16 @@ class _Import:
         telling = [name for name in read.values() if re.fullmatch(told_by, plain(name))]
         return (self.format.axes, f"names such as {short(telling[0])}") if telling else (None, "")
 
-    def unit(self) -> str:
+    def unit(self) -> tuple[str, str]:
+        """The unit of the file's lengths, and who says so."""
         said, chosen = self.contents.unit, self.choices.unit
         if said and said not in LENGTHS:
             raise self.refuse(f"has lengths in {short(said)}", ", ".join(LENGTHS))
         if said and chosen and said != chosen:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
-        return chosen or said or self.format.unit
+        if said:
+            return said, "the file"
+        return (chosen, "--unit") if chosen else (self.format.unit, "its format")
 
     def against_unit(self, unit: str, wheel: _Wheel) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
@@ -498,9 +488,7 @@ class _Import:
                 allowed = f"--axes with the other of left and right than {axes.option}, or the {seen} side"
                 # Not where the file has the wheel that is asked for: a mirrored other one is another wheel.
                 if by == "--side" and file.side != said:
-                    made = f"--side {seen} --mirror makes the {said} wheel of it"
-                    both = (f"--side is of the file's wheel: {made}", allowed)
-                    allowed = "; or ".join(both if self.choices.mirror else (allowed, made))
+                    allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
                 raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not any(by_whom.values()):
             raise self.refuse(
@@ -508,8 +496,6 @@ class _Import:
                 f"--side {seen} if y is not counted from the middle, or other --axes",
             )
         return seen
-
-    # The scene's points.
 
     def placed(
         self, wheel: _Wheel, turned: Mapping[str, Place], axis: SpinAxis | None, side: str
@@ -527,6 +513,11 @@ class _Import:
             ):
                 found[name] = ScenePoint(name, *one, derived=True)
         return found
+
+
+def _listed(points: Iterable[FilePoint]) -> str:
+    """Points with their lines."""
+    return some_of([f"{short(point.name)} on line {point.line}" for point in points], NAMED)
 
 
 def _is_our_own(ours: str, theirs: str) -> bool:

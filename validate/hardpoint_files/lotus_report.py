@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, decimal_of, place_of, short
+from validate.hardpoint_files.contents import Axle, Contents, FilePoint, number_of, place_of, short
 from validate.tables.errors import FileError
 
 _AXLE = re.compile(r"^\s*(FRONT|REAR)\s+SUSPENSION\b")
@@ -38,7 +38,7 @@ def read(text: str, source: str) -> Contents:
         elif found := _POINT.match(words):
             points.append(_point(found[1], found[2].strip(), source, line, part))
         elif found := _ANGLE.match(words):
-            value = decimal_of(found[2], source, line, found[1].strip())
+            value = number_of(found[2], source, line, found[1].strip())
             angles.setdefault(part, {}).setdefault(found[1].strip(), (value, line))
     if not points:
         like = "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot"

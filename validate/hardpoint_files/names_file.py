@@ -17,37 +17,65 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from decimal import Decimal, DecimalException
-from typing import Any
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord.mechanism.faults import fault_of
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import FilePoint, finite, short
+from validate.hardpoint_files.contents import FilePoint, Place, place_of
 from validate.plain_text import shown
 from validate.tables.errors import FileError
 from validate.toml_written import value_of
 
-COLUMNS = ("name", "x", "y", "z")
-FORM = '[names] with lines such as our_name = "its name", or our_name = [x, y, z]'
+FORM = '[names] with lines such as our_name = "its name", or our_name = [x, y, z]; [table] with name, x, y, z'
+Column = Annotated[int, Field(strict=True, ge=1)] | str
+Number = Annotated[int, Field(strict=True)] | Decimal
 
 
-@dataclass(frozen=True)
-class NamesFile:
-    """What a file of names says.
+class TableSaid(BaseModel):
+    """Titles or numbers of a table's columns."""
 
-    Attributes:
-        names: the other file's name of our points. points: those that are given here.
-        table: titles or numbers of the columns name, x, y, z and corner.
-    """
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
-    names: Mapping[str, str]
-    points: Mapping[str, FilePoint]
-    table: Mapping[str, str | int]
+    name: Column
+    x: Column
+    y: Column
+    z: Column
+    corner: Column | None = None
 
 
-NO_NAMES = NamesFile({}, {}, {})
+class NamesFile(BaseModel):
+    """What a file of names says: of our points the other file's name or a place, and its columns."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    names: dict[str, str | tuple[Number, Number, Number]] = {}
+    table: TableSaid | None = None
+
+    @property
+    def theirs(self) -> dict[str, str]:
+        """The other file's name of our points."""
+        return {ours: said for ours, said in self.names.items() if isinstance(said, str)}
+
+    def points(self, path: str) -> dict[str, FilePoint]:
+        """The points that are given here."""
+        given = {ours: said for ours, said in self.names.items() if not isinstance(said, str)}
+        return {
+            ours: FilePoint(f"given in {path}", _place(path, ours, said), 0) for ours, said in given.items()
+        }
+
+    @property
+    def columns(self) -> dict[str, str | int]:
+        """Titles or numbers of the columns name, x, y, z and corner, if any are said."""
+        return {} if self.table is None else self.table.model_dump(exclude_none=True)
+
+
+def _place(path: str, ours: str, said: tuple[int | Decimal, ...]) -> Place:
+    return place_of([Decimal(number) for number in said], path, 0, ours)
 
 
 def read_names(path: str) -> NamesFile:
@@ -58,45 +86,20 @@ def read_names(path: str) -> NamesFile:
         FileError: it is not written as it must be.
         UnknownName: a point is none of ours.
     """
+    text = read_file(path, "a file of names, TOML")
     try:
-        data = tomllib.loads(
-            read_file(path, "a file of names, TOML").decode("utf-8-sig"), parse_float=Decimal
-        )
+        found = NamesFile.model_validate(tomllib.loads(text.decode("utf-8-sig"), parse_float=Decimal))
+    except ValidationError as error:
+        fault = fault_of(error)
+        raise FileError(path, ".".join(map(str, fault.place)), fault.problem, FORM) from None
     except (ValueError, RecursionError, DecimalException) as error:
-        found = re.search(r"at line (\d+)", str(error))
-        raise FileError(path, int(found[1]) if found else 0, f"is not TOML: {error}", FORM) from None
-    columns, table = data.pop("table", {}), data.pop("names", None)
-    if data or not isinstance(table, dict | None) or (table is None and not columns):
-        told = f"has the key {short(next(iter(data)))}" if data else "has no table [names]"
-        raise FileError(path, 0, told, FORM)
-    if columns and (
-        not isinstance(columns, dict)
-        or not {*COLUMNS} <= columns.keys() <= {*COLUMNS, "corner"}
-        or not all(isinstance(one, str) or (type(one) is int and one > 0) for one in columns.values())
-    ):
-        told = f"[table] is {short(str(columns))}"
-        raise FileError(path, 0, told, "name, x, y, z and corner, each a title or a number from 1")
+        line = re.search(r"at line (\d+)", str(error))
+        raise FileError(path, int(line[1]) if line else 0, f"is not TOML: {error}", FORM) from None
     ours = tuple(dict.fromkeys(point for kind in shipped() for point in mechanism_file(kind).points))
-    names: dict[str, str] = {}
-    points: dict[str, FilePoint] = {}
-    for name, value in (table or {}).items():
+    for name in found.names:
         if name not in ours:
             raise UnknownName(f"point of ours in {path}", name, ours)
-        if isinstance(value, str):
-            names[name] = value
-        else:
-            points[name] = FilePoint(f"given in {path}", _place(value, path, name), 0)
-    return NamesFile(names, points, columns)
-
-
-def _place(value: Any, path: str, name: str) -> tuple[Decimal, Decimal, Decimal]:
-    numbers = value if isinstance(value, list) else []
-    if len(numbers) != 3 or any(isinstance(n, bool) or not isinstance(n, int | Decimal) for n in numbers):
-        raise FileError(path, 0, f"{name} is {short(str(value))}", FORM)
-    x, y, z = (
-        finite(Decimal(n), path, 0, f"{axis} of {name}") for axis, n in zip("xyz", numbers, strict=True)
-    )
-    return x, y, z
+    return found
 
 
 def names_to_fill_in(

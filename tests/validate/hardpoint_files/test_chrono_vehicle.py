@@ -159,22 +159,6 @@ def test_a_template_that_only_contains_a_known_name_is_not_it(kind: str, tmp_pat
     assert import_hardpoints(path).scene.mechanism.type == "double_wishbone"
 
 
-def test_a_simulation_s_file_leads_to_its_vehicle(tmp_path: Path) -> None:
-    car = vehicle(tmp_path)
-    expected = places(import_hardpoints(car, part="front"))
-    for content in (
-        {"Type": "Vehicle", "Template": "WheeledVehicle", "Vehicle": {"Input File": "own/vehicle/car.json"}},
-        {"Type": "SuspensionTestRig", "Vehicle Input File": "own/vehicle/car.json"},
-    ):
-        path = tmp_path / "own" / "all.json"
-        path.write_text(json.dumps(content))
-        found = places(import_hardpoints(path, part="front"))
-        assert all((found[name] == expected[name]).all() for name in expected)
-    path.write_text(json.dumps({"Type": "Vehicle", "Vehicle": {"Input File": "own/all.json"}}))
-    with pytest.raises(FileError, match="Type 'Vehicle' and Template 'None'"):
-        import_hardpoints(path)
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
