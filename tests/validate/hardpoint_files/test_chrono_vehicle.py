@@ -142,23 +142,6 @@ def test_only_the_axle_that_is_asked_for_must_be_one_of_ours(tmp_path: Path) -> 
         assert words in str(caught.value)
 
 
-def test_a_file_that_says_no_axle_is_of_the_one_that_is_said(tmp_path: Path) -> None:
-    path = tmp_path / "car.json"
-    path.write_text(chrono("macpherson", STRUT.mechanism.points, -1, "-1.5", "0.25"))
-    for part in ("front", "rear", "3"):
-        assert import_hardpoints(path, part=part).scene == import_hardpoints(path).scene
-
-
-@pytest.mark.parametrize("kind", ["doublewishbone5", "MyDoubleWishbone", "SingleWishbone"])
-def test_a_template_that_only_contains_a_known_name_is_not_it(kind: str, tmp_path: Path) -> None:
-    path = tmp_path / "car.json"
-    path.write_text(chrono("double_wishbone", POINTS, 1).replace("DoubleWishbone", kind))
-    with pytest.raises(FileError, match=f"called '{kind}'"):
-        import_hardpoints(path)
-    path.write_text(chrono("double_wishbone", POINTS, 1).replace("DoubleWishbone", "DoubleWishboneReduced"))
-    assert import_hardpoints(path).scene.mechanism.type == "double_wishbone"
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [

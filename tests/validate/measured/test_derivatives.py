@@ -199,22 +199,6 @@ def test_rates_that_do_not_follow_say_which_column_they_lack() -> None:
     assert verdict["angular_acceleration"] == "not tested"
 
 
-def test_what_agrees_only_by_the_rounding_of_a_rate_names_the_line_for_that_rate() -> None:
-    """Four decimals of all but the rate, which is in whole mm/s."""
-    table, map = over_travel("a")
-    lines = [line.split(",") for line in table.splitlines()]
-    kept = [i for i, head in enumerate(lines[0]) if i < 2 or head.startswith("velocity")]
-    rows = [",".join(f"{float(line[i]):.{0 if i == 1 else 4}f}" for i in kept) for line in lines[1:]]
-    text = "\n".join([",".join(lines[0][i] for i in kept), *rows])
-    map["columns"]["bump"]["printed"] = 0
-    (row,) = compared(text, map, CAR).outcome.rows
-    assert row.verdict == "not tested"
-    assert (
-        "v is given to +-0.5; if that is exact as written, add this line to a map: columns.v.printed = 0"
-        in row.why
-    )
-
-
 def test_a_rate_that_every_row_has_is_held_by_the_map() -> None:
     motion = moved(arm_angle=[1.8, -0.4], rack=[0.0])
     columns = {"arm_angle [rad]": 1.8 - 0.4 * motion.times, **rates_of(motion)}
