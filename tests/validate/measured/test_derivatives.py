@@ -214,9 +214,9 @@ def test_a_rate_that_every_row_has_is_held_by_the_map() -> None:
 @pytest.mark.parametrize(
     ("head", "map", "words"),
     [
-        ("toe [deg/s]", {}, ("'deg/s' is by a time", "rows are taken by bump [mm]", "rad/mm")),
-        ("d(toe)/d(rack) [deg/mm]", {}, ("a derivative by 'rack'", "allowed: bump")),
-        ("d(toe)/d(bump)", {}, ("its unit is not said", "deg/m")),
+        ("toe [deg/s]", {}, ("'deg/s' is no unit of a derivative of wheel.toe", "rad/mm by bump")),
+        ("d(toe)/d(rack) [deg/mm]", {}, ("a derivative of wheel.toe by 'rack'", "by bump")),
+        ("d(toe)/d(bump)", {}, ("has no unit", "deg/m")),
         ("d(toe)/d(bump) [deg]", {}, ("'deg' is no unit of a derivative of wheel.toe", "rad/mm")),
         ("d(velocity.wheel_centre.x)/d(bump) [mm/mm]", {}, ("is a derivative of velocity", "a coordinate")),
     ],
