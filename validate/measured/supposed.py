@@ -195,22 +195,12 @@ def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
     for _, changes in kept:
         said = ((measured.independent[i], change) for i, change in changes.items())
         words = (f"{shown(s.column)} {change.words(s, trial.drawn(s))}" for s, change in said)
-        yield from _changed(measured, changes, ", and ".join(words))
-
-
-def _changed(measured: Measured, changes: Changes, words: str) -> Iterator[Supposed]:
-    """The file with its independent columns changed."""
-    independent = _moved(measured, changes)
-    other = replace(measured, independent=independent)
-    fitted = any(change.found for change in changes.values())
-    turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
-    slopes = [s for s in measured.numbers if s.meaning.per in turned]
-    numbers = tuple(replace(s, values=-s.values) if s in slopes else s for s in measured.numbers)
-    yield Supposed(words, replace(other, numbers=numbers), found=fitted)
-    if slopes:
-        # Derivatives by a column that counts the other way do so too, if they were not made of another.
-        names = ", ".join(shown(s.column) for s in slopes)
-        yield Supposed(f"{words}, and {names} is by it as it is said", other, found=fitted)
+        independent = _moved(measured, changes)
+        # Derivatives by a column that counts the other way do so too.
+        turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
+        numbers = (replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers)
+        other = replace(measured, independent=independent, numbers=tuple(numbers))
+        yield Supposed(", and ".join(words), other, found=any(one.found for one in changes.values()))
 
 
 def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
