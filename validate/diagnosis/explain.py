@@ -36,7 +36,6 @@ WORTH = 20.0
 ENOUGH = 1e3
 # By how many times another factor may leave less than a unit's own does, as one fitted to noise may.
 FITTED = 2.0
-AND = ", and "  # between two faults
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
 
@@ -232,13 +231,15 @@ def _seconds(
         wrong = tuple(row for row in evidence.wrong if row in one.rows)
         after = replace(evidence.after(one.rows, wrong), in_our_units=first.name != UNIT)
         for kind in KINDS:
-            if not kind.closes or kind.name == first.name:
+            # Of two that may each be the first, in one order.
+            both_ways = kind.opens and first.closes and KINDS.index(kind) <= KINDS.index(first)
+            if not kind.closes or both_ways:
                 continue
             for two in _merged(kind, after):
                 both = replace(
                     two,
                     kind=f"{first.name} and {kind.name}",
-                    words=f"{one.words}{AND}{two.words}",
+                    words=f"{one.words}, and {two.words}",
                     fitted=one.fitted + two.fitted,
                     cost=one.cost + two.cost + 1.0,
                     looser=False,
@@ -272,8 +273,7 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         better = any(
             set(one.rows) <= set(other.rows)
             and (
-                _same(one, other)
-                or other.whole != one.whole
+                other.whole != one.whole
                 or other.hypothesis.cost < one.hypothesis.cost
                 or len(other.rows) > len(one.rows)
                 or (not one.whole and other.lowered > 2.0 * one.lowered)
@@ -285,12 +285,6 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         }:
             kept.append(one)
             yield one
-
-
-def _same(one: _Found, other: _Found) -> bool:
-    """Whether two faults are two others in the other order."""
-    first, second = (set(found.hypothesis.words.split(AND)) for found in (one, other))
-    return first == second
 
 
 def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:
