@@ -420,22 +420,20 @@ class _Import:
             seen = axes_seen(wheel.difference(rear, front), wheel.difference(low, high))
         outboard = wheel.difference(topology.inboard, topology.wheel_centre)
         both = [] if seen is None else [seen, seen.other_handed]
+        # A wheel of a known side shows which way is left.
+        known = self.choices.side or wheel.side
         ways = [(one.option, SIDES[one.to_scene(outboard, "mm")[1] > 0]) for one in both]
+        some = [f"--axes {one} of a {side} wheel" for one, side in ways if known in ("", side)]
+        fitting = " or ".join(some) or f"--axes with {ALLOWED}"
         said, by = self.axes_said(wheel)
         if said is None:
-            # A wheel of a known side shows it.
-            known = self.choices.side or wheel.side
-            some = [f"--axes {one} of a {side} wheel" for one, side in ways if known in ("", side)]
-            fitting = f"{' or '.join(some)}, as {words} lie; or others, if they are so"
-            allowed = f"--axes with {ALLOWED}" if seen is None else fitting
-            raise self.refuse("does not say where x, y and z point", allowed)
+            raise self.refuse("does not say where x, y and z point", f"{fitting}, by where points lie")
         if seen is None or said in both:
             return said, by, []
         told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
-        if self.choices.axes is not None:
-            return said, by, [f"{told}: are these the right axes and names?"]
-        every = " or ".join(f"--axes {one} of a {side} wheel" for one, side in ways)
-        raise self.refuse(told, f"{every} if that is so, --axes {said.option} if not")
+        if self.choices.axes is None:
+            raise self.refuse(told, f"{fitting} if that is so, --axes {said.option} if not")
+        return said, by, [f"{told}: are these the right axes and names?"]
 
     def axes_said(self, wheel: _Wheel) -> tuple[Axes | None, str]:
         """The axes that somebody says, and who; points under our own names have our own axes."""
