@@ -336,25 +336,6 @@ def centre_table(places: Array) -> str:
 CENTRE = tuple(f"wheel_centre.{axis}" for axis in "xyz")
 
 
-def test_a_prior_draws_corrections_back_as_tikhonov_s_closed_form_says() -> None:
-    """q = R a with turns R, so that J^T J = N / s^2: a (N / s^2) / (N / s^2 + 1 / prior^2) is found."""
-    turns, moved = linear_case()
-    right = np.array([3.0, -2.0, 1.0])
-    data = measured(centre_table(moved["wheel_centre"] + turns @ right), CAR)
-    accuracy, prior = 5.0, 2.0
-    fit = fit_hardpoints(CAR, data, CENTRE, prior=prior, accuracy=accuracy)
-    known = ROWS / (accuracy / math.sqrt(3.0)) ** 2
-    share = known / (known + prior**-2)
-    assert 0.3 < share < 0.95
-    assert [one.correction for one in fit.coordinates.values()] == pytest.approx(
-        (share * right).tolist(), rel=1e-6
-    )
-    assert [one.deviation for one in fit.coordinates.values()] == pytest.approx(
-        [(known + prior**-2) ** -0.5] * 3, rel=1e-9
-    )
-    assert [one.singular_value for one in fit.combinations] == pytest.approx([math.sqrt(known)] * 3, rel=1e-9)
-
-
 @pytest.mark.parametrize(("times", "settled"), [(0.9, False), (1.1, True)])
 def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
     times: float, settled: bool
@@ -384,11 +365,16 @@ def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not() -> None:
     accuracies = (0.1, 1.0, 3.0)
     columns = {f"position.wheel_centre.{a}": {"accuracy": x} for a, x in zip("xyz", accuracies, strict=True)}
     text = "\n".join(map(",".join, lines))
-    fit = fit_hardpoints(CAR, measured(text, CAR, columns=columns), CENTRE, prior=50.0)
+    fit = fit_hardpoints(CAR, measured(text, CAR, columns=columns), CENTRE, prior=2.0)
     weights = np.where(gaps, 0.0, 3.0 / np.square(accuracies))
-    normal = np.einsum("nij,ni,nik->jk", turns, weights, turns) + np.eye(3) / 50.0**2
+    by_file = np.einsum("nij,ni,nik->jk", turns, weights, turns)
+    normal = by_file + np.eye(3) / 2.0**2  # Tikhonov's: a prior of 2 mm draws corrections back
     expected = np.linalg.solve(normal, np.einsum("nij,ni,i->j", turns, weights, off))
     assert [one.correction for one in fit.coordinates.values()] == pytest.approx(expected.tolist(), rel=1e-6)
+    deviations = np.sqrt(np.diag(np.linalg.inv(normal)))
+    assert [one.deviation for one in fit.coordinates.values()] == pytest.approx(deviations.tolist(), rel=1e-6)
+    singular = np.sqrt(np.linalg.eigvalsh(by_file)[::-1])
+    assert [one.singular_value for one in fit.combinations] == pytest.approx(singular.tolist(), rel=1e-6)
     assert [column.count for column in fit.columns] == [ROWS - 1, ROWS - 1, ROWS - 2]
 
 
