@@ -79,23 +79,21 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     """The same of numbers that are already beside each other."""
     if not evidence.wrong or not len(evidence.times):
         return ()
-    quick = [kind for kind in KINDS if not kind.solves and not kind.last]
-    found = list(_supposed(evidence, quick))
+    found = list(_supposed(evidence, "numbers"))
     if evidence.over_time and _open(evidence, found, mostly=True) and _elsewhere(evidence):
-        solving = [kind for kind in KINDS if kind.solves]
-        deep = list(_supposed(evidence, [kind for kind in solving if kind.first]))
+        deep = list(_supposed(evidence, "motion"))
         if _open(evidence, deep):
-            deep += _supposed(evidence, [kind for kind in solving if not kind.first])
+            deep += _supposed(evidence, "car")
         found += deep
         for one in _ranked(deep)[:1]:
             # What other faults the same car has beside it.
             left = tuple(row for row in evidence.wrong if row not in one.rows)
             if left and one.whole:
-                found += _supposed(evidence.after(one.hypothesis.rows, left), quick)
+                found += _supposed(evidence.after(one.hypothesis.rows, left), "numbers")
     if left := _open(evidence, found):
         found += _pairs(replace(evidence, wrong=left))
     if left := _open(evidence, found):
-        found += _supposed(replace(evidence, wrong=left), [kind for kind in KINDS if kind.last])
+        found += _supposed(replace(evidence, wrong=left), "last")
     return tuple(_in_words(evidence, one) for one in _best(_ranked(found)))
 
 
@@ -124,10 +122,10 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
     )
 
 
-def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
-    """What the numbers carry of the faults of some kinds."""
-    for kind in some:
-        if evidence.over_time or not kind.of_time:
+def _supposed(evidence: Evidence, stage: str) -> Iterator[_Found]:
+    """What the numbers carry of the faults of a stage."""
+    for kind in KINDS:
+        if kind.stage == stage and (evidence.over_time or not kind.of_time):
             # A car that cannot be solved, or gives no such numbers, explains nothing.
             with suppress(PointcoordError):
                 for one in _merged(kind, evidence):
