@@ -155,6 +155,11 @@ class Series:
         # Reading rounds far below the last digit.
         return len(values) >= FEWEST and bool(np.ptp(np.diff(values)) <= 1e-3 * np.min(self.off))
 
+    def apart(self, ours: Array, theirs: Array) -> Array:
+        """Ours less theirs; whole turns apart is the same angle."""
+        gap, turn = ours - theirs, 2.0 * math.pi
+        return gap - turn * np.rint(gap / turn) if self.meaning.unit == "rad" else gap
+
     def taken(self, rows: NDArray[np.bool_]) -> Series:
         """Some of its rows."""
         return replace(self, values=self.values[rows], off=self.off[rows])

@@ -303,10 +303,10 @@ class _Trial:
         found = self.driven.poses(values, numbers)
         ours = [ours_of(s, found, self.driven.scene)[0] for s in numbers]
         nothing = np.full(len(values[0]), np.nan)
-        gap = self.theirs - np.stack([nothing if one is None else one for one in ours])
-        angles = np.array([s.meaning.unit == "rad" for s in numbers])[:, None]
-        turned = (gap + math.pi) % (2.0 * math.pi) - math.pi
-        return np.asarray(np.where(angles, turned, gap) / self.spread)
+        gap = [
+            s.apart(nothing if one is None else one, s.values) for s, one in zip(numbers, ours, strict=True)
+        ]
+        return np.stack(gap) / self.spread
 
 
 def _unit_of(s: Series) -> str:
