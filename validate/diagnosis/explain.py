@@ -36,7 +36,6 @@ WORTH = 20.0
 ENOUGH = 1e3
 # By how many times another factor may leave less than a unit's own does, as one fitted to noise may.
 FITTED = 2.0
-AND = ", and "  # between two faults
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
 
@@ -80,23 +79,21 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     """The same of numbers that are already beside each other."""
     if not evidence.wrong or not len(evidence.times):
         return ()
-    quick = [kind for kind in KINDS if not kind.solves and not kind.last]
-    found = list(_supposed(evidence, quick))
+    found = list(_supposed(evidence, "numbers"))
     if evidence.other_cars and _open(evidence, found, mostly=True) and _elsewhere(evidence):
-        solving = [kind for kind in KINDS if kind.solves]
-        deep = list(_supposed(evidence, [kind for kind in solving if kind.first]))
+        deep = list(_supposed(evidence, "motion"))
         if _open(evidence, deep):
-            deep += _supposed(evidence, [kind for kind in solving if not kind.first])
+            deep += _supposed(evidence, "car")
         found += deep
         for one in _ranked(deep)[:1]:
             # What other faults the same car has beside it.
             left = tuple(row for row in evidence.wrong if row not in one.rows)
             if left and one.whole:
-                found += _supposed(evidence.after(one.hypothesis.rows, left), quick)
+                found += _supposed(evidence.after(one.hypothesis.rows, left), "numbers")
     if left := _open(evidence, found):
         found += _pairs(replace(evidence, wrong=left))
     if left := _open(evidence, found):
-        found += _supposed(replace(evidence, wrong=left), [kind for kind in KINDS if kind.last])
+        found += _supposed(replace(evidence, wrong=left), "last")
     return tuple(_in_words(evidence, one) for one in _best(_ranked(found)))
 
 
@@ -125,10 +122,10 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
     )
 
 
-def _supposed(evidence: Evidence, some: Sequence[Kind]) -> Iterator[_Found]:
-    """What the numbers carry of the faults of some kinds."""
-    for kind in some:
-        if evidence.over_time or not kind.of_time:
+def _supposed(evidence: Evidence, stage: str) -> Iterator[_Found]:
+    """What the numbers carry of the faults of a stage."""
+    for kind in KINDS:
+        if kind.stage == stage and (evidence.over_time or not kind.of_time):
             # A car that cannot be solved, or gives no such numbers, explains nothing.
             with suppress(PointcoordError):
                 for one in _merged(kind, evidence):
@@ -232,14 +229,16 @@ def _seconds(
         wrong = tuple(row for row in evidence.wrong if row in one.rows)
         after = replace(evidence.after(one.rows, wrong), in_our_units=first.name != UNIT)
         for kind in KINDS:
-            if not kind.closes or kind.name == first.name:
+            # Of two that may each be the first, in one order.
+            both_ways = kind.opens and first.closes and KINDS.index(kind) <= KINDS.index(first)
+            if not kind.closes or both_ways:
                 continue
             second = {two.key: two for two in _merged(kind, evidence)}
             for two in _merged(kind, after):
                 both = replace(
                     two,
                     kind=f"{first.name} and {kind.name}",
-                    words=f"{one.words}{AND}{two.words}",
+                    words=f"{one.words}, and {two.words}",
                     fitted=one.fitted + two.fitted,
                     cost=one.cost + two.cost + 1.0,
                     looser=False,
@@ -278,8 +277,7 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         better = any(
             set(one.rows) <= set(other.rows)
             and (
-                _same(one, other)
-                or other.whole != one.whole
+                other.whole != one.whole
                 or other.hypothesis.cost < one.hypothesis.cost
                 or len(other.rows) > len(one.rows)
                 or (not one.whole and other.lowered > 2.0 * one.lowered)
@@ -291,12 +289,6 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         }:
             kept.append(one)
             yield one
-
-
-def _same(one: _Found, other: _Found) -> bool:
-    """Whether two faults are two others in the other order."""
-    first, second = (set(found.hypothesis.words.split(AND)) for found in (one, other))
-    return first == second
 
 
 def _left_out(evidence: Evidence, found: _Found, quantity: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,21 +47,19 @@ class Kind:
 
     Attributes:
         name: of the kind. suppose: gives the faults of this kind that may be in the rows that disagree.
-        solves: whether trying it takes solving other cars or motions.
-        first: of those that solve, whether it is tried before the others, which are left out if it does.
+        stage: "numbers" needs only arithmetic; "motion" solves other motions of the car; "car" other cars and
+            instants, which are left out where a motion does; "last" says little, and is tried only on what
+            nothing else explains.
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
-        last: whether it is tried only on what nothing else explains, because it says little.
         of_time: whether it makes sense of numbers over time only.
         neighbours: whether it takes numbers from the rows beside, so that some rows alone do not show it.
     """
 
     name: str
     suppose: Callable[[Evidence], Iterator[Hypothesis]]
-    solves: bool = False
-    first: bool = False
+    stage: Literal["numbers", "motion", "car", "last"] = "numbers"
     opens: bool = False
     closes: bool = False
-    last: bool = False
     of_time: bool = False
     neighbours: bool = False

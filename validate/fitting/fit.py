@@ -220,13 +220,13 @@ def fit_hardpoints(
         allowed = "rows that the scene's car can have"
         raise FileError(measured.source, "", f"no row can be used ({why})", allowed)
     spread = _spread(curves, first, accuracy)[used]
-    turns = np.concatenate([np.full(len(s.values), s.meaning.unit == "rad") for s in measured.numbers])[used]
     tried, failures = count(1), dict[str, None]()
 
     def gap(numbers: Array) -> Array:
         """Ours less theirs; whole turns apart is the same angle."""
-        apart = numbers[used] - theirs[used]
-        return np.asarray(np.where(turns, (apart + np.pi) % (2.0 * np.pi) - np.pi, apart))
+        columns = numbers.reshape(len(measured.numbers), -1)
+        apart = [s.apart(own, s.values) for s, own in zip(measured.numbers, columns, strict=True)]
+        return np.concatenate(apart)[used]
 
     def left(amounts: Array) -> Array:
         """What is left by corrections, NaN where the design cannot be solved or a row has no pose."""

@@ -64,7 +64,6 @@ from validate.toml_written import key_of, value_of
 
 Array = NDArray[np.float64]
 
-BELOW = {"mm": "a length", "rad": "an angle", "s": "a time"}
 Definition = Literal["projected", "arcsine"]
 PROJECTED: Definition = "projected"
 ARCSINE: Definition = "arcsine"
@@ -155,6 +154,11 @@ class Series:
         values = np.unique(self.values[np.isfinite(self.values)])
         # Reading rounds far below the last digit.
         return len(values) >= FEWEST and bool(np.ptp(np.diff(values)) <= 1e-3 * np.min(self.off))
+
+    def apart(self, ours: Array, theirs: Array) -> Array:
+        """Ours less theirs; whole turns apart is the same angle."""
+        gap, turn = ours - theirs, 2.0 * math.pi
+        return gap - turn * np.rint(gap / turn) if self.meaning.unit == "rad" else gap
 
     def taken(self, rows: NDArray[np.bool_]) -> Series:
         """Some of its rows."""
@@ -457,30 +461,23 @@ class _Map:
         if "/" in meaning.unit or (meaning.quantity != PLACES and angle_of(meaning) is None):
             problem, allowed = f"is a derivative of {of.words}", "one of a coordinate or an angle of a line"
             raise self._column(column, problem, allowed)
-        below = below_of(unit, meaning.unit)
-        over = " and ".join(f"{shown(s.column)} [{s.meaning.unit}]" for s in independent)
-        every = ", ".join(f"{meaning.unit}/{s.meaning.unit}" for s in independent)
-        if not below:
-            problem = f"{shown(unit)!r} is no unit of a derivative of {of.words}"
-            problem = problem if unit else "its unit is not said, neither behind its name nor in a map"
-            raise self._column(column, problem, f"{every}, or deg/m and the like: rows are taken by {over}")
-        said = [
+        below, by = below_of(unit, meaning.unit), meaning.per
+        fitting = [
             s
             for s in independent
-            if meaning.per in ("", s.column, s.meaning.words) or s.meaning.words.endswith(f".{meaning.per}")
+            if s.meaning.unit == below and by in ("", s.column, s.meaning.name, s.meaning.words)
         ]
-        if not said:
-            problem = f"is a derivative by {shown(meaning.per)!r}, and rows are taken by {over}"
-            raise self._column(column, problem, listed(s.column for s in independent))
-        chosen = [s for s in said if s.meaning.unit == below]
-        if not chosen:
-            problem = f"{shown(unit)!r} is by {BELOW[below]}, and rows are taken by {over}"
-            raise self._column(column, problem, f"{every}, or what stands for these")
-        if len(chosen) > 1:
-            problem = f"{shown(unit)!r} may be by {listed((s.column for s in chosen), ' or by ')}"
-            raise self._column(column, problem, f'is = "d({of.words})/d({shown(chosen[0].column)})" in a map')
-        by = chosen[0].meaning
-        return replace(meaning, per=by.words, unit=f"{meaning.unit}/{by.unit}")
+        if len(fitting) > 1:
+            problem = f"{shown(unit)!r} may be by {listed((s.column for s in fitting), ' or by ')}"
+            say = f'is = "d({of.words})/d({shown(fitting[0].column)})" in a map'
+            raise self._column(column, problem, say)
+        if not fitting:
+            what = f"a derivative of {of.words}" + (f" by {shown(by)!r}" if by else "")
+            problem = f"{shown(unit)!r} is no unit of {what}" if unit else f"{what} has no unit"
+            every = ", ".join(f"{meaning.unit}/{s.meaning.unit} by {shown(s.column)}" for s in independent)
+            raise self._column(column, problem, f"{every}, or deg/m and the like, as rows are taken")
+        found = fitting[0].meaning
+        return replace(meaning, per=found.words, unit=f"{meaning.unit}/{found.unit}")
 
     def _one(self, column: str, meaning: Meaning) -> Series:
         i, part = self.columns.names.index(column), self._part(column)

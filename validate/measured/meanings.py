@@ -10,11 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Literal
 
 from pointcoord.effects.angle import Angle
-from pointcoord.effects.registry import ALWAYS, ANGLES, EFFECTS, QUANTITIES
+from pointcoord.effects.registry import ANGLES, QUANTITIES
 from pointcoord.linkage.topology import Topology
+from validate.solvers.names import known_names
 
 AXES = "xyz"
 # d(toe)/d(bump), or dtoe/dbump.
@@ -72,14 +74,11 @@ def meanings_of(topology: Topology) -> dict[str, Meaning]:
         for order, per in ((1, "s"), (2, "s^2")):
             rate = Meaning("rate", one.words, f"{one.unit}/{per}", order=order)
             found[rate.words] = rate
-    names_of = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
-    for effect in (*ALWAYS, *EFFECTS.values()):
-        for quantity, names in effect.gives_numbers.items():
-            unit, of = QUANTITIES[quantity].unit, QUANTITIES[quantity].of
-            for name in names_of[of] if names is None else names:
-                for axis in (None,) if of == "car" else (0, 1, 2):
-                    number = Meaning("number", name, unit, quantity, axis)
-                    found[number.words] = number
+    for quantity, names in known_names(topology).items():
+        kind = QUANTITIES[quantity]
+        for name, axis in product(names, (None,) if kind.of == "car" else (0, 1, 2)):
+            number = Meaning("number", name, kind.unit, quantity, axis)
+            found[number.words] = number
     return found
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations, islice, product
+from itertools import islice, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,17 +62,40 @@ class Supposed:
 
 @dataclass(frozen=True)
 class _Change:
-    """x = factor v + more, in words of the column.
+    """x = factor v + more of a column v.
 
     Attributes:
-        cost: how far-fetched it is. found: whether the offset was found by least squares.
+        found: whether `more` was found by least squares.
     """
 
-    words: str = ""
     factor: float = 1.0
     more: float = 0.0
-    cost: float = 0.0
     found: bool = False
+
+    @property
+    def cost(self) -> float:
+        """How far-fetched it is."""
+        return (abs(self.factor) != 1.0) + (self.factor < 0.0) + 1.1 * (self.more != 0.0) + 2.0 * self.found
+
+    def words(self, s: Series, drawn: float) -> str:
+        """What is said of the column."""
+        unit, said = s.meaning.unit, _unit_of(s)
+        if (self.factor, self.more) == (-1.0, math.pi):
+            return "is pi minus ours"
+        parts, turned = [], self.factor < 0.0
+        if other := next(
+            (n for n, size in _units(unit) if math.isclose(size / s.factor, abs(self.factor))), ""
+        ):
+            parts += [] if other == said else [f"is in {other}, not in {said}"]
+        if not self.more:
+            parts += ["has the other sign"] * turned
+        elif abs(self.more - drawn) <= NEAR * abs(drawn):
+            parts.append("counts from the drawing on" + ", the other way" * turned)
+        else:
+            parts += ["counts the other way"] * turned
+            missing = "missing" if self.more > 0.0 else "too many"
+            parts.append(f"counts from another zero: {abs(self.more / s.factor):.5g} {said} are {missing}")
+        return ", and ".join(parts)
 
 
 Changes = dict[int, _Change]
@@ -170,23 +193,14 @@ def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
     # Simple before far-fetched, where both leave as little as the digits of a file allow.
     kept.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), sum(c.cost for c in one[1].values())))
     for _, changes in kept:
-        yield from _changed(measured, changes)
-
-
-def _changed(measured: Measured, changes: Changes) -> Iterator[Supposed]:
-    """The file with its independent columns changed."""
-    independent = _moved(measured, changes)
-    words = ", and ".join(f"{shown(independent[i].column)} {change.words}" for i, change in changes.items())
-    other = replace(measured, independent=independent)
-    fitted = any(change.found for change in changes.values())
-    turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
-    slopes = [s for s in measured.numbers if s.meaning.per in turned]
-    numbers = tuple(replace(s, values=-s.values) if s in slopes else s for s in measured.numbers)
-    yield Supposed(words, replace(other, numbers=numbers), found=fitted)
-    if slopes:
-        # Derivatives by a column that counts the other way do so too, if they were not made of another.
-        names = ", ".join(shown(s.column) for s in slopes)
-        yield Supposed(f"{words}, and {names} is by it as it is said", other, found=fitted)
+        said = ((measured.independent[i], change) for i, change in changes.items())
+        words = (f"{shown(s.column)} {change.words(s, trial.drawn(s))}" for s, change in said)
+        independent = _moved(measured, changes)
+        # Derivatives by a column that counts the other way do so too.
+        turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
+        numbers = (replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers)
+        other = replace(measured, independent=independent, numbers=tuple(numbers))
+        yield Supposed(", and ".join(words), other, found=any(one.found for one in changes.values()))
 
 
 def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
@@ -229,36 +243,19 @@ class _Trial:
         self.spread = np.where(wide > 0.0, wide, 1.0)[:, None]
 
     def supposed(self) -> Iterator[Changes]:
-        """What each column is changed by: one alone, two together, one by another zero."""
-        known = [list(self._known(s)) for s in self.measured.independent]
-        for i, changes in enumerate(known):
-            yield from ({i: change} for change in changes)
-        for (i, first), (j, second) in combinations(enumerate(known), 2):
-            for one, two in product(first, second):
-                # Of units of two columns only that both are in the same.
-                if abs(one.factor) == abs(two.factor):
-                    yield {i: replace(one, cost=one.cost + 1.0), j: two}
-        for i, factor in product(range(len(known)), (1.0, -1.0)):
+        """What each column is changed by: one alone, all with the other sign, one by another zero."""
+        for i, s in enumerate(self.measured.independent):
+            factors = [sign * size / s.factor for _, size in _units(s.meaning.unit) for sign in (1.0, -1.0)]
+            zeros = {0.0, self.drawn(s)}
+            changes = [_Change(1.0 if math.isclose(f, 1.0) else f, more) for f in factors for more in zeros]
+            changes += [_Change(-1.0, math.pi)] if s.meaning.unit == "rad" else []
+            yield from ({i: change} for change in changes if change != _Change())
+        yield {i: _Change(-1.0) for i in range(len(self.measured.independent))}
+        for i, factor in product(range(len(self.measured.independent)), (1.0, -1.0)):
             if change := self._other_zero(i, factor):
                 yield {i: change}
 
-    def _known(self, s: Series) -> Iterator[_Change]:
-        """Changes of a column that nothing is found for."""
-        unit, drawn, said = s.meaning.unit, self._drawn(s), _unit_of(s)
-        if unit == "rad":
-            yield _Change("is pi minus ours", -1.0, math.pi, 1.2)
-        ways = {"": (1.0, 0.0, 0.0), "has the other sign": (-1.0, 0.0, 1.0)}
-        if drawn:
-            ways["counts from the drawing on"] = 1.0, drawn, 1.1
-            ways["counts from the drawing on, the other way"] = -1.0, drawn, 1.3
-        for name, size in _units(unit):
-            factor = size / s.factor
-            other = f"is in {name}, not in {said}" if abs(factor - 1.0) > 1e-9 else ""
-            for way, (sign, more, cost) in ways.items():
-                if words := ", and ".join(filter(None, (other, way))):
-                    yield _Change(words, sign * factor, more, cost + 1.1 * bool(other))
-
-    def _drawn(self, s: Series) -> float:
+    def drawn(self, s: Series) -> float:
         """An input of the drawing; a travel counts from there by itself."""
         return self.driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
 
@@ -274,13 +271,13 @@ class _Trial:
     def _other_zero(self, i: int, factor: float) -> _Change | None:
         """The zero that least squares find for a column, as round as it may be; None if none comes near."""
         s = self.measured.independent[i]
-        drawn, unit = self._drawn(s), _unit_of(s)
+        drawn = self.drawn(s)
 
         def left(more: float) -> float:
-            return self.left({i: _Change("", factor, more)})
+            return self.left({i: _Change(factor, more)})
 
         def gaps(sets: Array) -> Array:
-            gap = np.stack([self._gaps({i: _Change("", factor, float(more))}) for (more,) in sets])
+            gap = np.stack([self._gaps({i: _Change(factor, float(more))}) for (more,) in sets])
             # Rows out of reach say nothing of it; most of them must say something.
             found = np.isfinite(gap)
             enough = (found | ~self.there).mean(axis=(1, 2), keepdims=True) >= NEARLY_ALL
@@ -295,12 +292,7 @@ class _Trial:
             return None
         rounded = (s.factor * round(best / s.factor, decimals) for decimals in range(7))
         more = next((one for one in rounded if left(one) <= CLOSE * least), best)
-        if drawn and factor > 0.0 and abs(more - drawn) <= NEAR * abs(drawn):
-            return _Change("counts from the drawing on", factor, more, 2.0, found=True)
-        way = "counts the other way, and " if factor < 0.0 else ""
-        missing = "missing" if more > 0.0 else "too many"
-        words = f"{way}counts from another zero: {abs(more / s.factor):.5g} {unit} are {missing}"
-        return _Change(words, factor, more, 3.0 - factor, found=True)
+        return _Change(factor, more, found=True)
 
     def _gaps(self, changes: Changes) -> Array:
         """Theirs less ours, of the spread of theirs, (columns, rows); NaN where there is no pose."""
@@ -311,10 +303,10 @@ class _Trial:
         found = self.driven.poses(values, numbers)
         ours = [ours_of(s, found, self.driven.scene)[0] for s in numbers]
         nothing = np.full(len(values[0]), np.nan)
-        gap = self.theirs - np.stack([nothing if one is None else one for one in ours])
-        angles = np.array([s.meaning.unit == "rad" for s in numbers])[:, None]
-        turned = (gap + math.pi) % (2.0 * math.pi) - math.pi
-        return np.asarray(np.where(angles, turned, gap) / self.spread)
+        gap = [
+            s.apart(nothing if one is None else one, s.values) for s, one in zip(numbers, ours, strict=True)
+        ]
+        return np.stack(gap) / self.spread
 
 
 def _unit_of(s: Series) -> str:

@@ -81,7 +81,7 @@ class Held:
     @property
     def gap(self) -> Array:
         """Difference of every number, (N,), NaN where there is none."""
-        return _apart(self.series.values, self.ours, self.series)
+        return np.abs(self.series.apart(self.ours, self.series.values))
 
     @property
     def share(self) -> Array:
@@ -152,7 +152,7 @@ def held_of(
         swing, supposed = nothing, nothing
         for unstated, sides in around:
             there = (ours_of(s, side, scene)[0] for side in sides)
-            gaps = [np.nan_to_num(_apart(other, mine, s)) for other in there if other is not None]
+            gaps = [np.nan_to_num(np.abs(s.apart(other, mine))) for other in there if other is not None]
             change = np.max([nothing, *gaps], axis=0)
             swing, supposed = swing + change, supposed + unstated * change
         own = ours_of(s, stated, scene)[1] if s in unsaid else s.accuracy_or(accuracy or 0.0)
@@ -224,12 +224,6 @@ def _granted(unsaid: Sequence[Series], measured: Measured, scene: Scene) -> str:
         f"compared with points placed within {scene.tolerance:g} mm, the scene's tolerance, and with what "
         f"that makes of each number: {who} in full digits and no --accuracy is given"
     )
-
-
-def _apart(one: Array, other: Array, series: Series) -> Array:
-    """How far numbers of a column are apart; whole turns apart is the same angle."""
-    gap = np.abs(one - other)
-    return np.minimum(gap, np.abs(2.0 * np.pi - gap)) if series.meaning.unit == "rad" else gap
 
 
 def _out_of_reach(measured: Measured, found: Found) -> list[str]:

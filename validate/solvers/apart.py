@@ -6,26 +6,24 @@ could not be kept either, since nothing can interrupt a library that does not re
 in a child, which costs half a second once. The child imports the solver once and keeps it for all scenes. One
 that crashes or is stopped is made anew for the next scene: what it knew is lost, and with it only that scene.
 
-Requests and answers are pickled, in pairs, through the child's standard input and output; what the solver
-prints goes to standard error, and where it reads standard input there is none. The child's process group is
-ended with it, so that what a solver started does not stay behind. From Python (`check`, the pytest plugin) a
+Requests and answers go through a pipe; what the solver prints goes to standard error, and where it reads
+standard input there is none. The child's process group is ended with it, so that what a solver started does
+not stay behind. From Python (`check`, the pytest plugin) a
 solver is called where it is: a function that lives there cannot be sent elsewhere.
 """
 
 from __future__ import annotations
 
-import json
 import os
-import pickle
 import signal
-import subprocess
 import sys
-import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from queue import Empty, SimpleQueue
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
+from threading import TIMEOUT_MAX
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -35,7 +33,6 @@ from validate.solvers.plain import NoSolver, Solve, SolverFailed, no_mapping, ra
 
 LIMIT = 600.0  # s, an answer: no motion of a suspension takes so long
 PARTING = 2.0  # s, that a child is given to end by itself
-CODE = f"import json, sys; sys.path[:] = json.loads(sys.argv.pop()); from {__name__} import serve; serve()"
 
 # What the child says first: how it went. Then what there is to say of it.
 FOUND, NONE, ANSWER, FAILED = "found", "no solver", "answer", "failed"
@@ -125,50 +122,30 @@ class Apart:
 
 
 class _Child:
-    """The process, and a thread that reads what it says."""
+    """The process, and the pipe to it."""
 
     def __init__(self, place: str, with_traceback: bool) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", CODE, json.dumps(sys.path)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=True,
-        )
-        assert self._process.stdin is not None  # both are pipes
-        assert self._process.stdout is not None
-        self._requests: IO[bytes] = self._process.stdin
-        self._answers: SimpleQueue[Any] = SimpleQueue()
-        reader = threading.Thread(target=self._read, args=(self._process.stdout,), daemon=True)
-        reader.start()
-        self.ask((place, with_traceback))
-
-    def _read(self, stream: IO[bytes]) -> None:
-        """Put what it says into a queue, and None at its end."""
-        with stream:
-            try:
-                while True:
-                    self._answers.put(pickle.load(stream))
-            except Exception:
-                # Cut off in the middle of an answer is an end like any other.
-                self._answers.put(None)
+        context = get_context("spawn")
+        self._pipe, there = context.Pipe()
+        self._process = context.Process(target=serve, args=(there, place, with_traceback))
+        self._process.start()
+        there.close()
 
     def ask(self, what: object) -> None:
         """Send something; that it has ended is found when its answer is awaited."""
         with suppress(OSError):
-            pickle.dump(what, self._requests, protocol=pickle.HIGHEST_PROTOCOL)
-            self._requests.flush()
+            self._pipe.send(what)
 
     def said(self, limit: float) -> Any:
         """What it says next, or in words why it says nothing."""
-        try:
-            answer = self._answers.get(timeout=min(limit, threading.TIMEOUT_MAX))
-        except Empty:
+        if not wait([self._pipe, self._process.sentinel], min(limit, TIMEOUT_MAX)):
             return f"it took longer than {limit:g} s and was stopped; --solver-timeout S allows more"
-        if answer is not None:
-            return answer
-        try:
-            status = self._process.wait(PARTING)
-        except subprocess.TimeoutExpired:
+        # An answer that is cut off in the middle is an end like any other.
+        with suppress(Exception):
+            return self._pipe.recv()
+        self._process.join(PARTING)
+        status = self._process.exitcode
+        if status is None:
             return "its process closed its output without an answer"
         if status >= 0:
             return f"its process ended with exit status {status} and without an answer"
@@ -177,41 +154,35 @@ class _Child:
 
     def end(self, idle: bool) -> None:
         """End it and what it started; an idle one by the end of its requests, so that it can close files."""
-        with suppress(OSError):
-            self._requests.close()
+        self._pipe.close()
         if idle:
-            with suppress(Empty):
-                self._answers.get(timeout=PARTING)
-        if sys.platform == "win32":
-            self._process.kill()
-        else:
+            self._process.join(PARTING)
+        if sys.platform != "win32" and self._process.pid is not None:
             with suppress(ProcessLookupError, PermissionError):
                 os.killpg(self._process.pid, signal.SIGKILL)
-        self._process.wait()
+        self._process.kill()
+        self._process.join()
 
 
-def serve() -> None:
+def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:
     """What the child does: import the solver that it is told, and answer until nobody asks any more."""
-    requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
+    if sys.platform != "win32":
+        os.setsid()
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)
-
-    def say(*what: object) -> None:
-        pickle.dump(what, answers, protocol=pickle.HIGHEST_PROTOCOL)
-        answers.flush()
-
-    place, with_traceback = pickle.load(requests)
     try:
         solve = solver_at(place, with_traceback)
     except NoSolver as error:
-        say(NONE, (error.what, error.problem, error.remedy))
+        pipe.send((NONE, (error.what, error.problem, error.remedy)))
         return
-    say(FOUND, None)
-    # Nobody asks any more when the run has ended, however it ended; or the solver has closed what it may not.
-    with suppress(EOFError, OSError):
+    pipe.send((FOUND, None))
+    try:
         while True:
-            say(*_answer(solve, pickle.load(requests)))
+            pipe.send(_answer(solve, pipe.recv()))
+    except EOFError:
+        return  # nobody asks any more: the run has ended, however it ended
+    except OSError:
+        os._exit(1)  # the solver has closed what it may not
 
 
 def _answer(solve: Solve, given: dict[str, Any]) -> tuple[str, object]:

@@ -5,22 +5,20 @@ from __future__ import annotations
 from collections.abc import Collection
 from difflib import get_close_matches
 
-from pointcoord import Scene
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from validate.formulations.asked_numbers import asked_numbers
+from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.linkage.topology import Topology
 
 ALIKE = 0.8  # of their letters, of names of which one is the other misspelt: "iterations" is no acceleration
 
 
-def known_names(scene: Scene) -> dict[str, tuple[str, ...]]:
-    """By quantity, every name that a number of it can have, whether the scene asks for it or not."""
-    topology = scene.mechanism.topology
+def known_names(topology: Topology) -> dict[str, tuple[str, ...]]:
+    """By quantity, every name that a number of it can have, whether a scene asks for it or not."""
     every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
-    asked = asked_numbers(scene)
-    found = {q: tuple(dict.fromkeys((*asked.get(q, ()), *every[kind.of]))) for q, kind in QUANTITIES.items()}
-    for effect in EFFECTS.values():
+    found: dict[str, tuple[str, ...]] = {}
+    for effect in (*ALWAYS, *EFFECTS.values()):
         for quantity, names in effect.gives_numbers.items():
-            found[quantity] = tuple(dict.fromkeys((*found[quantity], *(names or ()))))
+            there = every[QUANTITIES[quantity].of] if names is None else names
+            found[quantity] = tuple(dict.fromkeys((*found.get(quantity, ()), *there)))
     return found
 
 

@@ -209,7 +209,7 @@ def _numbers(
     who: str, answer: Mapping[str, Any], scene: Scene
 ) -> tuple[dict[str, dict[str, Any]], tuple[str, ...], tuple[str, ...]]:
     """What was asked for, of all that was answered; a line for what was not; one for what cannot be used."""
-    asked, known = asked_numbers(scene), known_names(scene)
+    asked, known = asked_numbers(scene), known_names(scene.mechanism.topology)
     every = (*known, *(name for q, names in known.items() if QUANTITIES[q].of == "car" for name in names))
     of_the_car = {n: q for q, names in asked.items() if QUANTITIES[q].of == "car" for n in names}
     found: dict[str, dict[str, Any]] = {}

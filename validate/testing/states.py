@@ -47,7 +47,7 @@ def require_comparable(states: Mapping[str, Any], scene: Scene) -> None:
     Raises:
         WrongStates: one has another shape, no numbers, or a name that is misspelt.
     """
-    known = known_names(scene)
+    known = known_names(scene.mechanism.topology)
     alone = {name: q for q, names in known.items() if QUANTITIES[q].of == "car" for name in names}
     count = len(scene.instants)
     if INSTANTS in states and np.ndim(states[INSTANTS]) == 1:
@@ -93,7 +93,7 @@ def require_given(states: Mapping[str, Any], scene: Scene, needed: Collection[st
 
 def numbers_of(states: Mapping[str, Any], scene: Scene) -> tuple[Array, list[Array]]:
     """The instants of comparable states, (N,), and every array of theirs, (N, 3) or (N,)."""
-    known = known_names(scene)
+    known = known_names(scene.mechanism.topology)
     alone = {name for q, names in known.items() if QUANTITIES[q].of == "car" for name in names}
     found = [
         np.asarray(array, dtype=float)

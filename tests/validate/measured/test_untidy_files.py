@@ -5,7 +5,6 @@ from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import pointcoord
@@ -59,16 +58,6 @@ def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_pa
     with pytest.raises(FileError, match=r"'toe' of .* holds 'rig' and the like; allowed: columns of numbers"):
         read(tmp_path, data, map)
     assert len(read(tmp_path, data, map.replace('unit = "deg"', 'is = "ignore"')).numbers) == 1
-
-
-def test_parquet_with_an_index_and_words_gives_its_numbers(tmp_path: Path) -> None:
-    table = pd.DataFrame(
-        {"camber [deg]": [0.0, None], "who": ["a", "b"]}, index=pd.Index([0.0, 5.0], name="rack [mm]")
-    )
-    table.to_parquet(tmp_path / "x.parquet")
-    found = read_results(str(tmp_path / "x.parquet"), None, CAR)
-    assert found.independent[0].values.tolist() == [0.0, 5.0]
-    assert any("who, which holds object and no numbers" in note for note in found.notes)
 
 
 def compared(folder: Path, text: str) -> DataOutcome:

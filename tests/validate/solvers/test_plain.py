@@ -9,9 +9,8 @@ from plain_solvers import closed_form
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate import FormulationError, check, compare
+from validate import FormulationError, check
 from validate.hard.cars import BESIDE_CAR, scene_content
-from validate.output import report
 from validate.solvers.plain import NoSolver, given_to_solver
 
 CAR = BESIDE_CAR
@@ -243,25 +242,3 @@ def test_a_disagreement_from_python_carries_what_would_explain_it() -> None:
     outcome = check(lambda given: {"camber": np.degrees(RIGHT["wheel"]["camber"])}, SCENE)
     assert [one.words for one in outcome.explanations] == ["camber: degrees for radians"]
     assert check(closed_form, SCENE).explanations == ()
-
-
-def test_the_stated_accuracy_stands_beside_the_comparison() -> None:
-    outcome = check(closed_form, SCENE, accuracy=1e-4)
-    assert report.outcome_data(outcome)["accuracy"] == 1e-4
-    assert report.outcome_data(compare(SCENE, "pointcoord", "absolute"))["accuracy"] is None
-
-
-def test_verdicts_are_counted_and_said_in_plain_words() -> None:
-    angles = RIGHT["wheel"]
-    nan = angles["toe"] * np.nan
-    outcome = check(lambda given: {"toe": nan, "camber": angles["camber"], "caster": angles["caster"]}, SCENE)
-    assert ", 2 agree" in repr(outcome)
-    assert "1 disagrees" in repr(outcome)
-    text = report.outcome_text(outcome)
-    assert "DISAGREES, not a number" in text
-    assert " inf " not in text
-    one = Scene.from_mapping(
-        scene_content(CAR, (1.6, 0.12, -0.3), (4.0, -25.0), start=0.5, stop=0.5, samples=1), "one"
-    )
-    alone = closed_form(given_to_solver(one))["wheel"]
-    assert "pointcoord, 1 instant\n" in report.outcome_text(check(lambda given: alone, one))

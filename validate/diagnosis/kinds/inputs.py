@@ -1,13 +1,11 @@
 """Wrong inputs x, each taken as k x + m: with the other sign, as pi minus it, k times, so much more.
 
-What needs no number is tried first: one input, then two. Then k or m of one input, and at last k and m of all
-together, are found by least squares. It is for the whole car.
+k or m of one input, then k and m of all together, are found by least squares. It is for the whole car.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +15,7 @@ from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.scene.scene_file import InputPart
 from validate.diagnosis.evidence import Evidence
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.least import PROMISING, fitted, meant
+from validate.diagnosis.least import fitted, meant
 from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
@@ -33,13 +31,12 @@ MEANT = 1e-8
 
 def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Simple before far-fetched, and no more of these where something explains all."""
-    laws, units = evidence.scene.inputs, evidence.scene.mechanism.topology.input_units
+    laws = evidence.scene.inputs
     count, looked = len(evidence.times), evidence.first_wrong
     few = evidence.at(np.unique(np.linspace(0, count - 1, min(FEW, count)).astype(np.intp)).tolist())
-    ours, theirs = (np.concatenate([part[row].ravel() for row in looked]) for part in few.both)
+    theirs = np.concatenate([few.given[row].ravel() for row in looked])
     if not np.isfinite(theirs).all():
         return
-    apart = float(np.linalg.norm(theirs - ours))
     sizes = {name: np.abs(rates(law, few.times)[:, 0]) for name, law in laws.items()}
     moving = [name for name in laws if sizes[name].any()]
 
@@ -50,10 +47,12 @@ def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
             return None
         return np.concatenate([numbers[quantity][of].ravel() for quantity, of in looked])
 
-    def supposed(taken: Taken, found: int, cost: float) -> Hypothesis | None:
+    def supposed(taken: Taken) -> Hypothesis | None:
         motion = _motion(evidence, taken)
         if motion is None:
             return None
+        found = sum((abs(k) != 1.0) + (m != 0.0) for k, m in taken.values())
+        cost = 1.2 + 0.2 * found + 0.1 * len(taken)
         words = ", and ".join(f"the input {name} {_said(evidence, name, *km)}" for name, km in taken.items())
         return Hypothesis(tuple(taken.items()), words, evidence.by(motion), found, cost, whole=True)
 
@@ -80,35 +79,11 @@ def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
             found[i] = near[0] if near else meant(float(found[i]))
         return {name: km for name, km in at(found).items() if km != OURS}
 
-    known = {
-        name: [(-1.0, 0.0)] * (name in moving) + [(-1.0, np.pi)] * (units[name] == "rad") for name in laws
-    }
-    ones = [({name: km}, 1.0) for name, some in known.items() for km in some]
-    twos = [
-        ({one: km, two: other}, 1.8)
-        for one, two in combinations(known, 2)
-        for km, other in product(known[one], known[two])
-    ]
-    single = [
-        ([(name, which)], 1.5 - 0.1 * which) for which in (0, 1) for name in (laws if which else moving)
-    ]
+    # One number alone, then all together; of an input that stands still k and m are one.
+    single = [[(name, which)] for which in (0, 1) for name in (laws if which else moving)]
     every = [(name, which) for name in laws for which in (0, 1) if which or np.ptp(sizes[name]) > 0.0]
-
-    def stages() -> Iterator[list[Hypothesis | None]]:
-        for candidates in (ones, twos):
-            yield [
-                supposed(taken, 0, cost)
-                for taken, cost in candidates
-                if (numbers := read(taken)) is not None
-                and np.linalg.norm(theirs - numbers) <= PROMISING * apart
-            ]
-        yield [supposed(taken, 1, cost) for places, cost in single if (taken := search(places))]
-        if taken := search(every):
-            found = sum((abs(k) != 1.0) + (m != 0.0) for k, m in taken.values())
-            yield [supposed(taken, found, 1.6 + 0.2 * found)]
-
-    for stage in stages():
-        some = [one for one in stage if one is not None]
+    for stage in (single, [every]):
+        some = [one for places in stage if (taken := search(places)) and (one := supposed(taken))]
         yield from some
         if any(all(evidence.left(row, *one.rows[row]) <= 1.0 for row in looked) for one in some):
             return

@@ -10,6 +10,7 @@ disagree themselves explain nothing: any car's rates are nearly differences of i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,47 +29,13 @@ def _steps(x: Array, t: Array) -> Array:
     return np.diff(x, axis=0) / np.diff(t).reshape(-1, *[1] * (x.ndim - 1))
 
 
-def _forward(x: Array, t: Array) -> Array:
-    steps = _steps(x, t)
-    return np.concatenate([steps, steps[-1:]])
-
-
-def _backward(x: Array, t: Array) -> Array:
-    steps = _steps(x, t)
-    return np.concatenate([steps[:1], steps])
-
-
-def _forward_and_zero(x: Array, t: Array) -> Array:
-    steps = _steps(x, t)
-    return np.concatenate([steps, 0.0 * steps[-1:]])
-
-
-def _zero_and_backward(x: Array, t: Array) -> Array:
-    steps = _steps(x, t)
-    return np.concatenate([0.0 * steps[:1], steps])
-
-
-def _central(x: Array, t: Array) -> Array:
-    return np.asarray(np.gradient(x, t, axis=0))
-
-
-def _central_second_order(x: Array, t: Array) -> Array:
-    return np.asarray(np.gradient(x, t, axis=0, edge_order=2))
-
-
-def _repeated(x: Array, t: Array) -> Array:
-    inner = _central(x, t)[1:-1]
-    return np.concatenate([inner[:1], inner, inner[-1:]])
-
-
-def _zeros_outside(x: Array, t: Array) -> Array:
-    inner = _central(x, t)[1:-1]
-    return np.concatenate([0.0 * inner[:1], inner, 0.0 * inner[-1:]])
+def _padded(inner: Array, before: int, after: int, mode: Literal["edge", "constant"] = "edge") -> Array:
+    """With its first and last number repeated, or with zeros."""
+    return np.pad(inner, [(before, after), *[(0, 0)] * (inner.ndim - 1)], mode=mode)
 
 
 def _second(x: Array, t: Array) -> Array:
-    inner = _steps(_steps(x, t), 0.5 * (t[1:] + t[:-1]))
-    return np.concatenate([inner[:1], inner, inner[-1:]])
+    return _padded(_steps(_steps(x, t), 0.5 * (t[1:] + t[:-1])), 1, 1)
 
 
 def _twice(rule: Rule) -> Rule:
@@ -76,14 +43,18 @@ def _twice(rule: Rule) -> Rule:
 
 
 ONCE: dict[str, Rule] = {
-    "central differences": _central,
-    "central differences, of second order at the ends too": _central_second_order,
-    "central differences, repeated at the ends": _repeated,
-    "forward differences": _forward,
-    "backward differences": _backward,
-    "central differences, zero at the ends": _zeros_outside,
-    "forward differences, zero in the last row": _forward_and_zero,
-    "backward differences, zero in the first row": _zero_and_backward,
+    "central differences": lambda x, t: np.asarray(np.gradient(x, t, axis=0)),
+    "central differences, of second order at the ends too": lambda x, t: np.asarray(
+        np.gradient(x, t, axis=0, edge_order=2)
+    ),
+    "central differences, repeated at the ends": lambda x, t: _padded(np.gradient(x, t, axis=0)[1:-1], 1, 1),
+    "forward differences": lambda x, t: _padded(_steps(x, t), 0, 1),
+    "backward differences": lambda x, t: _padded(_steps(x, t), 1, 0),
+    "central differences, zero at the ends": lambda x, t: _padded(
+        np.gradient(x, t, axis=0)[1:-1], 1, 1, "constant"
+    ),
+    "forward differences, zero in the last row": lambda x, t: _padded(_steps(x, t), 0, 1, "constant"),
+    "backward differences, zero in the first row": lambda x, t: _padded(_steps(x, t), 1, 0, "constant"),
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),
