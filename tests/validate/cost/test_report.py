@@ -5,7 +5,6 @@ import io
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 
-import pytest
 from made_rows import alike, measured, study
 
 from validate.cost.looks import looks
@@ -17,19 +16,6 @@ from validate.output.table import Table as Shown
 
 ROWS = tuple(study())
 REPORT = Report("rows.parquet", "pointcoord cost --from-rows", False, ROWS)
-
-
-def test_a_terminal_sees_the_sentences_first_and_tables_of_positions() -> None:
-    text = REPORT.text()
-    lines = text.splitlines()
-    assert lines[0] == "What accuracy costs in time"
-    assert lines[1].startswith("A pose to 1e-9 mm of position takes series")
-    assert "a made machine, 2 cores" in text
-    titles = [line for line in lines if "by the cheapest setting" in line]
-    assert [title.split(":")[0] for title in titles] == ["bounce", "double-wishbone"]
-    assert all("accuracy of position" in title for title in titles)
-    # A page has every quantity.
-    assert REPORT.markdown().count("by the cheapest setting") == 10
 
 
 def test_a_table_has_the_quickest_way_first_and_the_dialled_number() -> None:
@@ -91,22 +77,6 @@ def test_a_folder_has_a_picture_of_each_scene_and_growth() -> None:
     assert b"![headline](headline.svg)" in found["report.md"]
 
 
-def test_the_headline_draws_every_way_that_gives_positions_where_it_is() -> None:
-    page = headline(REPORT.table)
-    assert page is not None
-    (axes,) = page.axes
-    lines = [line for line in axes.lines if line.get_zorder() == 3]
-    there = {
-        row.way
-        for row in ROWS
-        if row.scene == "bounce" and row.quantity == "position" and row.part == "accuracy"
-    }
-    assert len(lines) == len(there)
-    times = {round(float(x), 6) for line in lines for x in line.get_xdata()}
-    assert round(37.0, 6) in times
-    assert page.legends[0].get_title().get_text().startswith("A line is a way")
-
-
 def test_an_error_of_exactly_nothing_has_a_place_and_is_told() -> None:
     rows = measured("a", "series", "", {"position": 0.0}, 1e-5) + measured("a", "map", "", alike(1e-9), 1e-5)
     page = headline(Report("", "", False, tuple(rows)).table)
@@ -139,8 +109,3 @@ def test_no_two_ways_share_a_line_or_a_mark_and_new_ones_have_looks_too() -> Non
     assert len({look.marker for look in found.values()}) == len({look.symbol for look in found.values()})
     assert len({look.marker for look in found.values()}) == len(names) + 2
     assert looks(["mujoco"])["mujoco"] == found["mujoco"]
-
-
-@pytest.mark.parametrize("quick", [True, False])
-def test_a_quick_study_is_called_a_first_look(quick: bool) -> None:
-    assert ("quick" in dict(replace(REPORT, quick=quick).head())) == quick
