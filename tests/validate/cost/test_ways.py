@@ -1,7 +1,6 @@
 """Every way gives what a scene asks for, as exactly as it is set; no failure of one passes for an answer."""
 
 from collections.abc import Callable
-from inspect import getclosurevars
 from types import SimpleNamespace
 from typing import Any
 
@@ -194,6 +193,5 @@ def test_a_program_keeps_to_the_drawings_assembly_beside_a_toggle(
     # Planted: any step is taken, and no determinant is looked at.
     monkeypatch.setattr(program, "LONGEST_STEP", np.inf)
     monkeypatch.setattr(program, "CONTRACTED", np.inf)
-    sign = getclosurevars(solve).nonlocals["engine"].sign
-    monkeypatch.setattr(program, "_sign", lambda *_: sign)
+    monkeypatch.setattr(program.Program, "signs", lambda self, _: self.drawn)
     assert errors_of(solve(scene.instants), truth)["position"]["error"] > 1.0
