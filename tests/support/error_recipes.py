@@ -27,7 +27,6 @@ from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
-from validate.cost.apart import run_python
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.table import Store as RowStore
 from validate.cost.table import measured_here
@@ -423,10 +422,6 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.cost.race.NoNumbers": Recipe(
         lambda *_: errors_of(Answer({}), truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
-    ),
-    "validate.cost.apart.NotRun": Recipe(
-        lambda *_: run_python("-c", "raise SystemExit('no such thing')"),
-        ("ended with status 1", "no such thing"),
     ),
     "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),

@@ -3,10 +3,8 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
-import grown_tasks
 import numpy as np
 import pytest
 from grown_tasks import LEAST, ending
@@ -40,11 +38,6 @@ TIMES = np.linspace(0.0, 1.0, 41)
 # A tip is rounded by half a unit in the last place of 256 mm at most, 2^-46 mm, along each axis; a length
 # between two of them by six of these, and the root and the difference add less than another.
 LENGTH = 8.0 * 2.0**-46
-
-
-@pytest.fixture(autouse=True)
-def _tasks_can_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PYTHONPATH", str(Path(grown_tasks.__file__).parent))
 
 
 def apart(how: str, taken: int = 0, loading: int = 0, limits: Limits = LIMITS) -> Row:
