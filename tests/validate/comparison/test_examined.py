@@ -16,7 +16,7 @@ from validate.comparison.examined import examine
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.running import ROOT, asked_for, check_what_is_run, has_job
+from validate.running import ROOT, check_what_is_run, has_job
 
 PAIRS = (("pointcoord", "absolute"), ("pointcoord-newton", "absolute"))
 
@@ -153,26 +153,6 @@ def test_each_formulation_solves_a_scene_once(monkeypatch: pytest.MonkeyPatch) -
     assert found.printed is not None
 
 
-def test_printed_formulas_that_refuse_a_scene_change_no_verdict(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A strut that lies flat, as if it were one of the paper's scenes."""
-    path = short_scene(
-        tmp_path,
-        strut_top="[460, 200, 20]",
-        strut_rod_end="[456, -50, 20]",
-        strut_lower="[451, -270, 20]",
-        lower_ball_joint="[450, -330, 20]",
-        arm_angle="{ polynomial = [1.4, 0.1] }",
-        stop="0.1",
-    )
-    monkeypatch.setattr("validate.commands.comparison.PAPER_SCENES", (path,))
-    assert main(["validate", path, "-v"]) == 0
-    out, err = capsys.readouterr()
-    assert complaints(err) == []
-    assert f"The paper's formulas as printed cannot solve {path}: " in out
-
-
 def failing(monkeypatch: pytest.MonkeyPatch, error: Exception, title: str) -> None:
     """Makes the absolute model fail at scenes of one title."""
     solve = AbsoluteCoordinates.solve
@@ -279,19 +259,3 @@ def test_a_module_that_is_run_does_its_job_or_is_refused(
     assert ended.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pointcoord: {module} has nothing to run; ")
-
-
-@pytest.mark.parametrize(
-    ("original", "argv", "module"),
-    [
-        (["python", "-m", "validate.x"], ["-m"], "validate.x"),
-        (["python", "-X", "dev", "-m", "validate.x", "a"], ["-m", "a"], "validate.x"),
-        (["python", "-mvalidate.x", "a"], ["-m", "a"], "validate.x"),
-        (["python", "-Im", "validate.x"], ["-m"], "validate.x"),
-        (["python", "tool.py", "a"], ["tool.py", "a"], None),
-    ],
-)
-def test_the_module_that_python_was_asked_to_run_is_found(
-    original: list[str], argv: list[str], module: str | None
-) -> None:
-    assert asked_for(argv, original) == module

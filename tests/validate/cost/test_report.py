@@ -37,15 +37,6 @@ def test_what_has_no_numbers_is_told_with_its_reason_once() -> None:
     assert told["chain relative"] == ("left out", "1500 unknowns: would take an hour")
 
 
-def test_growth_and_loading_have_their_tables() -> None:
-    titles = {table.caption: table for table in REPORT.tables()}
-    growth = titles["Growth in unknowns of chain: value = factor x size^exponent, of the largest sizes"]
-    assert growth.rows[0][:3] == ("series 1e-09 mm", "time", "1.10 +- 0.00")
-    assert titles["Loading, the start of Python included"].rows == (
-        ("import pointcoord", "150 ms", "100 ms to 200 ms"),
-    )
-
-
 def test_the_csv_is_the_long_table_with_every_digit() -> None:
     lines = list(csv.DictReader(io.StringIO(REPORT.csv())))
     assert len(lines) == len(ROWS)

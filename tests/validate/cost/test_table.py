@@ -13,7 +13,7 @@ from made_rows import WHERE, study
 
 from pointcoord import Scene
 from validate.cost.scenes import StudyScene
-from validate.cost.table import Row, Store, StoreError, frame, latest, read_rows
+from validate.cost.table import Row, Store, StoreError, frame, read_rows
 
 HERE = Row("accuracy", "", "", **WHERE)
 ROW = replace(study()[0], error=1.0 / 3.0, rms=1e-300, **WHERE)
@@ -101,12 +101,6 @@ def test_a_file_that_is_no_such_table_is_refused_with_the_reason(
         assert words in str(caught.value)
         assert str(caught.value).endswith("; give another file")
     assert path.read_bytes() == content
-
-
-def test_of_a_scene_that_was_changed_the_last_rows_count_and_quick_ones_are_apart() -> None:
-    old, new, quick = replace(ROW, digest="old"), replace(ROW, digest="new"), replace(ROW, quick=True)
-    assert latest([old, quick, new], quick=False) == [new]
-    assert latest([old, quick, new], quick=True) == [quick]
 
 
 def test_the_digest_of_a_scene_is_of_all_that_it_says_but_not_of_its_title() -> None:

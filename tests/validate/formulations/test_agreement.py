@@ -67,16 +67,6 @@ def test_formulations_agree_on_random_cars_and_motions(scene: Scene) -> None:
     require_agreement(outcome)
 
 
-@given(scenes())
-def test_relative_coordinates_agree_on_random_cars_and_motions(scene: Scene) -> None:
-    try:
-        outcome = compare(scene, "pointcoord", "relative")
-    except FormulationError as error:
-        assume(not isinstance(error.reason, AssemblyError | InputOutOfRange))
-        raise
-    require_agreement(outcome)
-
-
 @settings(max_examples=10)
 @given(scenes(samples=3))
 def test_the_map_agrees_on_random_cars_and_motions(scene: Scene) -> None:

@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 from cars_in_closed_form import Linkage
 
-from pointcoord import Motion, MotionTooRough, PointcoordError, Scene, SingularConfiguration, simulate
+from pointcoord import Motion, MotionTooRough, Scene, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
 from pointcoord.method import Method
 from pointcoord.simulation import Task
 from validate.cars.car import Car
 from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
-from validate.formulations.point_coordinates import PointCoordinates, started
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 
@@ -108,23 +107,6 @@ def test_a_law_too_rough_to_follow_finely_is_followed_as_the_scene_asks(
     assert len(formulation("pointcoord").solve(scene).times) == len(scene.instants)
     assert asked[0] < 1e-11
     assert asked[1:] == [1e-3]
-
-
-def test_a_scene_that_cannot_start_is_refused_by_every_method_for_the_same_reason() -> None:
-    content = rack_to_its_end(0.5).model_dump(mode="json", exclude_none=True)
-    content["inputs"]["rack"] = {"constant": 1000.0}
-    bad = Scene.from_mapping(content)
-    start = started(bad)
-    assert isinstance(start, PointcoordError)
-    for method in ("pointcoord", "pointcoord-newton", "pointcoord-map"):
-        solver = formulation(method)
-        assert isinstance(solver, PointCoordinates)
-        reasons = []
-        for given in (None, start):
-            with pytest.raises(FormulationError) as caught:
-                solver.solve(bad, given)
-            reasons.append(str(caught.value))
-        assert reasons[0] == reasons[1]
 
 
 @pytest.mark.parametrize("quantity", ["velocity", "angular_acceleration", "wheel"])

@@ -154,20 +154,3 @@ def test_a_long_way_is_gone_in_steps_that_keep_to_one_assembly(
     monkeypatch.setattr(program, "HALVINGS", 3)
     with pytest.raises(PeerError, match="cannot be reached"):
         solved(program_of, linkage, last)
-
-
-@by_program
-def test_a_coarse_tolerance_leaves_an_error_and_saves_steps(program_of: ProgramOf) -> None:
-    linkage = of_sample(GENERAL_STRUT)
-    home = GENERAL_STRUT.drawn_inputs
-    driven = driven_to(
-        linkage,
-        arm_angle=home["arm_angle"] - np.linspace(0.0, 0.3, 20),
-        rack=home["rack"] + np.linspace(0.0, 30.0, 20),
-    )
-    fine, coarse = (solved(program_of, linkage, driven, tolerance) for tolerance in (1e-13, 1e-2))
-    assert coarse.counts["newton_steps"] < 0.6 * fine.counts["newton_steps"]
-    error = max(np.abs(fine.places[n] - coarse.places[n]).max() for n in fine.places)
-    assert 1e-12 < error < 1e-2
-    assert coarse.last_step.max() > 1e-6
-    assert fine.last_step.max() < 1e-8

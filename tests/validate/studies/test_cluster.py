@@ -21,7 +21,7 @@ from validate.cli import main
 from validate.errors import UsageError
 from validate.studies import cluster
 from validate.studies.random_cars import random_cars
-from validate.studies.store import Store, adding_to, look
+from validate.studies.store import adding_to, look
 from validate.studies.study import StudyStopped, made_by
 
 
@@ -128,25 +128,6 @@ def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
 
     with pytest.raises(StudyStopped, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
         cluster._result(Fatal(), None)
-
-
-def test_ctrl_c_just_when_a_file_is_written_records_nothing_twice(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(cluster, "WRITTEN", 0.0)
-    write, told = Store.write, list[int]()
-
-    def interrupted(store: Store, file: Path, rows: Any) -> None:
-        write(store, file, rows)
-        monkeypatch.setattr(Store, "write", write)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Store, "write", interrupted)
-    study = counted(4, tmp_path / "marks", pause=0.1)
-    with cluster_of(n_workers=1, processes=False) as other, pytest.raises(KeyboardInterrupt):
-        ran(study, tmp_path / "records", other, told.append)
-    assert list(pandas.read_parquet(tmp_path / "records")["number"]) == [0, 1]
-    assert told[-1] == 2
 
 
 def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
