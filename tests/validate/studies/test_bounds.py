@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pandas as pd
 import pytest
 from hypothesis import assume, given, settings, target
@@ -20,7 +19,6 @@ from validate.reference import InfeasibleError
 from validate.strategies import cars
 from validate.studies.bounds import (
     bounds,
-    fitted,
     held_pose,
     measured,
 )
@@ -116,11 +114,3 @@ def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int, poses: lis
         else:
             with pytest.raises(InfeasibleError):
                 reference_instant(scene, inputs_at(scene, 0.0))
-
-
-def test_power_laws_are_fitted() -> None:
-    fit = fitted(np.array([1.0, 10.0, 100.0, 1000.0]), np.array([2.0, 0.2, 0.02, 0.0]))
-    assert fit.slope == pytest.approx(-1.0)
-    assert fit.scatter < 1e-12
-    assert fit.poses == 3
-    assert math.isnan(fitted(np.array([1.0]), np.array([1.0])).slope)
