@@ -1,14 +1,12 @@
 """Where inputs end: as the closed forms say, and as a search finds that goes through every place."""
 
-import brute_force
 import pytest
-from cars_in_closed_form import DRIVEN, TIE_ROD, Linkage, cars_of
+from cars_in_closed_form import DRIVEN, Linkage, cars_of
 from hypothesis import given, settings
 
 from pointcoord import PointcoordError
 from validate.cars.car import Car
 from validate.cars.input_ends import drawn_inputs, end
-from validate.hard.cars import CARS
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 10)  # an end takes 0.1 s
@@ -37,19 +35,3 @@ def test_an_end_is_that_of_the_closed_form_to_a_trillionth_of_the_range(
     # A short fold beside a longer way, such as a dead point just before a lock, is one for the path alone.
     if found is not None and exact is not None and linkage.sound:
         assert abs(found.value - exact[0]) <= 1e-13 * found.reach
-
-
-@pytest.mark.parametrize("name", ["paper", "wide", "wishbone", "short-arm"])
-def test_an_input_ends_where_brute_force_finds_no_further_pose(name: str) -> None:
-    """A share of 1e-3 of the range inside its end there is a pose, and as much beyond it there is none."""
-    car, home = CARS[name], drawn_inputs(CARS[name])
-    for driven in DRIVEN:
-        for ahead in (False, True):
-            last = end(car, home, driven, ahead)
-            assert last is not None
-            step = (1e-3 if ahead else -1e-3) * last.reach
-            inside, beyond = (home | {driven: last.value + sign * step} for sign in (-1.0, 1.0))
-            assert brute_force.look_for_pose(car, inside["arm_angle"], inside["rack"]) == (True, True)
-            upper, rod = brute_force.look_for_pose(car, beyond["arm_angle"], beyond["rack"])
-            assert not rod
-            assert upper == (Linkage.of(car).end(home, driven, ahead)[1] == TIE_ROD)

@@ -12,57 +12,10 @@ from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer
-from validate.hard.case import HARD
 from validate.hard.cases import links, numbers
-from validate.hard.subjects import SUBJECTS, Subject
 from validate.hard.trial import Trial, solved
 
 LINK_CASES = {case.name: case for case in links.CASES}
-
-
-def pairwise(subject: Subject) -> bool:
-    """Whether every joint is of two bodies, so that joints can be counted by pairs."""
-    bodies = subject.plain["bodies"].values()
-    return all(sum(point in points for points in bodies) <= 2 for point in subject.plain["points"])
-
-
-WHOLE = [subject for subject in SUBJECTS if subject.name not in HARD and pairwise(subject)]
-
-
-def freedoms(tables: dict[str, Any]) -> int:
-    """By counting: six of each body and three of each free point, less what holds them."""
-    bodies = tables["bodies"]
-    moving = [points for name, points in bodies.items() if name != "chassis"]
-    every = {name for points in bodies.values() for name in points}
-    rods, slides = tables["rods"].values(), tables["slides"].values()
-    sliding = [point for slide in slides for point in slide["points"]]
-    free = {end for ends in rods for end in ends if end not in every} | {p for p in sliding if p not in every}
-    count = 6 * len(moving) + 3 * len(free) - len(rods) - 2 * len(sliding)
-    for place, points in enumerate(bodies.values()):
-        for others in list(bodies.values())[:place]:
-            count -= {0: 0, 1: 3, 2: 5}[len(set(points) & set(others))]
-    return count
-
-
-@pytest.mark.parametrize("subject", WHOLE, ids=lambda one: one.name)
-def test_a_mechanism_has_a_freedom_for_each_input_and_one_more_for_each_row_of_a_missing_piece(
-    subject: Subject,
-) -> None:
-    assert freedoms(links.tables_of(subject)) == len(subject.kinds)
-    for piece in links.pieces(subject.plain):
-        # A point of three bodies would be counted twice, and the line of a slide is no joint of its body.
-        lines = [(s["body"], p) for s in subject.plain["slides"].values() for p in (s["through"], s["along"])]
-        if piece.table == "bodies" and ((piece.key, piece.point) in lines or shared_by(subject, piece) != 1):
-            continue
-        tables = links.tables_of(subject)
-        piece.dropped(tables)
-        assert freedoms(tables) == len(subject.kinds) + piece.rows, piece.words
-
-
-def shared_by(subject: Subject, piece: links.Piece) -> int:
-    """How many other bodies have the point."""
-    bodies = subject.plain["bodies"].items()
-    return sum(piece.point in points for name, points in bodies if name != piece.key)
 
 
 def test_a_refusal_that_names_nothing_of_what_is_at_fault_is_wrong() -> None:
