@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import MissingPackage
-from validate.peers.linkage import Linkage, axes_along
+from validate.peers.linkage import Linkage
 from validate.peers.program import Program
 from validate.spanning_tree.cut import CHASSIS, Joint, Place
 
@@ -39,14 +39,12 @@ class InPinocchio(Program):
     def __init__(self, linkage: Linkage) -> None:
         self.linkage = linkage
         self.model = model = pinocchio.Model()
-        self.number, self.frames = {CHASSIS: 0}, {CHASSIS: (np.zeros(3), np.eye(3))}
+        self.number = {CHASSIS: 0}
         for joint in linkage.joints:
-            place, turn = self.frames[joint.parent]
-            own = axes_along(linkage.rods[joint.body]) if joint.body in linkage.rods else turn
-            placed = pinocchio.SE3(turn.T @ own, turn.T @ (joint.at - place))
+            turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
+            placed = pinocchio.SE3(turn.T @ own, linkage.local(Place(joint.parent, joint.at)))
             parent = self.number[joint.parent]
             self.number[joint.body] = model.addJoint(parent, _kind(joint, own), placed, joint.body)
-            self.frames[joint.body] = (joint.at, own)
         self.data = model.createData()
         self.q, self.v = np.array(pinocchio.neutral(model)), np.zeros(model.nv)
         joints = [model.joints[self.number[driven.body]] for driven in linkage.driven]
@@ -123,10 +121,8 @@ class InPinocchio(Program):
 
     def _together(self, places: Iterable[Place]) -> Points:
         found = list(places)
-        at = [axes.T @ (place.at - start) for place in found for start, axes in [self.frames[place.body]]]
-        return Points(
-            np.array([self.number[place.body] for place in found], dtype=np.intp), np.reshape(at, (-1, 3))
-        )
+        bodies = np.array([self.number[place.body] for place in found], dtype=np.intp)
+        return Points(bodies, np.reshape([self.linkage.local(place) for place in found], (-1, 3)))
 
     def _arms(self, points: Points) -> Array:
         """From their bodies' joints to points, in the car's axes, (P, 3)."""

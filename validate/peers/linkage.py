@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -148,6 +149,20 @@ class Linkage:
     def unit(self) -> float:
         """mm."""
         return self.tree.unit
+
+    @cached_property
+    def frames(self) -> Mapping[str, tuple[Array, Array]]:
+        """Where each body's frame is drawn, and its axes as columns: those of a rod have it as the third."""
+        found = {CHASSIS: (np.zeros(3), np.eye(3))}
+        for joint in self.joints:
+            rod = self.rods.get(joint.body)
+            found[joint.body] = joint.at, found[joint.parent][1] if rod is None else axes_along(rod)
+        return found
+
+    def local(self, place: Place) -> Array:
+        """A place in its body's frame, (3,)."""
+        start, axes = self.frames[place.body]
+        return np.asarray(axes.T @ (place.at - start))
 
     @property
     def drawn_inputs(self) -> Array:

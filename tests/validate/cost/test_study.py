@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pointcoord import Scene, solve_poses
+from pointcoord import Scene, simulate, solve_poses
 from validate.cost import study as studying
 from validate.cost.parts import accuracy, effects, growth, loading, unrelated
 from validate.cost.parts.effects import NO_EFFECT
 from validate.cost.parts.unrelated import NEAR, OTHERS
 from validate.cost.race import Effort, race
-from validate.cost.scenes import own_scene, study_scene
+from validate.cost.scenes import own_scene, study_instants, study_scene
 from validate.cost.study import Study, measure
 from validate.cost.table import Row, Store, measured_here, read_rows
 from validate.cost.way import Way
@@ -26,6 +26,17 @@ FEW = Effort(repeats=2, least=0.0)
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(studying, "QUICK", FEW)
+
+
+def test_instants_are_special_to_no_way_and_one_lies_in_each_part_of_the_time() -> None:
+    scene = own_scene("bounce")
+    instants, time = study_instants(scene), scene.time
+    assert np.floor(instants / time.stop * len(instants)).tolist() == list(range(len(instants)))
+    special = [scene.instants, np.linspace(time.start, time.stop, 2 * len(instants) + 1)]
+    for tolerance in (1e-3, 1e-9, 1e-13):
+        states: Any = simulate(scene.model_copy(update={"tolerance": tolerance})).solved.states
+        special.append(np.array([segment.start for segment in states.chain.segments]))
+    assert np.abs(instants[:, None] - np.concatenate(special)).min() > 1e-9 * time.stop
 
 
 def test_every_setting_is_raced_for_positions_alone_and_for_everything() -> None:

@@ -277,3 +277,9 @@ def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong
     with pytest.raises(InputError, match="rack") as caught:
         linkage_of(plain_car(PAPER_STRUT)).inputs(laws)
     assert caught.value.instant == (None if wrong is None else 7)
+
+
+def test_two_branches_that_cross_at_once_are_not_exchanged() -> None:
+    """With its cranks in line both loops change the sign of a determinant, and not that of their product."""
+    with pytest.raises(PoseError, match="cannot be reached"):
+        solved(plain_scene("n-four-bar"), {"crank": held(np.array([-1.0, -1.6]))})
