@@ -132,9 +132,10 @@ class Program(ABC):
         if len(independent_rows(jacobian[:, both], 0)) > count:
             raise HardpointsError("an input", "does not move the mechanism beside the others", FREE)
         self.rows = slice(None) if len(rows) == len(jacobian) else rows
-        # All three rows of a loop: that one of them is zero as drawn may be chance.
-        moved = (np.abs(unknown) > TURNED).reshape(-1, 3, count).any(axis=1)
-        self.blocks = blocks(np.repeat(moved, 3, axis=0)[self.rows])
+        if count:  # an arm on one hinge, which is driven, has no loop
+            # All three rows of a loop: that one of them is zero as drawn may be chance.
+            moved = (np.abs(unknown) > TURNED).reshape(-1, 3, count).any(axis=1)
+            self.blocks = blocks(np.repeat(moved, 3, axis=0)[self.rows])
         self.drawn = self.signs(unknown[self.rows])
         step = self._newton(drawn, tolerance, counted, shorten=True)
         if step is None:
@@ -254,7 +255,7 @@ class Program(ABC):
         self._at(inputs)
         unknown, previous = self.unknown, np.inf
         if not len(unknown):
-            return 0.0  # as of an arm on one hinge, which is driven
+            return 0.0
         step: Array | None = None
         for number in range(LIMIT):
             missed, jacobian = self.misses()
