@@ -18,7 +18,7 @@ BASES = {
     "pointcoord.errors.PointcoordError",
     "absolute.errors.AbsoluteError",
     "absolute.errors.PoseError",
-} | {"validate.relative.errors.RelativeError"}
+}
 # Says inside the solver that members take another form, or what is wrong with a mechanism's tables, of which
 # the scene's error then says in which file; both are caught there.
 # SIGTERM ends the program as Ctrl-C does, which `tests/validate/commands/test_door.py` tries.

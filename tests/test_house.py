@@ -49,7 +49,6 @@ ROOMS = {
         "paper",
         "spanning_tree",
         "peers",
-        "relative",
         "formulations",
         "comparison",
         "diagnosis",

@@ -27,7 +27,6 @@ from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
-from validate.cost.apart import run_python
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.table import Store as RowStore
 from validate.cost.table import measured_here
@@ -44,6 +43,7 @@ from validate.html.folder import require_folder
 from validate.html.hard_cases import read_hard_cases
 from validate.measured.reading import columns_of_text
 from validate.output.columns import write_motion
+from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.linkage import linkage_of
 from validate.reference import solve_reference
 from validate.reference.certificate import certify
@@ -51,8 +51,6 @@ from validate.reference.design import values_only
 from validate.reference.exact import bits
 from validate.reference.krawczyk import newton
 from validate.reference.route import closed
-from validate.relative.follow import follow as follow_tree
-from validate.relative.model import build
 from validate.solvers.check import check
 from validate.spanning_tree.cut import cut
 from validate.studies import cluster
@@ -125,14 +123,10 @@ def solved(points: Mapping[str, Any], inputs: Mapping[str, Any] = HELD) -> objec
 
 def followed(angle: float) -> object:
     """The paper's car in relative coordinates, its arm at an angle."""
-    model = build(PAPER_CAR)
-    return model.poses({"arm_angle": [angle], "rack": [0.0]}, [0.0])
-
-
-def followed_in_the_tree() -> object:
-    """The same car's tree, led from its drawing to beyond a dead point."""
-    model = build(PAPER_CAR)
-    return follow_tree(model.tree, model.home, np.array([[1.6, 0.0], [3.0, 0.0]]), np.arange(2.0), 1e-14)
+    linkage = linkage_of(PAPER_CAR)
+    program = InPinocchio(linkage)
+    laws = {"arm_angle": np.array([[angle, 0.0, 0.0]]), "rack": np.zeros((1, 3))}
+    return program.poses(linkage.inputs(laws).values, 1e-10, program.closed(1e-10))
 
 
 def frame_without(patch: pytest.MonkeyPatch, *libraries: str) -> object:
@@ -324,17 +318,17 @@ RECIPES: dict[str, Recipe] = {
         lambda folder, _: scenes_below(str(folder)),
         ("--scenes-dir", "holds no scene", ".toml"),
     ),
-    "validate.relative.errors.HardpointsError": Recipe(
-        lambda *_: build(HINGE_OF_ONE_POINT),
+    "validate.peers.errors.HardpointsError": Recipe(
+        lambda *_: linkage_of(HINGE_OF_ONE_POINT),
         ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
         {"name": "lower_arm_front", "allowed": bool},
     ),
-    "validate.relative.errors.InputError": Recipe(
+    "validate.peers.errors.InputError": Recipe(
         lambda *_: followed(3.5),
         ("input 'arm_angle' is 3.5 at instant number 0", "allowed: an angle from 0 to pi"),
         {"name": "arm_angle", "value": 3.5, "instant": 0},
     ),
-    "validate.relative.errors.PoseError": Recipe(
+    "validate.peers.errors.PoseError": Recipe(
         lambda *_: followed(3.0),
         (
             "instant number 0 cannot be reached",
@@ -349,11 +343,6 @@ RECIPES: dict[str, Recipe] = {
             "condition": lambda condition: condition > 1e3,
             "partial": None,
         },
-    ),
-    "validate.relative.follow.Blocked": Recipe(
-        lambda *_: followed_in_the_tree(),
-        ("cannot be reached", "arm_angle hold each other"),
-        {"instant": 1, "here": lambda here: 2.6 < here[0] < 2.7, "solved": lambda poses: len(poses.q) == 1},
     ),
     "absolute.errors.DescriptionError": Recipe(
         lambda *_: solved({"strut_top": (1.0, float("nan"), 2.0)}),
@@ -434,10 +423,6 @@ RECIPES: dict[str, Recipe] = {
     "validate.cost.race.NoNumbers": Recipe(
         lambda *_: errors_of(Answer({}), truth_of(BOUNCE, BOUNCE.instants[:1])), ("gives no position",)
     ),
-    "validate.cost.apart.NotRun": Recipe(
-        lambda *_: run_python("-c", "raise SystemExit('no such thing')"),
-        ("ended with status 1", "no such thing"),
-    ),
     "validate.formulations.protocol.FormulationError": Recipe(
         lambda *_: compare(changed(inputs={"rack": {"constant": 500.0}}), "pointcoord", "absolute"),
         ("pointcoord: ", "rack = 500", "bring 'rack' back"),
@@ -474,9 +459,11 @@ RECIPES: dict[str, Recipe] = {
         {"part": "absolute", "package": "absolute"},
     ),
     "validate.peers.errors.PeerError": Recipe(
-        lambda *_: linkage_of(HINGE_OF_ONE_POINT),
-        ("lower_arm_front is where lower_arm_rear is",),
-        {"problem": bool, "instant": None},
+        lambda *_: ways_named(["relative"])[0].prepare(pointcoord.Scene.load("steer"), 1e-9)(
+            np.array([0.1, 1e9])
+        ),
+        ("at t = 1e+09 s", "reached"),
+        {"problem": bool, "instant": 1},
     ),
     "validate.spanning_tree.cut.CutError": Recipe(
         lambda *_: cut(HINGE_OF_ONE_POINT),

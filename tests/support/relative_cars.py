@@ -1,4 +1,4 @@
-"""The sample cars as relative-coordinate models, and inputs that move them about their drawing."""
+"""The sample cars as flat mechanisms, and inputs that move them about their drawing."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ from mechanism_files import mechanism_file, plain
 from numpy.typing import NDArray
 from sample_cars import SampleCar
 
-from validate.relative.model import Model, build
-
 Array = NDArray[np.float64]
 
 
@@ -18,11 +16,6 @@ def plain_car(car: SampleCar, **points: Any) -> dict[str, Any]:
     """The flat description of a sample car, or of one with other points."""
     part = {"points": {**car.points, **points}, "side": car.side, "closure": car.closure}
     return plain(mechanism_file(car.type), part, ("arm_angle", "rack"))
-
-
-def model_of(car: SampleCar) -> Model:
-    """The model of a sample car."""
-    return build(plain_car(car))
 
 
 def swing(car: SampleCar, times: Array, arm: float = 0.1, rack: float = 10.0) -> dict[str, Array]:

@@ -57,7 +57,6 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
         "sweep.py": {"wheel_centre"},
         "importing.py": {"wheel_centre", "camber", "toe", "axle"},
         "hardpoints.py": {"camber", "toe"},
-        "relative_coordinates.py": {"turn"},
         "wheel_angles.py": {"wheel_centre"},
     }
     assert NAMES[kind]

@@ -1,30 +1,26 @@
 """A size of something that grows, timed with its peak of memory in a fresh process: none hurts another.
 
-The system's own record of a process' peak starts with what the process that started it held, and counts
-what imports held and gave back; so the least size runs first, and then the peak is started anew where the
-system can do that. A process that dies is a failed row with the reason.
+The least size runs first, so that what loading takes is held before; then the system's record of the peak is
+started anew. A process that dies is a failed row with the reason.
 """
 
 from __future__ import annotations
 
 import os
-import pickle
 import resource
 import signal
-import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-import validate
 from validate.cost.race import Effort, Found, Runner, absent, race
 from validate.cost.table import Row
 
-PROGRAM = "from validate.cost.apart import answer; answer()"
-THREADS = ("OPENBLAS", "OMP", "MKL", "NUMEXPR")
 GRACE = 60.0  # s, beyond what the runs may take: Python, imports, the check of the numbers
 STATUS, CLEAR = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 RESTART_PEAK = "5"  # proc(5): the peak of resident memory becomes what is resident now
@@ -48,119 +44,78 @@ class Limits:
     memory: int = 8 * 2**30
 
 
-class NotRun(Exception):
-    """A process did not do what it was started for; says how it ended, and its last line."""
-
-
 def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
-    """The rows of a row's size, measured in a process of its own, by one thread.
+    """The rows of a row's size, measured in a process of its own.
 
     Args:
         least: the size that loads all that the work needs.
     """
-    given = pickle.dumps((make, least, row, limits))
+    spawn = get_context("spawn")
+    ours, theirs = spawn.Pipe(duplex=False)
+    child = spawn.Process(target=_answer, args=(theirs, make, least, row, limits), daemon=True)
+    child.start()
+    theirs.close()
+    # One run may take some times what was foreseen.
+    patience = 5.0 * limits.seconds + GRACE
+    how = f"was ended after {patience:.0f} s"
     try:
-        # One run may take some times what was foreseen.
-        found = run_python("-c", PROGRAM, given=given, patience=5.0 * limits.seconds + GRACE)
-        rows: list[Row] = pickle.loads(found)
-        return rows
-    except NotRun as error:
-        reason = str(error)
-    except (EOFError, pickle.UnpicklingError):
-        reason = "ended without an answer"
-    return [replace(row, **absent("failed", f"its process {reason}"))]
+        if ours.poll(patience):
+            rows: list[Row] = ours.recv()
+            return rows
+    except EOFError:
+        child.join()
+        how = _ended(child.exitcode or 0)
+    finally:
+        child.kill()
+        child.join()
+        ours.close()
+    return [replace(row, **absent("failed", f"its process {how}"))]
 
 
-def run_python(*words: str, given: bytes = b"", patience: float = 300.0) -> bytes:
-    """What Python writes, run to its end by one thread, with this package first on its path.
-
-    Args:
-        given: its standard input. patience: s.
-    Raises:
-        NotRun: it failed.
-    """
-    source = str(Path(validate.__file__).parents[1])
-    path = os.pathsep.join(filter(None, (source, os.environ.get("PYTHONPATH"))))
-    threads = {f"{name}_NUM_THREADS": "1" for name in THREADS}
-    try:
-        done = subprocess.run(
-            [sys.executable, *words],
-            input=given,
-            capture_output=True,
-            timeout=patience,
-            env={**os.environ, **threads, "PYTHONPATH": path},
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise NotRun(f"was ended after {patience:.0f} s") from None
-    if done.returncode < 0:
-        name = signal.Signals(-done.returncode).name
-        hint = ", as a system out of memory does" if name == "SIGKILL" else ""
-        raise NotRun(f"was ended by the signal {name}{hint}")
-    if done.returncode:
-        said = done.stderr.decode(errors="replace").strip().splitlines()
-        raise NotRun(f"ended with status {done.returncode}{': ' + said[-1] if said else ''}")
-    return done.stdout
+def _ended(status: int) -> str:
+    """How a process ended that gave no answer."""
+    if status >= 0:
+        return f"ended with status {status}"
+    name = signal.Signals(-status).name
+    return f"was ended by the signal {name}{', as a system out of memory does' * (name == 'SIGKILL')}"
 
 
-def answer() -> None:
-    """In the process: measure what standard input brings, and write its rows."""
-    # What libraries print must not mix with the answer.
-    out = os.dup(1)
+def _answer(answer: Connection, make: Make, least: int, row: Row, limits: Limits) -> None:
+    # What libraries print must not come among what this program prints.
     os.dup2(2, 1)
-    make, least, row, limits = pickle.load(sys.stdin.buffer)
-    limit_memory(limits.memory)
-    rows = measured(make, least, row, limits)
-    with open(out, "wb") as stream:
-        pickle.dump(rows, stream)
+    held = _of_status("VmSize")
+    if held is not None:  # beyond this the process gets a MemoryError
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (held + limits.memory, hard))
+    answer.send(_measured(make, least, row, limits))
 
 
-def measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
+def _measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
     """The rows in this process, with the peak of the first run."""
     race([make(row, least)], Effort(repeats=0))
     runner = make(row, row.size or 0)
-    held = restart_peak()
-    most = [0]
+    with suppress(OSError):
+        CLEAR.write_text(RESTART_PEAK)
+    held, most = _peak(), [0]
 
     def found(one: Any) -> Found:
-        most[0] = max(peak() - held, 0)
+        most[0] = max(_peak() - held, 0)
         return runner.found(one)
 
     rows = race([replace(runner, found=found)], Effort(repeats=7, least=0.01, most=limits.seconds))
     return [replace(one, peak_bytes=most[0]) if one.verdict == "measured" else one for one in rows]
 
 
-def restart_peak() -> int:
-    """Start the peak anew where the system can, and return it, bytes."""
-    with suppress(OSError):
-        CLEAR.write_text(RESTART_PEAK)
-    return peak()
-
-
-def peak() -> int:
-    """The most memory that was resident since `restart_peak`, or else since the process began, bytes."""
-    found = _of_status("VmHWM")
-    if found is not None:
-        return found
+def _peak() -> int:
+    """The most memory that was resident since the peak was started anew, bytes."""
     largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return largest if sys.platform == "darwin" else 1024 * largest
-
-
-def limit_memory(more: int) -> None:
-    """Let this process have so many bytes more than it has; beyond, it gets a MemoryError.
-
-    Does nothing where the system does not say what a process has.
-    """
-    held = _of_status("VmSize")
-    if held is not None:
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        resource.setrlimit(resource.RLIMIT_AS, (held + more, hard))
+    return _of_status("VmHWM") or (largest if sys.platform == "darwin" else 1024 * largest)
 
 
 def _of_status(name: str) -> int | None:
     """A line of what Linux says of this process, bytes; None elsewhere."""
-    try:
-        lines = STATUS.read_text(encoding="ascii", errors="replace").splitlines()
-    except OSError:
-        return None
-    return next((1024 * int(line.split()[1]) for line in lines if line.startswith(f"{name}:")), None)
+    with suppress(OSError):
+        for line in STATUS.read_text(encoding="ascii", errors="replace").splitlines():
+            if line.startswith(f"{name}:"):
+                return 1024 * int(line.split()[1])
+    return None

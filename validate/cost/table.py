@@ -29,7 +29,7 @@ PARTS: tuple[Part, ...] = get_args(Part)
 # What is measured, of this distribution; how it is reported may change and the rows stay what they are.
 MEASURED = (
     *("pointcoord", "absolute"),
-    *(f"validate/{room}" for room in ("formulations", "paper", "peers", "relative", "spanning_tree")),
+    *(f"validate/{room}" for room in ("formulations", "paper", "peers", "spanning_tree")),
     *(f"validate/cost/{name}" for name in ("ways", "parts", "apart.py", "chain.py", "errors.py", "race.py")),
     "validate/cost/scenes.py",
 )

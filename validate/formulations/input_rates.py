@@ -1,8 +1,8 @@
 """Inputs of a scene as value, rate and acceleration, evaluated apart from pointcoord's power series.
 
-Polynomials and sines are rounded once: polynomials from two numbers of a longer format, sines from one, and
-either from many digits or fractions where these do not tell, for terms may cancel, and an angle may be many
-turns. A table means scipy's cubic spline, for every model and for the reference.
+Polynomials and sines are rounded once: from a number of a longer format, or from many digits or fractions
+where that does not tell, for terms may cancel, and an angle may be many turns. A table means scipy's cubic
+spline, for every model and for the reference.
 """
 
 from __future__ import annotations
@@ -26,15 +26,10 @@ Array = NDArray[np.float64]
 Long = NDArray[np.longdouble]
 
 DIGITS = 40  # of a sine, beside those that its angle has before the point
-TRIED = (DIGITS, 4 * DIGITS)  # of a polynomial
 # Rounding unit of the longer format that numbers are tried in first; without one nothing is sure.
 LONG = float(np.finfo(np.longdouble).eps) / 2.0
 # Of a sine or cosine of that format, in such units: twice what the C library's own tests allow it.
 SINE = 4.0
-# Splits a number of that format into two of half its digits each.
-SPLITTER = np.longdouble(2.0 ** ((np.finfo(np.longdouble).nmant + 2) // 2)) + 1
-# A smaller product may have lost digits that are below the smallest number of the format.
-LEAST = np.finfo(np.longdouble).tiny / np.longdouble(LONG) ** 2
 
 
 def rates(part: InputPart, times: Array) -> Array:
@@ -88,77 +83,29 @@ def _exact_sine(wave: SinePart, t: float) -> list[float]:
 
 
 def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
-    """A polynomial and its rates, each rounded once.
-
-    Horner's rule, and by Horner's rule too what its products and sums leave out (Graillat, Langlois and
-    Louvet, Japan Journal of Industrial and Applied Mathematics 26, 2009). Where nothing is left out that is
-    known: a rate of two terms often lies halfway between two doubles.
-    """
-    t = instants.astype(np.longdouble)
-    found = np.zeros((len(instants), 3))
-    derivatives = [[Fraction(c) for c in coefficients]]
-    for _ in range(2):
-        derivatives.append([k * c for k, c in enumerate(derivatives[-1])][1:])
+    """A polynomial and its rates by Horner's rule, each rounded once."""
+    t, count = instants.astype(np.longdouble), len(coefficients)
+    sums, doubts = [], []
     with np.errstate(all="ignore"):
         for d in range(3):
-            total, rest, size = (np.zeros(t.shape, np.longdouble) for _ in range(3))
-            for k in range(len(coefficients) - 1, d - 1, -1):
-                term, lost_1 = _product(np.longdouble(coefficients[k]), np.longdouble(math.perm(k, d)))
-                product, lost_2 = _product(total, t)
-                total, lost_3 = _sum_of_two(product, term)
-                rest = rest * t + (lost_1 + (lost_2 + lost_3))
-                size = _not_lost(size * np.abs(t), size, t) + (
-                    np.abs(lost_1) + np.abs(lost_2) + np.abs(lost_3)
-                )
-            # Of each power a product and three sums are rounded; a little more for the size's own rounding.
-            doubt = 1.01 * 4.0 * (len(coefficients) - d) * LONG * size
-            found[:, d], sure = _of_two(total, rest, doubt)
-            for i in np.flatnonzero(~sure).tolist():
-                found[i, d] = _sum(derivatives[d], float(instants[i]))
-    return found
+            total, size = np.zeros(t.shape, np.longdouble), np.zeros(t.shape, np.longdouble)
+            for k in range(count - 1, d - 1, -1):
+                term = np.longdouble(coefficients[k]) * math.perm(k, d)
+                total, size = total * t + term, size * np.abs(t) + abs(term)
+            sums.append(total)
+            # Of each power two products and a sum are rounded; a little more for the size's own rounding.
+            doubts.append(1.01 * 3.0 * count * LONG * size)
+        return _rounded_once(sums, doubts, lambda i, d: _exact_sum(coefficients, float(instants[i]), d))
 
 
-def _product(a: Long | np.longdouble, b: Long | np.longdouble) -> tuple[Long, Long]:
-    """A product and what its rounding leaves out (Dekker, Numerische Mathematik 18, 1971).
-
-    The latter is not finite where a factor is too large to be split, or the product too small.
-    """
-    product = np.asarray(a * b)
-    a_high, b_high = (SPLITTER * x - (SPLITTER * x - x) for x in (a, b))
-    a_low, b_low = a - a_high, b - b_high
-    lost = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
-    return product, _not_lost(lost, a, b, product)
-
-
-def _not_lost(
-    number: Long, a: Long | np.longdouble, b: Long | np.longdouble, product: Long | None = None
-) -> Long:
-    """A number, or NaN where the product a b, itself unless given, lost digits at the format's lower end."""
-    small = np.abs(number if product is None else product) < LEAST
-    return np.asarray(np.where(small & (a != 0.0) & (b != 0.0), np.longdouble(np.nan), number))
-
-
-def _sum_of_two(a: Long, b: Long) -> tuple[Long, Long]:
-    """A sum and what its rounding leaves out (Knuth, The Art of Computer Programming 2, 4.2.2)."""
-    total = a + b
-    part = total - a
-    return total, (a - (total - part)) + (b - part)
-
-
-def _of_two(total: Long, rest: Long, doubt: Long) -> tuple[Array, NDArray[np.bool_]]:
-    """The doubles nearest to total + rest, which may be off by `doubt`, and where that is sure."""
-    # Where terms cancelled, the rest is more than a unit of the total's last digit.
-    total, rest = _sum_of_two(total, rest)
-    found = total.astype(float)
-    beyond = (total - found) + rest
-    room = doubt + 2.0 * LONG * (np.abs(beyond) + np.abs(rest))
-    # Half the way to both neighbours. A tie has to be exact: then the format itself rounds it to even.
-    above, below = (
-        (np.nextafter(found, end).astype(np.longdouble) - found) / 2.0 for end in (np.inf, -np.inf)
-    )
-    inside = np.isfinite(above - below) & (beyond + room < above) & (beyond - room > below)
-    exact = np.isfinite(total) & (rest == 0.0) & (doubt == 0.0)
-    return found, np.asarray(inside | exact)
+def _exact_sum(coefficients: tuple[float, ...], t: float, d: int) -> float:
+    exact, instant = Fraction(0), Fraction(t)
+    for k in range(len(coefficients) - 1, d - 1, -1):
+        exact = exact * instant + math.perm(k, d) * Fraction(coefficients[k])
+    try:
+        return float(exact)
+    except OverflowError:
+        return math.inf if exact > 0 else -math.inf
 
 
 def _rounded_once(sums: Sequence[Long], doubts: Sequence[Long], exact: Callable[[int, int], float]) -> Array:
@@ -180,30 +127,3 @@ def _rounded_once(sums: Sequence[Long], doubts: Sequence[Long], exact: Callable[
     for i, d in np.argwhere(~sure).tolist():
         found[i, d] = exact(i, d)
     return found
-
-
-def _sum(coefficients: Sequence[Fraction], t: float) -> float:
-    """Horner's rule with as many digits as tell to which double it rounds.
-
-    Digits, however many, leave a tie undecided that a tiny term decides: then in fractions.
-    """
-    import mpmath
-
-    for digits in TRIED:
-        with mpmath.workdps(digits):
-            total = size = mpmath.mpf(0)
-            for c in reversed(coefficients):
-                term = mpmath.mpf(c.numerator) / c.denominator  # of few digits: nothing is rounded
-                total, size = total * t + term, size * abs(t) + abs(term)
-            # A product and a sum of each power, each rounded to less than a unit of the last digit.
-            room = 2 * len(coefficients) * size * mpmath.mpf(10) ** (1 - digits)
-            low, high = float(total - room), float(total + room)
-        if low == high:
-            return low
-    exact, instant = Fraction(0), Fraction(t)
-    for c in reversed(coefficients):
-        exact = exact * instant + c
-    try:
-        return float(exact)
-    except OverflowError:
-        return math.inf if exact > 0 else -math.inf

@@ -13,8 +13,7 @@ from numbers import Integral
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
 from validate.formulations.protocol import FormulationError
-from validate.peers.errors import PeerError
-from validate.relative.errors import HardpointsError, InputError, PoseError
+from validate.peers.errors import HardpointsError, InputError, PeerError
 
 DRAWING = "drawing has no assembly"
 HARDPOINTS = "hardpoints make no mechanism"
@@ -41,13 +40,11 @@ def _class_of(reason: Exception) -> str:
         if reason.problem.startswith("the drawing"):
             return DRAWING
         return MOTION if reason.partial is not None else START
-    if isinstance(reason, PeerError):
-        return _of_instant(reason.instant)
     if isinstance(reason, HardpointsError):
         return HARDPOINTS
     if isinstance(reason, InputError):
         return INPUT
-    if isinstance(reason, PoseError):
+    if isinstance(reason, PeerError):
         return _of_instant(reason.instant)
     if type(reason).__module__.partition(".")[0] == "absolute":
         return _class_of_absolute(reason)

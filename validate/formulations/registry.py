@@ -13,8 +13,8 @@ from validate.formulations.protocol import Formulation
 from validate.paper.printed import PRINTED
 
 if TYPE_CHECKING:
-    from validate.formulations.outside_programs import Engine
     from validate.peers.linkage import Linkage
+    from validate.peers.program import Program
 
 
 _POINT_COORDINATES: dict[str, Formulation] = {
@@ -60,12 +60,10 @@ def formulation(name: str) -> Formulation:
     """
     if name in _POINT_COORDINATES:
         return _POINT_COORDINATES[name]
-    if name in OUTSIDE:
-        return _outside(name)
-    if name not in _IN_PINOCCHIO:
+    if name not in WORDS:
         raise UsageError(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
     try:
-        return _IN_PINOCCHIO[name]()
+        return _absolute() if name == "absolute" else _in_tree(name)
     except MissingPackage:
         raise
     except ImportError as error:
@@ -94,23 +92,14 @@ def _absolute() -> Formulation:
     return AbsoluteCoordinates()
 
 
-def _relative() -> Formulation:
-    from validate.formulations.relative_coordinates import RelativeCoordinates
+def _in_tree(name: str) -> Formulation:
+    from validate.formulations.trees import InTree
 
-    return RelativeCoordinates()
-
-
-_IN_PINOCCHIO: dict[str, Callable[[], Formulation]] = {"absolute": _absolute, "relative": _relative}
+    return InTree(name, program_of(name))
 
 
-def _outside(name: str) -> Formulation:
-    from validate.formulations.outside_programs import OutsideProgram
-
-    return OutsideProgram(name, engine_of(name))
-
-
-def engine_of(name: str) -> Callable[[Linkage], Engine]:
-    """What makes a linkage a model of one of the programs in `OUTSIDE`.
+def program_of(name: str) -> Callable[[Linkage], Program]:
+    """What makes a linkage a model of a program: `relative`, or one of `OUTSIDE`.
 
     Raises:
         MissingPackage: the program is not installed, or does not load.
@@ -119,6 +108,10 @@ def engine_of(name: str) -> Callable[[Linkage], Engine]:
         from validate.peers.in_mujoco import InMujoco
 
         return InMujoco
-    from validate.peers.in_exudyn import InExudyn
+    if name == "exudyn":
+        from validate.peers.in_exudyn import InExudyn
 
-    return InExudyn
+        return InExudyn
+    from validate.peers.in_pinocchio import InPinocchio
+
+    return InPinocchio

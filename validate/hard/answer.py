@@ -7,12 +7,10 @@ once more.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
@@ -20,7 +18,6 @@ from validate.adjudication.reference_solution import told_by
 from validate.comparison.compare import Comparison, compare_solutions
 from validate.formulations.protocol import Solution
 
-Array = NDArray[np.float64]
 # right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
 # some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.
 # unjudged: the reference could not be proven, which is a failure of the catalogue unless the case allows it.
@@ -52,27 +49,32 @@ class Answer:
 
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
     """Compare all numbers of a solution with the reference, each by the bound that the solution gives."""
-    rows = compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
-    outcome = _outcome(scene, answer, reference, rows)
+    rows = _compared(scene, answer, reference)
+    outcome: Outcome = "right"
+    if _wrong(rows):
+        outcome = "wrong" if _wrong(_compared(scene, _mended(answer, reference), reference)) else "noted"
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
-    bound = max(float(np.max(claim)) for claim in answer.accuracy.claims["position"].values())
+    where = f"{QUANTITIES[worst.quantity].words} of {worst.name}"
+    if outcome != "right":
+        off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
+        where += (
+            f" {off if np.isfinite(worst.difference) else 'is not a number'} at t = {worst.instant:.6g} s"
+        )
+        where += f"; noted: {'; '.join(answer.notes)}" if outcome == "noted" else ""
+    error = max(np.max(np.abs(answer.position[n] - place)) for n, place in reference.position.items())
     return Answer(
         formulation=answer.formulation,
         outcome=outcome,
-        reason=_reason(worst, answer, outcome),
-        error=_finite(_error(answer, reference)),
-        bound=_finite(bound),
+        reason=where,
+        error=_finite(error),
+        bound=_finite(max(np.max(claim) for claim in answer.accuracy.claims["position"].values())),
         share=_finite(worst.share),
-        condition=_finite(float(np.max(answer.accuracy.condition))),
+        condition=_finite(np.max(answer.accuracy.condition)),
     )
 
 
-def _outcome(scene: Scene, answer: Solution, reference: Solution, rows: tuple[Comparison, ...]) -> Outcome:
-    if not _wrong(rows):
-        return "right"
-    mended = _without_noted(answer, reference)
-    rest = compare_solutions(scene, mended, reference, "hard", told_by(reference, scene)).rows
-    return "wrong" if _wrong(rest) else "noted"
+def _compared(scene: Scene, answer: Solution, reference: Solution) -> tuple[Comparison, ...]:
+    return compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
 
 
 def _wrong(rows: tuple[Comparison, ...]) -> bool:
@@ -83,43 +85,16 @@ def _wrong(rows: tuple[Comparison, ...]) -> bool:
     return any(row.verdict in ("disagrees", "not given") for row in rows)
 
 
-def _without_noted(answer: Solution, reference: Solution) -> Solution:
+def _mended(answer: Solution, reference: Solution) -> Solution:
     """The answer with the reference in place of what is not finite and has a note."""
-    return answer.with_numbers(
-        {
-            quantity: _mended(arrays, reference.numbers[quantity], QUANTITIES[quantity].words, answer.notes)
-            for quantity, arrays in answer.numbers.items()
-            if quantity in reference.numbers
-        }
-    )
-
-
-def _mended(
-    given: Mapping[str, Array], true: Mapping[str, Array], quantity: str, notes: tuple[str, ...]
-) -> Mapping[str, Array]:
-    if not any(note.startswith(f"{quantity} of") for note in notes):
-        return given
-    return {name: np.where(np.isfinite(array), array, true[name]) for name, array in given.items()}
-
-
-def _error(answer: Solution, reference: Solution) -> float:
-    """Largest component of the distance of any point from the reference, mm."""
-    return max(
-        float(np.max(np.abs(answer.position[name] - reference.position[name]))) for name in reference.position
-    )
-
-
-def _reason(worst: Comparison, answer: Solution, outcome: Outcome) -> str:
-    where = f"{QUANTITIES[worst.quantity].words} of {worst.name}"
-    if outcome == "right":
-        return where
-    if np.isfinite(worst.difference):
-        off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
-    else:
-        off = "is not a number"
-    said = f"; noted: {'; '.join(answer.notes)}" if outcome == "noted" else ""
-    return f"{where} {off} at t = {worst.instant:.6g} s{said}"
+    numbers = {}
+    for quantity, arrays in answer.numbers.items():
+        noted = any(note.startswith(f"{QUANTITIES[quantity].words} of") for note in answer.notes)
+        if noted and quantity in reference.numbers:
+            true = reference.numbers[quantity]
+            numbers[quantity] = {n: np.where(np.isfinite(x), x, true[n]) for n, x in arrays.items()}
+    return answer.with_numbers(numbers)
 
 
 def _finite(number: float) -> float | None:
-    return number if np.isfinite(number) else None
+    return float(number) if np.isfinite(number) else None

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.extras import MissingPackage
-from validate.peers.linkage import Linkage, axes_along
+from validate.peers.linkage import Linkage
 from validate.peers.program import Program
 from validate.spanning_tree.cut import CHASSIS, Place
 
@@ -127,32 +127,27 @@ def _model(linkage: Linkage) -> mujoco.MjModel:
     spec.option.gravity = np.zeros(3)
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     bodies = {CHASSIS: spec.worldbody}
-    # The frame of each body: where its origin is in drawn coordinates, and how it is turned.
-    frames = {CHASSIS: (np.zeros(3), np.eye(3))}
     for joint in linkage.joints:
-        place, turn = frames[joint.parent]
-        own = axes_along(linkage.rods[joint.body]) if joint.body in linkage.rods else turn
+        turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, (turn.T @ own).ravel())
         bodies[joint.body] = body = bodies[joint.parent].add_body(
             name=joint.body,
-            pos=turn.T @ (joint.at - place),
+            pos=linkage.local(Place(joint.parent, joint.at)),
             quat=quaternion,
             mass=1.0,
             inertia=[1.0, 1.0, 1.0],
             explicitinertial=True,
         )
         body.add_joint(name=joint.body, type=KINDS[joint.kind], axis=own.T @ joint.axis)
-        frames[joint.body] = (joint.at, own)
 
     def site(name: str, at: Place) -> None:
-        place, turn = frames[at.body]
-        bodies[at.body].add_site(name=name, pos=turn.T @ (at.at - place))
+        bodies[at.body].add_site(name=name, pos=linkage.local(at))
 
     for name, at in linkage.points.items():
         site(name, at)
     for body in dict.fromkeys(linkage.bodies.values()):
-        site(f"body {body}", Place(body, frames[body][0]))
+        site(f"body {body}", Place(body, linkage.frames[body][0]))
     for number, loop in enumerate(linkage.loops):
         names = [f"loop {number} {end}" for end in "ab"]
         for name, at in zip(names, (loop.first, loop.second), strict=True):

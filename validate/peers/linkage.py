@@ -7,23 +7,27 @@ made of joints and of ball joints that close loops:
     a rod                  a body on a ball joint at one end, whose spin is held, and one at the other end
     a driven distance      likewise, and the rod is a driven slide
     a driven height,       a body on three slides at right angles, of which the first is driven, and a ball
-    angle or travel        joint with the point
+    angle or travel        joint with the point; if it counts from a point that moves, on three slides more
     a driven hinge         itself
+    directions at right    two points along the first one, as far along the second one: bodies on two slides
+    angles                 each, which stand on one slide
+    a wheel's contact      a body on a hinge about the wheel's axis, one radius down of which is driven; a
+    point                  line across it stays level, likewise
 
-An angle is driven by the height that it stands for, size x cos(angle). A wheel's contact point is of no body,
-and no program drives it.
+An angle is driven by the height that it stands for, size x cos(angle).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.peers.errors import PeerError
+from validate.peers.errors import HardpointsError, InputError
 from validate.spanning_tree.chassis import ChassisMotion
 from validate.spanning_tree.cut import (
     CHASSIS,
@@ -45,12 +49,22 @@ Array = NDArray[np.float64]
 
 UNIT_ROUNDOFF = 0.5 * float(np.finfo(float).eps)
 CHAIN = 6.0  # roundings on the way from the chassis to a point
+# What an input may be: an angle is told by its cosine, and rods of no length have no direction.
+BETWEEN = {
+    "angle": (0.0, np.pi, "an angle from 0 to pi"),
+    "distance": (np.nextafter(0.0, 1.0), np.inf, "a distance above 0"),
+}
 
 
 @dataclass(frozen=True)
 class Loop:
-    """A ball joint that closes the tree: a place of one body that a place of another one must meet."""
+    """A ball joint that closes the tree: a place of one body that a place of another one must meet.
 
+    Attributes:
+        name: of the point, rod, slide or input that it stands for.
+    """
+
+    name: str
     first: Place
     second: Place
 
@@ -81,17 +95,31 @@ class Driven:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What is given to a program, in the linkage's unit.
+    """What is given to a program.
 
     Attributes:
-        driven: driven coordinates with two time derivatives, (N, 3, drives).
-        chassis: motion of the chassis, None if it rests.
-        laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
+        series: of each drive its input with two time derivatives, (N, drives, 3), rad and the linkage's unit.
+        laws: of every input, (N, 3), rad or mm per s^d. plain: the flat mechanism.
     """
 
-    driven: Array
-    chassis: ChassisMotion | None
+    series: Array
     laws: Mapping[str, Array]
+    plain: Mapping[str, Any]
+
+    @property
+    def values(self) -> Array:
+        """(N, drives)."""
+        return self.series[..., 0]
+
+    @property
+    def chassis(self) -> ChassisMotion | None:
+        """Motion of the chassis, None if it rests."""
+        return ChassisMotion.of(self.plain, self.laws)
+
+    def first(self, count: int) -> Inputs:
+        """At the first instants."""
+        laws = {name: law[:count] for name, law in self.laws.items()}
+        return replace(self, series=self.series[:count], laws=laws)
 
 
 @dataclass(frozen=True)
@@ -122,11 +150,29 @@ class Linkage:
         """mm."""
         return self.tree.unit
 
+    @cached_property
+    def frames(self) -> Mapping[str, tuple[Array, Array]]:
+        """Where each body's frame is drawn, and its axes as columns: those of a rod have it as the third."""
+        found = {CHASSIS: (np.zeros(3), np.eye(3))}
+        for joint in self.joints:
+            rod = self.rods.get(joint.body)
+            found[joint.body] = joint.at, found[joint.parent][1] if rod is None else axes_along(rod)
+        return found
+
+    def local(self, place: Place) -> Array:
+        """A place in its body's frame, (3,)."""
+        start, axes = self.frames[place.body]
+        return np.asarray(axes.T @ (place.at - start))
+
     @property
     def drawn_inputs(self) -> Array:
-        """Driven coordinates at the drawing, (drives,)."""
-        drawn = [driven.coordinate(np.array([driven.drive.drawn, 0.0, 0.0]))[0] for driven in self.driven]
-        return np.array(drawn)
+        """Inputs at the drawing, (drives,), rad and the unit."""
+        return np.array([driven.drive.drawn for driven in self.driven])
+
+    def coordinates(self, series: Array) -> Array:
+        """Driven coordinates with two time derivatives, from the drives' inputs, (..., drives, 3) each."""
+        found = [driven.coordinate(series[..., k, :]) for k, driven in enumerate(self.driven)]
+        return np.stack(found, axis=-2)
 
     def moved(self, places: Mapping[str, Array]) -> dict[str, float]:
         """By how much each moving point lies off its place in the drawing, mm."""
@@ -148,29 +194,40 @@ class Linkage:
         Args:
             laws: every input's value and two time derivatives, (N, 3), rad or mm per s^d.
         Raises:
-            PeerError: an angle is outside 0 to pi.
+            InputError: an input is missing, is no number, or is outside of what it can be.
         """
+        for name, law in laws.items():
+            _require(name, law, np.asarray(np.isfinite(law).all(axis=1)), "finite numbers and rates")
         found = []
-        for driven in self.driven:
-            drive, law = driven.drive, laws[driven.drive.input]
-            near = law if drive.is_angle else law / self.unit
-            outside = (law[:, 0] < 0.0) | (law[:, 0] > np.pi)
-            if drive.kind == "angle" and outside.any():
-                raise PeerError(f"{drive.input} is outside 0 to pi rad", int(np.argmax(outside)))
-            found.append(driven.coordinate(near))
-        return Inputs(np.stack(found, axis=-1), ChassisMotion.of(self.plain, laws), laws)
+        for drive in (driven.drive for driven in self.driven):
+            if drive.input not in laws:
+                raise InputError(drive.input, "missing", "; ".join(d.drive.input for d in self.driven))
+            law = laws[drive.input]
+            if drive.kind in BETWEEN:
+                least, most, words = BETWEEN[drive.kind]
+                value = law[:, 0]
+                _require(drive.input, law, np.asarray((value >= least) & (value <= most)), words)
+            found.append(law if drive.is_angle else law / self.unit)
+        return Inputs(np.stack(found, axis=1), laws, self.plain)
+
+
+def _require(name: str, law: Array, right: NDArray[np.bool_], allowed: str) -> None:
+    if not right.all():
+        wrong = int(np.argmin(right))
+        bad = law[wrong][~np.isfinite(law[wrong])]
+        raise InputError(name, float(bad[0] if bad.size else law[wrong, 0]), allowed, wrong)
 
 
 def linkage_of(plain: Mapping[str, Any]) -> Linkage:
     """The joints and loops of a flat mechanism.
 
     Raises:
-        PeerError: it makes no mechanism, or no program can hold or drive it.
+        HardpointsError: it makes no mechanism.
     """
     try:
         tree = cut(plain)
     except CutError as error:
-        raise PeerError(str(error)) from error
+        raise HardpointsError(error.name, error.problem, error.allowed) from error
     made = _Made(tree)
     return Linkage(
         plain=plain,
@@ -196,27 +253,45 @@ class _Made:
         for number, closure in enumerate(tree.closures):
             name = f"closure {number} {closure.name}"
             if isinstance(closure, Coincide):
-                self.loops.append(Loop(closure.first, closure.second))
+                self._loop(closure.name, closure.first, closure.second)
             elif isinstance(closure, OnLine):
                 foot, axis = closure.second.at, closure.axis
                 foot = foot + float((closure.first.at - foot) @ axis) * axis
                 end = self._slide(name, Place(closure.second.body, foot), axis)
-                self.loops.append(Loop(end, closure.first))
+                self._loop(closure.name, end, closure.first)
             elif isinstance(closure, Rod):
-                self._rod(name, closure.first, closure.second, closure.length)
+                self._rod(name, closure.name, closure.first, closure.second, closure.length)
             elif isinstance(closure, Square):
-                raise PeerError(
-                    f"no program holds {closure.name}, a slide that may not turn and closes a loop"
-                )
+                # Of any two points of the body: its frame's origin, and one along the direction.
+                body, along = closure.first.body, closure.first.at
+                start = next(joint.at for joint in self.joints if joint.body == body)
+                ends = Place(body, start), Place(body, start + along)
+                self._level(name, closure.name, closure.second.body, closure.second.at, *ends)
         for number, drive in enumerate(tree.drives):
             self._drive(f"drive {number} {drive.input}", drive)
+
+    def _loop(self, name: str, first: Place, second: Place) -> None:
+        self.loops.append(Loop(name, first, second))
 
     def _slide(self, name: str, place: Place, axis: Array) -> Place:
         self.joints.append(Joint(name, place.body, "slide", place.at, axis))
         return Place(name, place.at)
 
+    def _slides(self, name: str, place: Place, axes: tuple[Array, ...]) -> Place:
+        for number, axis in enumerate(axes):
+            place = self._slide(f"{name} {number}", place, axis)
+        return place
+
+    def _level(self, name: str, of: str, body: str, axis: Array, first: Place, second: Place) -> None:
+        """Two places that stay equally far along an axis of a body."""
+        start = self._slide(name, Place(body, first.at), axis)
+        for label, place in (("first", first), ("second", second)):
+            level = place.at - float((place.at - first.at) @ axis) * axis
+            end = self._slides(f"{name} {label}", Place(start.body, level), across(axis))
+            self._loop(of, end, place)
+
     def _rod(
-        self, name: str, first: Place, second: Place, length: float, driven: Drive | None = None
+        self, name: str, of: str, first: Place, second: Place, length: float, driven: Drive | None = None
     ) -> None:
         axis = second.at - first.at
         axis = axis / float(np.linalg.norm(axis))
@@ -226,33 +301,46 @@ class _Made:
         if driven is not None:
             end = self._slide(f"{name} length", end, axis)
             self.driven.append(Driven(end.body, driven, 1.0, -length))
-        self.loops.append(Loop(end, second))
+        self._loop(of, end, second)
 
     def _drive(self, name: str, drive: Drive) -> None:
         first, second = drive.first, drive.second
-        if drive.kind == "contact":
-            raise PeerError(f"no program drives {drive.input}, the height of a wheel's contact point")
         if drive.kind == "distance":
-            self._rod(name, first, second, drive.drawn, drive)
+            self._rod(name, drive.input, first, second, drive.drawn, drive)
             return
         if drive.kind == "turn":
             self.driven.append(Driven(drive.joint, drive, drive.size, 0.0))
             return
-        if drive.kind == "angle" and second.body != drive.of:
-            raise PeerError(f"no program drives {drive.input}, an angle about a point that moves")
+        if drive.kind == "contact":
+            first = self._contact(name, drive)
+            second = Place(drive.of, first.at)
         long = float(np.linalg.norm(drive.axis))
         axis, drawn = drive.axis / long, float((first.at - second.at) @ drive.axis)
+        size = 1.0 if drive.kind == "contact" else drive.size
         if drive.joint:
-            self.driven.append(
-                Driven(drive.joint, drive, drive.along * drive.size / long, -drive.along * drawn / long)
-            )
+            scale = drive.along / long
+            self.driven.append(Driven(drive.joint, drive, scale * drive.size, -scale * drawn))
             return
-        end = Place(drive.of, first.at)
-        for number, direction in enumerate((axis, *across(axis))):
-            end = self._slide(f"{name} {number}", end, direction)
-            if number == 0:
-                self.driven.append(Driven(end.body, drive, drive.size / long, -drawn / long))
-        self.loops.append(Loop(end, first))
+        base = Place(drive.of, first.at)
+        if second.body != drive.of:
+            # A body that goes along with the second point, and turns as the body `of` does.
+            carried = self._slides(f"{name} from", Place(drive.of, second.at), (axis, *across(axis)))
+            self._loop(drive.input, carried, second)
+            base = Place(carried.body, first.at)
+        end = self._slide(name, base, axis)
+        self.driven.append(Driven(end.body, drive, size / long, -drawn / long))
+        self._loop(drive.input, self._slides(f"{name} beside", end, across(axis)), first)
+
+    def _contact(self, name: str, drive: Drive) -> Place:
+        """The lowest point of a wheel, as a place of a body that turns about the wheel's axis."""
+        centre, up = drive.first, drive.axis
+        down = float(up @ drive.axle) * drive.axle - up
+        down = down / float(np.linalg.norm(down))
+        rim = f"{name} rim"
+        self.joints.append(Joint(rim, centre.body, "hinge", centre.at, drive.axle))
+        tip = Place(rim, centre.at + np.cross(drive.axle, down))
+        self._level(f"{name} level", drive.input, drive.of, up, Place(rim, centre.at), tip)
+        return Place(rim, centre.at + drive.size * down)
 
 
 def axes_along(axis: Array) -> Array:

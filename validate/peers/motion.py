@@ -1,9 +1,9 @@
-"""What a program found: poses of a linkage at driven inputs, how they change, and how that is reported."""
+"""What a program found: poses of a linkage at inputs, how they change, and how that is reported."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,18 +20,28 @@ class Poses:
     """Poses of a linkage, in its unit and from its origin.
 
     Attributes:
-        driven: driven coordinates, (N, drives).
+        inputs: of the drives, (N, drives), rad and the unit.
         coordinates: the program's own, (N, ...).
         places: of every moving point, (N, 3).
         last_step: the last correction of Newton's method, rad and car sizes, (N,).
         counts: what was done.
     """
 
-    driven: Array
+    inputs: Array
     coordinates: Array
     places: Mapping[str, Array]
     last_step: Array
     counts: Mapping[str, int]
+
+    def first(self, count: int) -> Poses:
+        """The first ones."""
+        return replace(
+            self,
+            inputs=self.inputs[:count],
+            coordinates=self.coordinates[:count],
+            places={name: place[:count] for name, place in self.places.items()},
+            last_step=self.last_step[:count],
+        )
 
 
 @dataclass(frozen=True)
@@ -62,7 +72,7 @@ def numbers(
         inputs: what moves the chassis; it rests where there are none.
         effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
     """
-    tree, unit, still = linkage.tree, linkage.unit, np.zeros((len(poses.driven), 3))
+    tree, unit, still = linkage.tree, linkage.unit, np.zeros((len(poses.inputs), 3))
     near = {name: poses.places.get(name, still + place.at) for name, place in tree.points.items()}
     found: dict[str, dict[str, Array]] = {
         "position": {name: place * unit + tree.origin for name, place in near.items()}
@@ -72,7 +82,8 @@ def numbers(
             found[quantity] = {name: moving.get(name, still) * unit for name in near}
         found["angular_velocity"] = dict(rates.spin)
         found["angular_acceleration"] = dict(rates.spin_rate)
-    if inputs is not None and inputs.chassis is not None:
-        found = inputs.chassis.moved(found)
+    chassis = None if inputs is None else inputs.chassis
+    if chassis is not None:
+        found = chassis.moved(found)
     found[OF_CAR] = linkage.wheels.numbers(near, {} if inputs is None else inputs.laws, effects)
     return found

@@ -7,21 +7,28 @@ apart, r, and the Jacobian J of that by the joints' rates. With u the unknown an
 
 The last two terms are how the sides of the loops accelerate apart while the unknown joints do not, which
 programs tell of any point. Rows of J_u that depend on others in the drawing are left out, and what they miss
-is looked at in every pose. Two assemblies meet where det J_u is zero, so its sign stays that of the drawing.
+is looked at in every pose. Two assemblies meet where the determinant of a diagonal block of J_u is zero, so
+their signs stay those of the drawing.
+
+From one pose to the next the inputs go straight, and a part of the way is taken where the second Newton step
+is a quarter of the first one at most, so that there is a pose all along it (Deuflhard, Newton Methods for
+Nonlinear Problems, 2011, ch. 5).
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from validate.peers.errors import PeerError
+from validate.peers.errors import HardpointsError, PoseError
 from validate.peers.linkage import Linkage
 from validate.peers.motion import Poses, Rates
-from validate.spanning_tree.determined import independent_rows
+from validate.spanning_tree.determined import blocks, independent_rows
 
 Array = NDArray[np.float64]
 
@@ -31,12 +38,17 @@ LIMIT = 12
 LONGEST_STEP = 0.25
 # The same where the second step is more than this part of the first: then a pose nearby is not sure.
 CONTRACTED = 0.25
-HALVINGS = 40
+HALVINGS = 44
 # Car sizes. What depends on other rows is missed by the square of the last step, and by rounding raised by
 # the condition number, some 1e-13 of the car.
 HELD = 1e-11
 # Below the root of the rounding unit a step that does not halve is rounding.
 ROUNDING_STEP = 1e-8
+# At a fold a rounding U moves the pose by its root: beyond this condition number its sides are one.
+FOLDED = 2.0**26
+# Of a row's length: what rounding makes of a joint that does not move a loop.
+TURNED = 1e-14
+FREE = "as many inputs as there are freedoms, and no singular drawing"
 
 
 class Program(ABC):
@@ -44,14 +56,16 @@ class Program(ABC):
 
     Attributes:
         driven, unknown: places among the joints' rates, of those that are driven, and of all that are free.
-        rows: that are solved. sign: of det J_u in the drawing.
+        rows: that are solved.
+        blocks: rows and columns of the diagonal blocks of J_u. drawn: signs of their determinants as drawn.
     """
 
     linkage: Linkage
     driven: NDArray[np.intp]
     unknown: NDArray[np.intp]
     rows: slice | NDArray[np.int64] = slice(None)
-    sign: float = 0.0
+    blocks: Sequence[tuple[NDArray[np.int64], NDArray[np.int64]]] = ()
+    drawn: Array
 
     @property
     @abstractmethod
@@ -102,75 +116,92 @@ class Program(ABC):
         Args:
             tolerance: Newton's method ends with a correction of all joints below it, rad and car sizes.
         Raises:
-            PeerError: it cannot be closed, or only as another assembly.
+            HardpointsError: it is no mechanism that its inputs drive.
+            PoseError: it cannot be closed, or only as another assembly.
         """
-        counted = _Count()
+        counted, drawn = Counter[str](), self.linkage.drawn_inputs
         self.put_as_drawn()
-        driven = self.linkage.drawn_inputs
-        self.drive(driven)
-        jacobian = self.misses()[1][:, self.unknown]
-        count = jacobian.shape[1]
-        rows = independent_rows(jacobian, 0)
+        self._at(drawn)
+        jacobian = self.misses()[1]
+        unknown, count = jacobian[:, self.unknown], len(self.unknown)
+        rows = independent_rows(unknown, 0)
         if len(rows) < count:
-            raise PeerError(f"the drawing is free to move: {len(rows)} independent rows for {count} unknowns")
+            words = f"is free to move as drawn: {len(rows)} independent rows for {count} unknowns"
+            raise HardpointsError("the mechanism", words, FREE)
+        both = np.concatenate([self.unknown, self.driven])
+        if len(independent_rows(jacobian[:, both], 0)) > count:
+            raise HardpointsError("an input", "does not move the mechanism beside the others", FREE)
         self.rows = slice(None) if len(rows) == len(jacobian) else rows
-        self.sign = float(np.linalg.slogdet(jacobian[self.rows])[0])
-        step = self._newton(driven, tolerance, LONGEST_STEP, counted, shorten=True)
+        if count:  # an arm on one hinge, which is driven, has no loop
+            # All three rows of a loop: that one of them is zero as drawn may be chance.
+            moved = (np.abs(unknown) > TURNED).reshape(-1, 3, count).any(axis=1)
+            self.blocks = blocks(np.repeat(moved, 3, axis=0)[self.rows])
+        self.drawn = self.signs(unknown[self.rows])
+        step = self._newton(drawn, tolerance, counted, shorten=True)
         if step is None:
-            raise PeerError("the drawing cannot be closed as the assembly that is drawn")
-        here, places = self.coordinates[None], self.places()[None]
-        return self._named(driven[None], here, places, np.array([step]), counted)
+            raise self._refusal("cannot be closed as the assembly that is drawn", None, drawn, drawn)
+        condition, _ = self._folded()
+        if not condition < FOLDED:
+            raise self._refusal("lies on a fold", None, drawn, drawn)
+        return self._named(drawn[None], self.coordinates[None], self.places()[None], [step], counted)
 
-    def poses(self, driven: Array, tolerance: float, start: Poses) -> Poses:
-        """Solve at driven inputs, each pose from the one before.
+    def poses(self, inputs: Array, tolerance: float, start: Poses) -> Poses:
+        """Solve at inputs, each pose from the one before.
 
         Args:
-            driven: driven coordinates, (N, drives).
+            inputs: of the drives, (N, drives), rad and the linkage's unit.
             tolerance: see `closed`.
             start: whose last pose the first one is solved from.
         Raises:
-            PeerError: a pose is not reached without meeting another assembly.
+            PoseError: a pose is not reached without meeting another assembly; `partial` has those before.
         """
-        counted, count = _Count(), len(driven)
+        counted, count = Counter[str](), len(inputs)
         coordinates = np.empty((count, start.coordinates.shape[1]))
-        places = np.empty((count, len(self.linkage.points), 3))
-        steps = np.empty(count)
-        here = start.driven[-1]
+        places, steps = np.empty((count, len(self.linkage.points), 3)), np.empty(count)
+        here = start.inputs[-1]
         self.put(start.coordinates[-1])
+
+        def refusal(problem: str, i: int, reached: Array) -> PoseError:
+            error = self._refusal(problem, i, inputs[i], reached)
+            error.partial = self._named(inputs, coordinates, places, steps, counted).first(i) if i else None
+            return error
+
         for i in range(count):
-            step = self._go(here, driven[i], tolerance, counted)
-            if step is None:
-                raise PeerError("no pose is reached from the one before", i)
-            here, steps[i], places[i], coordinates[i] = driven[i], step, self.places(), self.coordinates
+            done, step = self._go(here, inputs[i], tolerance, counted)
+            if done < 1.0:
+                raise refusal("cannot be reached", i, here + done * (inputs[i] - here))
+            here, steps[i], places[i], coordinates[i] = inputs[i], step, self.places(), self.coordinates
             if not isinstance(self.rows, slice):
                 missed = float(np.abs(self.misses()[0]).max())
                 if not missed <= HELD + step**2:
-                    raise PeerError(
-                        f"closures that depend on others in the drawing miss by {missed:.3g} here", i
-                    )
-        return self._named(driven, coordinates, places, steps, counted)
+                    words = f"misses closures that depend on others as drawn by {missed:.3g}"
+                    raise refusal(words, i, inputs[i])
+        return self._named(inputs, coordinates, places, steps, counted)
 
-    def rates(self, poses: Poses, rate: Array, bend: Array) -> Rates:
+    def rates(self, poses: Poses, series: Array) -> Rates:
         """Velocities and accelerations of poses.
 
         Args:
-            rate, bend: first and second time derivative of what is driven, (N, drives), per s and s^2.
+            series: of each drive its input with two time derivatives, (N, drives, 3).
         Raises:
-            PeerError: the rates are not determined at a pose.
+            PoseError: the rates are not determined at a pose; `partial` has those before.
         """
-        count, names = len(rate), list(self.linkage.points)
+        count, names = len(poses.inputs), list(self.linkage.points)
         bodies = list(self.linkage.bodies)
         first, second = (np.empty((count, len(names) + len(bodies), 3)) for _ in range(2))
+        driven = self.linkage.coordinates(series)
         for i in range(count):
             self.put(poses.coordinates[i])
             jacobian = self.misses()[1][self.rows]
             velocity, acceleration = (np.zeros(jacobian.shape[1]) for _ in range(2))
-            velocity[self.driven], acceleration[self.driven] = rate[i], bend[i]
+            velocity[self.driven], acceleration[self.driven] = driven[i, :, 1], driven[i, :, 2]
             try:
                 inverse = np.linalg.inv(jacobian[:, self.unknown])
             except np.linalg.LinAlgError:
-                raise PeerError("the pose is where two assemblies meet", i) from None
-            velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ rate[i])
+                error = self._refusal("is singular", i, poses.inputs[i], poses.inputs[i])
+                error.partial = poses.first(i) if i else None
+                raise error from None
+            velocity[self.unknown] = -inverse @ (jacobian[:, self.driven] @ driven[i, :, 1])
             self.set_rates(velocity)
             acceleration[self.unknown] = -inverse @ self.apart(acceleration)[self.rows]
             first[i], second[i] = self.moving(acceleration)
@@ -182,82 +213,106 @@ class Program(ABC):
         )
         return Rates(velocities, accelerations, spins, rates)
 
-    def _go(self, start: Array, goal: Array, tolerance: float, counted: _Count) -> float | None:
-        """Follow the inputs to a goal, by halves where Newton's method would step too far; its last step."""
-        done, share, step = 0.0, 1.0, None
+    def signs(self, jacobian: Array) -> Array:
+        """Signs of the determinants of the diagonal blocks of J_u, (blocks,)."""
+        return np.array(
+            [np.linalg.slogdet(jacobian[rows[:, None], columns])[0] for rows, columns in self.blocks]
+        )
+
+    def _at(self, inputs: Array) -> None:
+        """Set the driven joints to inputs, (drives,)."""
+        series = np.stack([inputs, *np.zeros((2, len(inputs)))], axis=-1)
+        self.drive(self.linkage.coordinates(series)[:, 0])
+
+    def _go(self, start: Array, goal: Array, tolerance: float, counted: Counter[str]) -> tuple[float, float]:
+        """Follow the inputs to a goal, by halves where Newton's method would step too far.
+
+        Returns:
+            The share of the way that is gone, and the last step.
+        """
+        done, share, last = 0.0, 1.0, 0.0
         while done < 1.0:
             kept, share = self.coordinates, min(share, 1.0 - done)
             there = start + (done + share) * (goal - start) if done + share < 1.0 else goal
-            step = self._newton(there, tolerance, LONGEST_STEP, counted)
+            step = self._newton(there, tolerance, counted)
             if step is None:
                 self.put(kept)
                 share *= 0.5
                 if share < 0.5**HALVINGS:
-                    return None
+                    break
             else:
-                done += share
-                share *= 2.0
-        return step
+                done, last, share = done + share, step, 2.0 * share
+        return done, last
 
     def _newton(
-        self, driven: Array, tolerance: float, longest: float, counted: _Count, shorten: bool = False
+        self, inputs: Array, tolerance: float, counted: Counter[str], shorten: bool = False
     ) -> float | None:
-        """Close the loops at driven inputs; the last step, None if it fails.
+        """Close the loops at inputs; the last step, None if it fails.
 
         Args:
-            longest: step that is taken.
-            shorten: whether a longer one is shortened, or fails.
+            shorten: whether a step that is too long is shortened, or fails.
         """
-        self.drive(driven)
+        self._at(inputs)
         unknown, previous = self.unknown, np.inf
         if not len(unknown):
-            return 0.0  # as of an arm on one hinge, which is driven
+            return 0.0
         step: Array | None = None
         for number in range(LIMIT):
             missed, jacobian = self.misses()
             if step is None:
                 step = np.zeros(jacobian.shape[1])
-            counted.jacobians += 1
-            factors, swaps, solved, info = dgesv(jacobian[self.rows][:, unknown], -missed[self.rows])
+            counted.update(factorisations=1, jacobians=1, residuals=1)
+            square = jacobian[self.rows][:, unknown]
+            _, _, solved, info = dgesv(square, -missed[self.rows])
             if info:
                 return None
             step[unknown] = solved
             size = float(np.abs(solved).max())
-            if not size <= longest:
+            if not size <= LONGEST_STEP:
                 if not (shorten and np.isfinite(size)):
                     return None
-                step *= longest / size
+                step *= LONGEST_STEP / size
             elif number == 1 and size > CONTRACTED * previous and size > ROUNDING_STEP and not shorten:
                 return None
             self.move(step)
-            counted.steps += 1
+            counted["newton_steps"] += 1
             if size <= tolerance or (size < ROUNDING_STEP and size >= 0.5 * previous):
-                return size if _sign(factors, swaps) == self.sign else None
+                return size if (self.signs(square) == self.drawn).all() else None
             previous = size
         return None
 
+    def _folded(self) -> tuple[float, tuple[str, ...]]:
+        """Condition number of J_u at this pose, and what holds each other where it is nearly singular.
+
+        By the multipliers of the rows that nearly balance, u J_u = 0, and what they ask of the drives, u J_d:
+        names of those above half of the largest, the strongest first.
+        """
+        jacobian = self.misses()[1][self.rows]
+        if not len(self.unknown):
+            return 1.0, ()
+        left, sizes, _ = np.linalg.svd(jacobian[:, self.unknown])
+        share = np.abs(np.concatenate([left[:, -1], left[:, -1] @ jacobian[:, self.driven]]))
+        of_rows = np.repeat([loop.name for loop in self.linkage.loops], 3)[self.rows]
+        names = [*of_rows.tolist(), *(driven.drive.input for driven in self.linkage.driven)]
+        order = np.argsort(-share, kind="stable")
+        strong = [names[k] for k in order if share[k] > 0.5 * share[order[0]]]
+        with np.errstate(divide="ignore"):
+            return float(sizes[0] / sizes[-1]), tuple(dict.fromkeys(strong))
+
+    def _refusal(self, problem: str, instant: int | None, wanted: Array, reached: Array) -> PoseError:
+        """Why a pose is none, told at the one that was solved last."""
+        condition, links = self._folded()
+        told = self.linkage.tree.told
+        words = f"{problem}, for {' and '.join(', '.join(links).rsplit(', ', 1))} hold each other"
+        return PoseError(words, instant, told(wanted), told(reached), condition, links)
+
     def _named(
-        self, driven: Array, coordinates: Array, places: Array, steps: Array, counted: _Count
+        self,
+        inputs: Array,
+        coordinates: Array,
+        places: Array,
+        steps: Sequence[float] | Array,
+        counted: Counter[str],
     ) -> Poses:
-        counts = {
-            "newton_steps": counted.steps,
-            "factorisations": counted.jacobians,
-            "jacobians": counted.jacobians,
-            "residuals": counted.jacobians,
-        }
         named = {name: places[:, k] for k, name in enumerate(self.linkage.points)}
-        return Poses(driven, coordinates, named, steps, counts)
-
-
-def _sign(factors: Array, swaps: NDArray[np.intp]) -> float:
-    """Sign of a determinant, from its factors and their swaps of rows."""
-    turned = np.count_nonzero(swaps != np.arange(len(swaps))) + np.count_nonzero(np.diag(factors) < 0.0)
-    return -1.0 if turned % 2 else 1.0
-
-
-class _Count:
-    """What Newton's method did."""
-
-    def __init__(self) -> None:
-        self.steps = 0
-        self.jacobians = 0
+        return Poses(inputs, coordinates, named, np.asarray(steps), dict(counted))

@@ -160,7 +160,6 @@ class SpanningTree:
     Attributes:
         joints: parents before children; also of bodies between two joints, which no point is of.
         points: every point, as a place of the body that is nearest to the chassis.
-        holders: bodies that every point is of.
         drawn: every point as drawn, (3,).
         origin, unit: mm.
     """
@@ -169,18 +168,9 @@ class SpanningTree:
     points: Mapping[str, Place]
     closures: tuple[Closure, ...]
     drives: tuple[Drive, ...]
-    holders: Mapping[str, list[str]]
     drawn: Mapping[str, Array]
     origin: Array
     unit: float
-
-    def line(self, start: str, end: str) -> tuple[Place, Place]:
-        """Two points, as places of one body that is nearest to the chassis where there is such a body."""
-        p, q = self.points[start], self.points[end]
-        for joint in (*self.joints, Joint(CHASSIS, CHASSIS, "ball", NO_AXIS)):
-            if joint.body in self.holders[start] and joint.body in self.holders[end]:
-                return Place(joint.body, p.at), Place(joint.body, q.at)
-        return p, q
 
     def told(self, values: Array) -> dict[str, float]:
         """Inputs in rad and mm by name, from one value for each drive."""
@@ -321,7 +311,6 @@ class _Cutter:
             points=self.points,
             closures=closures,
             drives=tuple(self._drives(joints, taken)),
-            holders=self.holders,
             drawn={name: self.drawn[name] for name in self.points},
             origin=self.origin,
             unit=self.unit,

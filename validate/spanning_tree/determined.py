@@ -42,7 +42,7 @@ def blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
     """Rows and columns of the diagonal blocks of a square pattern in lower block triangular form.
 
     Each block is solved after those before it (Duff and Reid, ACM Transactions on Mathematical Software 4,
-    1978): an unknown that its own rows determine is not touched by the rounding of others.
+    1978), so that the determinant is the product of theirs.
     """
     graph = csr_matrix(pattern)
     row_of = maximum_bipartite_matching(graph, perm_type="row")

@@ -74,7 +74,6 @@ class Wheels:
         places: Mapping[str, Array],
         inputs: Mapping[str, Array],
         names: Iterable[str] = ANGLES,
-        along: Mapping[Ends, Array] | None = None,
     ) -> dict[str, Array]:
         """Numbers of the wheels, (N,), rad or mm; those that are not made of positions alone are left out.
 
@@ -83,10 +82,9 @@ class Wheels:
             inputs: value, rate and acceleration by name, (N, 3), rad or mm, and s; of those that turn the
                 chassis, where they are given.
             names: of the numbers, as the reference has them.
-            along: lines from one point to another, (N, 3), where they are known better than both ends.
         """
         points = {name: places[name] for ends in self.ends for name in ends}
-        vectors = {ends: points[ends[1]] - points[ends[0]] for ends in self.ends} | dict(along or {})
+        vectors = {ends: points[ends[1]] - points[ends[0]] for ends in self.ends}
         turned_points, turned_vectors = points, vectors
         turns = {name: given for name, given in self.plain["inputs"].items() if "turns" in given}
         still = {**self.plain, "points": self.tree.drawn, "inputs": turns}

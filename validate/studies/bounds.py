@@ -12,9 +12,6 @@ exceed the bound:
     error <= bound,    and    loss = error / (eps (condition size + far))    must not grow to the end,
 
 with size the power of two in which the mechanism counts lengths and far its distance from the origin.
-Near the end of an input the condition number grows as distance^(-1/2), because the end is a fold, so an
-error that follows condition eps has slope 1 over that rounding and -1/2 over the distance in
-double-logarithmic scales.
 """
 
 from __future__ import annotations
@@ -22,7 +19,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import partial
 from typing import Any, TypeVar
 
@@ -51,7 +48,6 @@ COMPANY = 63  # instants beside each
 CLOSE, NEARER = 1e-4, 1e-2  # s, and parts of the time that is left: how near they are to it
 LEVELS = (0.0, 0.01, 0.1, 0.5, 0.9, 0.99, 1.0)
 HELD, MOVING = "held", "moving"
-FOLD = 1e-3  # nearer to the end than this part of the range, its fold is all that matters
 
 # Lengths in mm. A refused pose has a suspension, a distance and a refusal alone.
 COLUMNS: Mapping[str, str] = {
@@ -194,73 +190,31 @@ def measured(rows: Sequence[Row]) -> pd.DataFrame:
     return table
 
 
-@dataclass(frozen=True)
-class Fit:
-    """log10 y = slope log10 x + constant by least squares.
-
-    Attributes:
-        slope: its value. scatter: root mean square of what is left, in decades.
-        poses: how many were fitted; errors of zero have no logarithm and are left out.
-    """
-
-    slope: float
-    scatter: float
-    poses: int
-
-
-def fitted(x: Array, y: Array) -> Fit:
-    """Fit a power law; NaN with fewer than three different x."""
-    there = (y > 0.0) & (y < math.inf)
-    u, v = np.log10(x[there]), np.log10(y[there])
-    if len(np.unique(u)) < 3:
-        return Fit(math.nan, math.nan, len(u))
-    slope, constant = np.polyfit(u, v, 1)
-    return Fit(float(slope), float(np.sqrt(np.mean((v - slope * u - constant) ** 2))), len(u))
-
-
-def error_over_rounding(checks: pd.DataFrame) -> Fit:
-    """Error over eps (condition size + far): slope 1 where rounding alone makes it."""
-    size = checks["size"]
-    return fitted((checks["rounding"] / size).to_numpy(), (checks["error"] / size).to_numpy())
-
-
-def error_over_distance(checks: pd.DataFrame) -> Fit:
-    """The same over the distance from the end, near it, of cars near the origin: slope -1/2 at a fold."""
-    near = checks[(checks["distance"] < FOLD) & (checks["far"] < 10.0 * checks["size"])]
-    return fitted(near["distance"].to_numpy(), (near["error"] / near["size"]).to_numpy())
-
-
-def _quantiles(checks: pd.DataFrame) -> dict[str, dict[str, float]]:
-    """How loose bounds are at levels, of points that are solved and of those that are carried."""
-    return {
-        points: {f"{level:g}": float(np.quantile(ratio, level, method="nearest")) for level in LEVELS}
-        for points in ("solved points", "carried points")
-        if len(ratio := checks[points].dropna())
-    }
-
-
 def found(rows: Sequence[Row], seed: int) -> Findings:
     """Whether every bound holds, and how loose they are."""
     checks, refusals = measured(rows), [row for row in rows if row.get("refusal") is not None]
     reasons = Counter(row["refusal"] for row in refusals).most_common()
     broken = checks[~(checks["share"] <= 1.0)]
-    refused = Counter(row["suspension"] for row in refusals)
-    parts: list[Part] = [_summary(checks, refused), ""]
+    parts: list[Part] = [_summary(checks, Counter(row["suspension"] for row in refusals))]
     data: dict[str, Any] = {
         "seed": seed,
         "refusals": [{"reason": reason, "poses": count} for reason, count in reasons],
         "broken": _records(broken),
     }
     for part, what in (
-        (HELD, "poses of cars ({}), held close to the end of an input"),
-        (MOVING, "instants of motions of cars ({}) that run towards the end of an input"),
+        (HELD, "poses held close to the end of an input"),
+        (MOVING, "instants of motions that run towards the end of an input"),
     ):
-        data[part] = {}
-        for variant in variants():
-            here = checks[(checks["suspension"] == variant.words) & (checks["part"] == part)]
-            data[part][variant.words], said = _looked_at(what.format(variant.words), here)
-            parts += said
+        there = checks[checks["part"] == part]
+        by_variant = ((v.words, there[there["suspension"] == v.words]) for v in variants())
+        data[part] = {words: _looseness(here) for words, here in by_variant}
+        parts += ["", f"{len(there)} {what}; medians, unless it says largest", _by_distance(there)]
+        for name in ("share", "loss") if len(there) else ():
+            worst = there.iloc[[int(there[name].to_numpy().argmax())]].to_dict("records")[0]
+            parts.append(f"largest {'error / bound' if name == 'share' else name}: {_case(worst)}")
     parts += [
+        "",
+        "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
         f"refused: {len(refusals)}",
         *(f"  {count}  {reason}" for reason, count in reasons),
         f"bounds below the error: {len(broken)}",
@@ -283,56 +237,39 @@ def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
     return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
 
-def _looked_at(name: str, checks: pd.DataFrame) -> tuple[dict[str, Any], tuple[Part, ...]]:
-    """One set of poses of one suspension, as plain data and for people."""
-    by_rounding, by_distance = error_over_rounding(checks), error_over_distance(checks)
-    quantiles = _quantiles(checks)
-    data = {
-        "count": len(checks),
-        "bound_over_error": {name.replace(" ", "_"): at for name, at in quantiles.items()},
-        "error_over_rounding": asdict(by_rounding),
-        "error_over_distance": asdict(by_distance),
-        "largest_loss": None if checks.empty else float(checks["loss"].max()),
-        "largest_error_over_bound": None if checks.empty else float(checks["share"].max()),
-        "checks": _records(checks),
-    }
-    if checks.empty:
-        return data, (f"{name}: none",)
-    rows = [
+def _by_distance(checks: pd.DataFrame) -> Table:
+    """A row for each decade of the distance from the end."""
+    rows = (
         (
             f"1e{decade:.0f} to 1e{decade + 1:.0f}",
             str(len(part)),
             f"{part['condition'].median():.1e}",
             f"{(part['error'] / part['size']).median():.1e}",
-            f"{part['loss'].median():.2g}",
-            f"{part['loss'].max():.2g}",
+            *(f"{of(part['loss']):.2g}" for of in (pd.Series.median, pd.Series.max)),
             f"{part['solved points'].median():.3g}",
             f"{part['share'].max():.2g}",
         )
         for decade, part in checks.groupby(np.floor(np.log10(checks["distance"])))
-    ]
-    head = (
-        *("distance / range", "poses", "condition", "error / size", "loss", "largest loss"),
-        *("bound / error", "largest error / bound"),
     )
-    loose = ((points, *(f"{ratio:.3g}" for ratio in at.values())) for points, at in quantiles.items())
-    nearest, worst = (
-        checks.iloc[[int(checks[name].to_numpy().argmax())]].to_dict("records")[0]
-        for name in ("share", "loss")
-    )
-    return data, (
-        f"{len(checks)} {name}; medians, unless it says largest",
-        "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
-        Table(head, tuple(rows)),
-        Table(("bound / error at", *(f"{100 * level:g}%" for level in LEVELS)), tuple(loose)),
-        f"error over eps (condition size + far): slope {by_rounding.slope:.3f} (rounding alone: 1), "
-        f"scatter {by_rounding.scatter:.2f} decades",
-        f"error over distance below {FOLD:g}: slope {by_distance.slope:.3f} (fold: -1/2), "
-        f"scatter {by_distance.scatter:.2f} decades",
-        f"nearest to its bound: {_case(nearest)}",
-        f"largest loss: {_case(worst)}",
-        "",
-    )
+    head = ("distance / range", "poses", "condition", "error / size", "loss", "largest loss")
+    return Table((*head, "bound / error", "largest error / bound"), tuple(rows))
+
+
+def _looseness(checks: pd.DataFrame) -> dict[str, Any]:
+    """One set of poses of one suspension, as plain data."""
+    return {
+        "count": len(checks),
+        "bound_over_error": {
+            points.replace(" ", "_"): {
+                f"{level:g}": float(np.quantile(ratio, level, method="nearest")) for level in LEVELS
+            }
+            for points in ("solved points", "carried points")
+            if len(ratio := checks[points].dropna())
+        },
+        "largest_loss": None if checks.empty else float(checks["loss"].max()),
+        "largest_error_over_bound": None if checks.empty else float(checks["share"].max()),
+        "checks": _records(checks),
+    }
 
 
 def _case(row: Mapping[Hashable, Any]) -> str:

@@ -6,7 +6,7 @@ from itertools import combinations
 import mpmath
 import numpy as np
 import pytest
-from cars_in_closed_form import DRAWN, FORMS, PUT_IN_PLACE, VARIANTS, ClosedForm, Linkage, Variant, cars_of
+from cars_in_closed_form import DRAWN, FORMS, PUT_IN_PLACE, VARIANTS, ClosedForm, Linkage, cars_of
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -149,33 +149,3 @@ def test_a_collinear_drawing_once_closed_is_the_same_strut_as_drawn(
     assume(exists(there))
     # 50 digits, of which a fold within the search's own rounding of it takes half.
     assert max(abs(x) for name in there for x in there[name] - again[name]) < 1e-15
-
-
-@given(cars_of(), SHARES, SHARES)
-def test_floating_point_and_many_digits_agree(car: Car, arm: float, rack: float) -> None:
-    linkage = Linkage.of(car)
-    angle, travel = near_drawing(car, arm, rack)
-    low, high = linkage.dead_points()
-    assume(linkage.sound and low + 0.05 < angle < high - 0.05)
-    assume(float(linkage.spare(np.array(angle), np.array(travel))) > 1e-3)
-    there, form = linkage.form.pose(angle, travel), exact(car)
-    true = pose_of(form, angle, travel)
-    for name, place in there.items():
-        assert max(abs(float(x)) for x in place - form.origin - true[name]) < 1e-9 * linkage.size, name
-
-
-@pytest.mark.parametrize("variant", VARIANTS, ids=lambda v: v.words)
-def test_an_array_of_inputs_gives_the_poses_of_each(variant: Variant) -> None:
-    linkage = Linkage.of(variant.base)
-    angles, racks = np.linspace(1.0, 1.6, 6).reshape(2, 3), np.linspace(-3.0, 3.0, 3)
-    both = linkage.form.pose(angles, racks)
-    for i, k in np.ndindex(angles.shape):
-        one = linkage.form.pose(float(angles[i, k]), float(racks[k]))
-        for name, place in one.items():
-            assert np.array_equal(both[name][i, k], place, equal_nan=True)
-
-
-@given(cars_of(PUT_IN_PLACE))
-def test_a_collinear_slide_never_runs_out(car: Car) -> None:
-    linkage = Linkage.of(car)
-    assert float(linkage.form.upper_spare(np.array(linkage.drawn_angle))) == 1.0

@@ -1,19 +1,13 @@
 """Where inputs end: as the closed forms say, and as a search finds that goes through every place."""
 
-import brute_force
-import numpy as np
 import pytest
-from cars_in_closed_form import DRIVEN, TIE_ROD, VARIANTS, Linkage, Variant, cars_of
+from cars_in_closed_form import DRIVEN, Linkage, cars_of
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from pointcoord import PointcoordError
-from validate.cars.base_cars import variants
 from validate.cars.car import Car
-from validate.cars.input_ends import drawn_inputs, end, redrawn
-from validate.hard.cars import CARS
+from validate.cars.input_ends import drawn_inputs, end
 
-EPS = float(np.finfo(float).eps)
 EXAMPLES = settings.default.max_examples if settings.default else 100
 searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 10)  # an end takes 0.1 s
 
@@ -41,55 +35,3 @@ def test_an_end_is_that_of_the_closed_form_to_a_trillionth_of_the_range(
     # A short fold beside a longer way, such as a dead point just before a lock, is one for the path alone.
     if found is not None and exact is not None and linkage.sound:
         assert abs(found.value - exact[0]) <= 1e-13 * found.reach
-
-
-@pytest.mark.parametrize("name", CARS)
-def test_an_end_is_known_to_some_roundings_of_its_range(name: str) -> None:
-    car = CARS[name]
-    linkage, home = Linkage.of(car), drawn_inputs(car)
-    far = max(float(np.abs(place).max()) for place in car.array.values())
-    for driven in DRIVEN:
-        for ahead in (False, True):
-            found, exact = end(car, home, driven, ahead), linkage.end(home, driven, ahead)
-            assert found is not None
-            assert exact is not None
-            # The closed form's own error is of the same order; far from the origin both round coordinates.
-            assert abs(found.value - exact[0]) <= 20 * EPS * found.reach * max(1.0, far / car.size)
-
-
-@pytest.mark.parametrize("name", ["paper", "wide", "wishbone", "short-arm"])
-def test_an_input_ends_where_brute_force_finds_no_further_pose(name: str) -> None:
-    """A share of 1e-3 of the range inside its end there is a pose, and as much beyond it there is none."""
-    car, home = CARS[name], drawn_inputs(CARS[name])
-    for driven in DRIVEN:
-        for ahead in (False, True):
-            last = end(car, home, driven, ahead)
-            assert last is not None
-            step = (1e-3 if ahead else -1e-3) * last.reach
-            inside, beyond = (home | {driven: last.value + sign * step} for sign in (-1.0, 1.0))
-            assert brute_force.look_for_pose(car, inside["arm_angle"], inside["rack"]) == (True, True)
-            upper, rod = brute_force.look_for_pose(car, beyond["arm_angle"], beyond["rack"])
-            assert not rod
-            assert upper == (Linkage.of(car).end(home, driven, ahead)[1] == TIE_ROD)
-
-
-@pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)
-def test_a_car_drawn_anew_stands_at_the_inputs_of_its_new_drawing(variant: Variant) -> None:
-    for inputs in variant.input_sets:
-        car = variant.base
-        known = car.structure.inputs
-        wanted = {
-            # Inputs of one set may nearly hold each other: not far.
-            name: value + (5e-4 if known[name].unit == "rad" else 1e-4 * car.size)
-            for name, value in drawn_inputs(car, inputs).items()
-        }
-        again = drawn_inputs(redrawn(car, wanted), inputs)
-        for name, value in wanted.items():
-            drawn = 0.0 if known[name].kind in ("height", "contact", "turn") else value
-            assert again[name] == pytest.approx(drawn, rel=1e-12, abs=1e-9)
-
-
-@given(st.sampled_from(VARIANTS))
-def test_a_pose_beyond_all_inputs_has_no_end(variant: Variant) -> None:
-    with pytest.raises(PointcoordError):
-        end(variant.base, {"arm_angle": 0.01, "rack": 1e4}, "rack", True)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.drawing_stands import drawn_inputs as drawn_inputs_of
 from pointcoord.linkage.directions import DIRECTIONS
-from validate.cars.base_cars import Variant, variants
+from validate.cars.base_cars import variants
 from validate.cars.car import Car
 from validate.cars.input_ends import drawn_inputs, end
 from validate.cars.moved_points import LEFT_OVER, sliding
@@ -16,27 +16,13 @@ from validate.cars.near_singular import near_pose
 from validate.cars.random_cars import random_car
 from validate.cars.random_scenes import KINDS, random_scene
 from validate.cars.scene_content import content_of
-from validate.strategies import cars
 
 NUMBERS = st.integers(0, 2**32 - 1)
-by_variant = pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)
 EXAMPLES = settings.default.max_examples if settings.default else 100
 DEEP = EXAMPLES > 100
 searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 20)
 # Each looks for ends of inputs, half a second of work for one.
 searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 6)
-
-
-@by_variant
-def test_a_base_car_is_a_shipped_scenes_and_moves_by_every_set_of_its_inputs(variant: Variant) -> None:
-    scene = Scene.load(variant.scene)
-    assert variant.base == Car.of(scene)
-    assert set(variant.input_sets[0]) <= set(scene.inputs)
-    assert len(set(map(frozenset, variant.input_sets))) == len(variant.input_sets)
-    for inputs in variant.input_sets:
-        home = drawn_inputs(variant.base, inputs)
-        assert set(home) == set(inputs)
-        simulate(Scene.from_mapping(content_of(variant.base, home)))
 
 
 @searched
@@ -71,15 +57,6 @@ def test_what_slides_is_drawn_on_its_line_or_beside_it_by_no_more_than_is_left_o
             far = max(float(np.abs(place).max()) for place in p.values())
             allowed = np.sqrt(3.0) * LEFT_OVER * drawn.scale + 1e-12 * far
             assert np.linalg.norm(aside) <= allowed, name
-
-
-@searched
-@given(cars())
-def test_a_car_for_everybody_is_drawn_on_its_lines(drawn: tuple[Car, Variant]) -> None:
-    car, variant = drawn
-    motion = simulate(Scene.from_mapping(content_of(car, drawn_inputs(car, variant.input_sets[0]))))
-    for name, place in car.array.items() if car.closure == "drawn" else ():
-        assert np.abs(motion.position[name][0] - place).max() <= 1e-9 * car.size, name
 
 
 @searched_for_ends

@@ -9,11 +9,9 @@ from functools import cache
 import pytest
 
 from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
-from validate.comparison import examined as examined_module
-from validate.comparison.compare import Outcome
 from validate.comparison.examined import Examined, examine
 from validate.exit_status import ExitStatus
-from validate.formulations.protocol import Formulation, FormulationError, Solution
+from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
@@ -22,11 +20,6 @@ SCENE = Scene.load("steer")
 @cache
 def solved() -> Solution:
     return formulation("pointcoord").solve(SCENE)
-
-
-def off_by(gap: float) -> Solution:
-    places = {name: place + gap for name, place in solved().numbers["position"].items()}
-    return solved().with_numbers({"position": places})
 
 
 class Fixed:
@@ -61,12 +54,6 @@ def test_who_agrees_ends_with_0_and_has_nothing_to_complain_of() -> None:
     assert (found.complaint, found.refusals, found.failures, found.printed) == ("", (), (), None)
     assert found.solved == ("a", "b", "c")
     assert [(o.rows[0].first, o.rows[0].second) for o in found.outcomes] == [("a", "b"), ("c", "b")]
-
-
-def test_one_pair_that_disagrees_is_a_disagreement() -> None:
-    found = examined({"a": solved(), "b": solved(), "c": off_by(1.0)}, "a b", "c b")
-    assert found.status is ExitStatus.DISAGREE
-    assert found.complaint == ""
 
 
 def test_a_refusal_is_no_verdict_and_says_by_whom_and_who_solved_it() -> None:
@@ -113,12 +100,6 @@ def test_after_a_failure_no_other_pair_is_tried() -> None:
     assert found.solved == ("a",)
 
 
-@pytest.mark.parametrize(("words", "said"), [("", ""), ("9 GB", " (9 GB)")])
-def test_of_memory_that_is_full_the_amount_is_told_if_it_is_known(words: str, said: str) -> None:
-    found = examined({"a": solved(), "b": MemoryError(words) if words else MemoryError()}, "a b")
-    assert found.failures[0].message == f"out of memory{said}; try fewer samples, or fewer effects"
-
-
 @pytest.mark.parametrize(
     ("reason", "advised"),
     [
@@ -145,22 +126,3 @@ def test_the_printed_formulas_are_compared_if_asked_for_and_count_for_nothing() 
     assert len(both.outcomes) == 1
     without = examined({"a": refuses("a", ValueError("no")), "b": solved()}, "a b", printed=True)
     assert (without.printed, without.unprinted) == (None, None)
-
-
-def test_a_comparison_that_fails_though_both_answered_is_told_as_such(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    def broken(scene: Scene, first: Formulation, second: Formulation, *rest: object) -> Outcome:
-        first.solve(scene)
-        second.solve(scene)
-        raise RuntimeError("no way to compare")
-
-    monkeypatch.setattr(examined_module, "compare", broken)
-    found = examined({"a": solved(), "b": solved(), "c": solved()}, "a b", "c b")
-    assert [f.formulation for f in found.failures] == [
-        "the comparison of a with b",
-        "the comparison of c with b",
-    ]
-    assert {f.error for f in found.failures} == {"RuntimeError"}
-    assert (found.solved, found.outcomes) == (("a", "b", "c"), ())
-    assert found.status is ExitStatus.NOT_FINISHED

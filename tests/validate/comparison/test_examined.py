@@ -12,11 +12,11 @@ from program import PAST_ITS_END, complaints, short_scene
 
 from pointcoord import Scene
 from validate.cli import main
-from validate.comparison.examined import Examined, Once, examine
+from validate.comparison.examined import examine
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.running import ROOT, asked_for, check_what_is_run, has_job, modules_with_a_job
+from validate.running import ROOT, check_what_is_run, has_job
 
 PAIRS = (("pointcoord", "absolute"), ("pointcoord-newton", "absolute"))
 
@@ -53,19 +53,6 @@ def test_a_refusal_says_who_where_which_value_and_which_limit(
         assert refusal["condition"] > 1.0
         assert refusal["message"]
     assert refusals["pointcoord"]["links"]
-
-
-def test_an_input_out_of_range_is_told_with_what_is_allowed(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = short_scene(tmp_path, arm_angle="{ polynomial = [1.5, 1.0] }", samples="27")
-    assert main(["validate", path, "--json", "-"]) == 3
-    refusals = said(capsys)["scenes"][0]["refusals"]
-    for refusal in (refusal for refusal in refusals if refusal["formulation"] != "absolute"):
-        assert (refusal["input"], refusal["reason"]) == ("arm_angle", "input out of range")
-        assert refusal["instant"] == pytest.approx(1.7)
-        assert refusal["value"] == pytest.approx(3.2)
-        assert "0 to pi" in refusal["limit"]
 
 
 def test_a_scene_that_one_formulation_solves_has_no_verdict_and_says_so(
@@ -107,21 +94,6 @@ def test_hardpoints_that_make_no_mechanism_are_a_wrong_input_whoever_solves_them
     found = examine("bent", bent, PAIRS[:1], False)
     assert found.status is ExitStatus.WRONG_INPUT
     assert found.complaint.endswith("; refused by pointcoord (SceneError); solved by absolute")
-
-
-def test_a_scene_without_any_verdict_never_ends_with_0(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A formulation that gives no solution at all, and a comparison that fails: each is told."""
-    scene = Scene.load("bounce")
-    assert Examined("empty").status is ExitStatus.NO_VERDICT
-    monkeypatch.setattr(AbsoluteCoordinates, "solve", lambda self, scene: "nonsense")
-    found = examine("bounce", scene, PAIRS[:1], False)
-    assert found.status in (ExitStatus.NO_VERDICT, ExitStatus.NOT_FINISHED)
-    assert "absolute" in found.complaint
-    monkeypatch.undo()
-    monkeypatch.setattr("validate.comparison.examined.compare", lambda *_: 1 / 0)
-    found = examine("bounce", scene, PAIRS[:1], False)
-    assert found.status is ExitStatus.NOT_FINISHED
-    assert "the comparison of pointcoord with absolute fails: ZeroDivisionError" in found.complaint
 
 
 def drawn(folder: Path, moved: str) -> str:
@@ -181,34 +153,6 @@ def test_each_formulation_solves_a_scene_once(monkeypatch: pytest.MonkeyPatch) -
     assert found.printed is not None
 
 
-def test_the_printed_formulas_are_tried_on_the_papers_scenes_only(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    copy = short_scene(tmp_path, samples="131")
-    assert main(["validate", "bounce", copy, "--json", "-"]) == 0
-    assert {finding["scene"] for finding in said(capsys)["printed_formulas"]} == {"bounce"}
-
-
-def test_printed_formulas_that_refuse_a_scene_change_no_verdict(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A strut that lies flat, as if it were one of the paper's scenes."""
-    path = short_scene(
-        tmp_path,
-        strut_top="[460, 200, 20]",
-        strut_rod_end="[456, -50, 20]",
-        strut_lower="[451, -270, 20]",
-        lower_ball_joint="[450, -330, 20]",
-        arm_angle="{ polynomial = [1.4, 0.1] }",
-        stop="0.1",
-    )
-    monkeypatch.setattr("validate.commands.comparison.PAPER_SCENES", (path,))
-    assert main(["validate", path, "-v"]) == 0
-    out, err = capsys.readouterr()
-    assert complaints(err) == []
-    assert f"The paper's formulas as printed cannot solve {path}: " in out
-
-
 def failing(monkeypatch: pytest.MonkeyPatch, error: Exception, title: str) -> None:
     """Makes the absolute model fail at scenes of one title."""
     solve = AbsoluteCoordinates.solve
@@ -247,29 +191,6 @@ def test_a_failure_at_one_scene_leaves_the_others_solved_and_ends_with_4(
     assert data["scenes"][0]["failures"][0]["error"] == type(error).__name__
 
 
-def test_a_defect_outside_of_the_scenes_is_one_line_and_status_4(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("validate.commands.comparison.compare_with_paper", lambda: 1 / 0)
-    assert main(["validate", "--quiet"]) == 4
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("pointcoord: ZeroDivisionError: division by zero at test_examined.py:")
-
-
-def test_one_bad_file_leaves_the_others_solved_and_written(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    target = tmp_path / "out.json"
-    assert main(["validate", "nowhere.toml", short_scene(tmp_path), "--json", str(target)]) == 2
-    out, err = capsys.readouterr()
-    (line,) = complaints(err)
-    assert "nowhere.toml: cannot be read" in line
-    assert "1 of 2 scenes agree" in out
-    data = json.loads(target.read_text())
-    assert [scene["verdict"] for scene in data["scenes"]] == ["wrong input", "agree"]
-    assert data["complete"] is True
-
-
 def test_a_disagreement_comes_before_every_other_status() -> None:
     scenes = [ExitStatus.DISAGREE, ExitStatus.NOT_FINISHED, ExitStatus.WRONG_INPUT, ExitStatus.NO_VERDICT]
     for count in range(1, 5):
@@ -277,35 +198,6 @@ def test_a_disagreement_comes_before_every_other_status() -> None:
             best = next((status for status in scenes if status in chosen), ExitStatus.AGREE)
             assert combined(chosen) is best
     assert combined(()) is ExitStatus.AGREE
-
-
-def test_an_answer_is_not_asked_for_twice_and_memory_is_not_held() -> None:
-    class Full:
-        name = "full"
-        asked = 0
-
-        def solve(self, scene: Scene) -> Any:
-            self.asked += 1
-            raise MemoryError("full")
-
-    full = Full()
-    once = Once(full)
-    for _ in range(2):
-        with pytest.raises(MemoryError, match="full"):
-            once.solve(Scene.load("bounce"))
-    assert full.asked == 1
-
-
-def test_a_quiet_run_says_nothing_but_errors(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    good = short_scene(tmp_path)
-    assert main(["validate", good, "--quiet", "--second", "printed"]) == 1
-    assert capsys.readouterr() == ("", "")
-    assert main(["hard", "at-rest", "-q"]) == 0
-    assert capsys.readouterr() == ("", "")
-    assert main(["validate", good, "nowhere.toml", "-q"]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    assert len(err.splitlines()) == 1
 
 
 def test_results_do_not_go_over_the_scene_that_they_come_from(
@@ -367,31 +259,3 @@ def test_a_module_that_is_run_does_its_job_or_is_refused(
     assert ended.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"pointcoord: {module} has nothing to run; ")
-
-
-def test_every_module_with_a_job_ends_with_its_main(capsys: pytest.CaptureFixture[str]) -> None:
-    jobs = modules_with_a_job()
-    assert {"validate", "validate.cli"} <= set(jobs)
-    assert "validate.running" not in jobs
-    for name in jobs:
-        place = ROOT.joinpath(*name.split(".")[1:])
-        path = place / "__main__.py" if place.is_dir() else place.with_suffix(".py")
-        *_, guard, call = path.read_text().splitlines()
-        assert guard == 'if __name__ == "__main__":'
-        assert "main()" in call
-
-
-@pytest.mark.parametrize(
-    ("original", "argv", "module"),
-    [
-        (["python", "-m", "validate.x"], ["-m"], "validate.x"),
-        (["python", "-X", "dev", "-m", "validate.x", "a"], ["-m", "a"], "validate.x"),
-        (["python", "-mvalidate.x", "a"], ["-m", "a"], "validate.x"),
-        (["python", "-Im", "validate.x"], ["-m"], "validate.x"),
-        (["python", "tool.py", "a"], ["tool.py", "a"], None),
-    ],
-)
-def test_the_module_that_python_was_asked_to_run_is_found(
-    original: list[str], argv: list[str], module: str | None
-) -> None:
-    assert asked_for(argv, original) == module

@@ -191,10 +191,3 @@ def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.Cap
     table = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert [line[2] for line in table if line[:1] == ["stub_axle"]] == ["mm"]
     assert [line[2] for line in table if line[:1] == ["flip"]] == ["rad"]
-
-
-def test_the_registries_are_as_before() -> None:
-    """A check of the check: nothing of what is planted stays."""
-    assert "flip" not in registry.EFFECTS
-    assert STUB.name not in registry.QUANTITIES
-    assert "flip" not in absolute.EFFECTS

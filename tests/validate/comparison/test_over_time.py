@@ -7,7 +7,7 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import compare, compare_solutions
-from validate.comparison.over_time import OverTime, over_time
+from validate.comparison.over_time import over_time
 from validate.formulations.protocol import Solution
 
 
@@ -22,16 +22,6 @@ def test_the_largest_share_over_time_is_the_comparison_s(name: str, factor: floa
         assert found is not None
         assert float(found.share.max()) == row.share
         assert np.array_equal(found.times, scene.instants)
-
-
-def test_of_a_quantity_that_one_does_not_give_there_is_nothing_over_time() -> None:
-    scene = Scene.load("bounce")
-    outcome = compare(scene, "pointcoord", "absolute")
-    row = outcome.rows[0]
-    first, second = outcome.solutions
-    silent = second.with_numbers({row.quantity: {}})
-    lacking = type(outcome)(outcome.scene, outcome.rows, (first, silent), (), ())
-    assert over_time(lacking, row, scene.instants) is None
 
 
 def at(solution: Solution, kept: np.ndarray) -> Solution:
@@ -57,29 +47,3 @@ def test_only_instants_that_both_give_are_compared_over_time() -> None:
             assert found is not None
             assert np.array_equal(found.times, scene.instants[::step])
             assert float(found.share.max()) == row.share
-
-
-def test_without_an_instant_that_both_give_there_is_nothing_over_time() -> None:
-    scene = Scene.load("bounce")
-    outcome = compare(scene, "pointcoord", "absolute")
-    first, second = outcome.solutions
-    count = len(scene.instants)
-    apart = (at(first, np.arange(0, count, 2)), at(second, np.arange(1, count, 2)))
-    assert over_time(replace(outcome, solutions=apart), outcome.rows[0], scene.instants) is None
-
-
-def test_where_nothing_is_claimed_the_largest_number_of_all_instants_is_the_measure() -> None:
-    scene = Scene.load("bounce")
-    first, second = compare(scene, "pointcoord", "absolute").solutions
-    velocity = {**second.numbers["velocity"], "strut_top": second.numbers["velocity"]["strut_top"] + 1e-30}
-    outcome = compare_solutions(scene, first, second.with_numbers({"velocity": velocity}), "bounce")
-    (row,) = (r for r in outcome.rows if (r.quantity, r.name) == ("velocity", "strut_top"))
-    found = over_time(outcome, row, scene.instants)
-    assert found is not None
-    assert row.share > 0.0
-    assert float(found.share.max()) == row.share
-
-
-def test_no_difference_is_no_share_even_of_no_tolerance() -> None:
-    found = OverTime(np.arange(3.0), np.array([0.0, 0.0, 3.0]), np.array([0.0, 2.0, 2.0]))
-    assert found.share.tolist() == [0.0, 0.0, 1.5]

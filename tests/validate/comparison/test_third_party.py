@@ -8,7 +8,6 @@ import pytest
 
 from pointcoord import Scene
 from validate import Accuracy, FormulationError, Outcome, Solution, compare
-from validate.comparison.given import given
 
 SCENE = Scene.load("double-wishbone")
 COUNT = len(SCENE.instants)
@@ -118,13 +117,6 @@ def test_an_accuracy_that_is_none_is_a_refusal_that_says_what_is_needed(
     assert said in str(caught.value)
 
 
-def test_a_quantity_that_is_not_given_is_no_attribute() -> None:
-    solution = Mine().solve(SCENE)
-    assert np.array_equal(solution.position["wheel_centre"], np.round(WHEEL, 6))
-    with pytest.raises(AttributeError, match="the solution of mine has no 'velocity'"):
-        _ = solution.velocity
-
-
 def test_numbers_that_are_none_are_counted_by_instants_and_whole_ones_not_told_of() -> None:
     holed = WHEEL.copy()
     holed[2, 0] = holed[5, 1] = holed[5, 2] = np.nan
@@ -139,21 +131,3 @@ def test_numbers_that_are_none_are_counted_by_instants_and_whole_ones_not_told_o
     told = f"mine: position of wheel_centre is not a number at 2 of {COUNT} instants"
     assert told in notes[0]
     assert not any("not a number" in note or "instants; the others" in note for note in notes[1])
-
-
-def test_of_an_instant_that_is_given_twice_the_first_number_counts_even_where_it_is_asked_for_twice() -> None:
-    times, places = np.array([0.0, 1.0, 1.0, 2.0]), np.arange(12.0).reshape(4, 3)
-    found = given(Solution("mine", times, {"position": {"p": places}}, Accuracy(np.ones(4))), times)
-    assert found.found.all()
-    assert found.numbers["position"]["p"].tolist() == places[[0, 1, 1, 3]].tolist()
-
-
-def test_of_instants_that_are_given_in_order_but_not_all_each_has_its_own_number() -> None:
-    places = np.arange(6.0).reshape(2, 3)
-    solution = Solution("mine", np.array([1.0, 3.0]), {"position": {"p": places}}, Accuracy(np.ones(2)))
-    found = given(solution, np.arange(4.0))
-    assert found.found.tolist() == [False, True, False, True]
-    assert found.numbers["position"]["p"].tolist() == places.tolist()
-    later = found.at(np.array([False, False, False, True]))
-    assert later.numbers["position"]["p"].tolist() == [places[1].tolist()]
-    assert len(later.condition) == 1

@@ -8,7 +8,7 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import Comparison, Outcome, compare_solutions
-from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
+from validate.comparison.tolerance import tolerance, untested
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Solution
 from validate.formulations.registry import formulation
@@ -40,19 +40,6 @@ def test_more_than_a_thousand_times_the_other_sides_claim_tests_nothing(
     assert untested(wide, small, wide, small).tolist() == [False, tests_nothing]
 
 
-def test_what_a_side_would_give_is_its_largest_claim_or_what_rounding_leaves() -> None:
-    claims = [np.array([[1e-12, 2e-12, 0.0]]), np.array([[5e-12, 0.0, 0.0]])]
-    assert level(claims, np.array([1.0]), np.array([10.0])).tolist() == [5e-12]
-    # eps times the condition number times the largest number.
-    assert level(claims, np.array([400.0]), np.array([100.0])).tolist() == [EPS * 100.0 * 400.0]
-
-
-def test_the_largest_number_of_an_instant_is_of_all_that_are_finite_there() -> None:
-    one = np.array([[1e-3, -4e-3, 0.0], [np.nan, np.inf, np.nan]])
-    other = np.array([[np.nan, 2e-3, 3e-3], [np.nan, -np.inf, np.nan]])
-    assert largest_numbers([one, other], 2).tolist() == [4e-3, 0.0]
-
-
 def changed(solution: Solution, quantity: str, arrays: Mapping[str, np.ndarray]) -> Solution:
     """The solution with some numbers of a quantity replaced."""
     return solution.with_numbers({quantity: {**solution.numbers[quantity], **arrays}})
@@ -77,11 +64,6 @@ def test_an_angle_agrees_with_itself_whole_turns_on_and_not_half_a_turn_on(
         claims = {name: claim + 4e-15 for name, claim in solved.accuracy.claims["wheel"].items()}
         other = replace(other, accuracy=solved.accuracy.with_claims({"wheel": claims}))
     assert row(solved, other, "wheel", "camber").verdict == verdict
-
-
-def test_a_solution_prints_as_a_line(solved: Solution) -> None:
-    quantities = "position, velocity, acceleration, angular_velocity, angular_acceleration, wheel"
-    assert repr(solved) == f"<Solution of pointcoord: 81 instants; {quantities}>"
 
 
 def test_a_wrong_number_does_not_widen_its_own_tolerance(solved: Solution) -> None:

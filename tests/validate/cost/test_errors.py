@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from toy_ways import reference_numbers
 
-from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cost.errors import Judge, errors_of, truth_of
 from validate.cost.race import Found, NoNumbers
@@ -53,11 +52,6 @@ def test_the_error_of_a_double_is_its_distance_from_the_reference_in_many_digits
         assert 0.0 < error["error"] <= 0.5 * np.spacing(1000.0)
 
 
-def test_the_radius_is_far_below_any_error_of_doubles() -> None:
-    for quantity, error in found(reference_numbers(SCENE, INSTANTS)).items():
-        assert 0.0 < error["radius"] < 1e-9 * error["error"], quantity
-
-
 @pytest.mark.parametrize("quantity", TRUTH.exact)
 def test_a_number_that_is_wrong_by_a_known_amount_has_that_error_in_its_quantity_alone(quantity: str) -> None:
     numbers = reference_numbers(SCENE, INSTANTS)
@@ -67,15 +61,6 @@ def test_a_number_that_is_wrong_by_a_known_amount_has_that_error_in_its_quantity
     assert errors[quantity]["error"] == pytest.approx(2.0**-6, rel=1e-9)
     assert errors[quantity]["rms"] == pytest.approx(2.0**-6 / errors[quantity]["numbers"] ** 0.5, rel=1e-9)
     assert all(error["error"] < 1e-10 for other, error in errors.items() if other != quantity)
-
-
-def test_an_error_too_large_or_too_small_to_be_squared_has_its_root_mean_square() -> None:
-    for size in (1e200, 1e-200):
-        numbers = reference_numbers(SCENE, INSTANTS)
-        for array in numbers["velocity"].values():
-            array += size
-        error = found(numbers)["velocity"]
-        assert 0.0 < error["rms"] <= error["error"] < 1.1e200
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
@@ -109,23 +94,6 @@ def test_a_quantity_that_is_not_given_is_said_and_no_error_of_zero() -> None:
     assert without["wheel"]["reason"].startswith("gives no ")
     with pytest.raises(NoNumbers, match="gives no position"):
         found({})
-
-
-def test_a_scene_that_asks_for_positions_is_held_to_positions() -> None:
-    scene = Scene.load("steer").model_copy(update={"effects": ()})
-    assert set(truth_of(scene, np.array([0.1])).exact) == {"position"}
-
-
-def test_points_of_the_chassis_do_not_dilute_the_mean() -> None:
-    assert set(TRUTH.exact["position"]) == set(MOVING)
-
-
-def test_an_answer_for_other_instants_has_the_error_of_that() -> None:
-    numbers = reference_numbers(SCENE, INSTANTS)
-    for arrays in numbers.values():
-        for name in arrays:
-            arrays[name] = np.roll(arrays[name], 1, axis=0)
-    assert found(numbers)["position"]["error"] > 1.0
 
 
 def test_positions_are_judged_alone_and_some_instants_for_all() -> None:

@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
-from made_rows import alike, dialled, grown, measured, study
+from made_rows import dialled, grown, measured, study
 
-from validate.cost.findings import cheapest, dials, growths, races, sentences
+from validate.cost.findings import cheapest, growths, races, sentences
 from validate.cost.table import Row, frame
-from validate.cost.words import BYTES, duration, in_units, listed, power
 
 
 def verdicts(rows: Sequence[Row], quantity: str = "position") -> dict[float, str]:
@@ -55,12 +54,6 @@ def test_of_several_settings_the_cheapest_that_reaches_is_taken() -> None:
     assert best.value.to_dict() == pytest.approx({1e-3: 1e-3, 1e-6: 1e-6, 1e-9: 1e-9})
 
 
-def test_rows_that_failed_or_have_no_time_take_no_part() -> None:
-    rows = raced(1e-5, 2e-5)
-    rows += [replace(rows[0], way="exudyn", time=None), replace(rows[0], way="map", verdict="failed")]
-    assert set(cheapest(frame(rows)).way) == {"series", "relative"}
-
-
 @pytest.mark.parametrize("power", [0.5, 1.0, 2.8])
 def test_planted_exponents_come_out_of_the_largest_sizes(power: float) -> None:
     sizes = [10**k for k in range(2, 7)]
@@ -83,21 +76,6 @@ def test_fixed_costs_hide_no_growth_and_the_set_up_counts_but_against_instants()
     assert one.value == pytest.approx(5.0 + 1e-3)
 
 
-def test_one_or_two_sizes_give_no_error_of_an_exponent() -> None:
-    (one,) = growths(frame(grown("a", "series", "", "designs", [5], 0.0, 1e-6))).itertuples()
-    assert one.exponent is None or one.exponent != one.exponent
-    (two,) = growths(frame(grown("a", "series", "", "designs", [5, 50], 0.0, 1e-6))).itertuples()
-    assert two.exponent == pytest.approx(1.0)
-    assert two.error is None or two.error != two.error
-
-
-def test_a_dial_says_how_many_times_as_long_the_finest_setting_takes() -> None:
-    (one,) = dials(frame(dialled("a", "series", 1e-5, 0.05, 1e-13))).itertuples()
-    assert one.digits == pytest.approx(11.0)
-    assert one.times == pytest.approx(10.0**0.55)
-    assert dials(frame(measured("a", "absolute", "", alike(1e-12), 1e-4))).empty
-
-
 def test_three_sentences_say_who_is_quickest_what_digits_cost_and_where_others_win() -> None:
     quickest, digits, won = sentences(frame(study()))
     assert quickest.startswith("A pose to 1e-9 mm of position takes series 8.95 us to 14.3 us, mujoco 37 us")
@@ -110,29 +88,9 @@ def test_three_sentences_say_who_is_quickest_what_digits_cost_and_where_others_w
     assert "win 3 (relative)" in sentences(frame(raced(2e-5, 1e-5)))[-1]
 
 
-def test_the_maps_making_is_told_and_without_it_the_races_are_counted_again() -> None:
-    rows = raced(2e-5, 1e-5) + measured("a", "map", "", {"position": 1e-12}, 1e-6, set_up=0.25)
-    quickest, won = sentences(frame(rows))
-    assert "map 1 us (once its map is made, which takes 250 ms), relative 10 us and series 20 us" in quickest
-    assert "other ways than pointcoord's win 0" in won
-    assert "without the map, whose making is not counted, others win 3." in won
-
-
 def test_nothing_measured_gives_nothing_to_say() -> None:
     failed = Row("accuracy", "a", "series", verdict="failed", reason="why")
     for rows in ([], [failed]):
         assert sentences(frame(rows)) == []
         assert races(frame(rows)).empty
         assert growths(frame(rows)).empty
-
-
-def test_numbers_are_written_with_three_digits_and_their_unit() -> None:
-    assert [duration(t) for t in (12.0, 1.5e-3, 4.2e-5, 9.9e-8, 0.9999)] == [
-        "12 s",
-        "1.5 ms",
-        "42 us",
-        "99 ns",
-        "1 s",
-    ]
-    assert [in_units(n, BYTES) for n in (12.0, 34.5e6)] == ["12 B", "34.5 MB"]
-    assert (listed(["a"]), listed(["a", "b", "c"]), power(1e-9)) == ("a", "a, b and c", "1e-9")

@@ -38,15 +38,6 @@ def test_whatever_it_was_started_with_a_run_has_one_thread() -> None:
     assert set(seen) == {1}
 
 
-def test_the_first_run_is_told_apart_from_the_others() -> None:
-    toy = Toy("toy")
-    toy.before = lambda phase: toy.clock.advance(10**9 if not toy.runs and phase == "set-up" else 0)
-    [row] = raced(toy)
-    assert row.first is not None
-    assert row.first > 1.0
-    assert row.set_up == pytest.approx(20e-3)
-
-
 def test_a_quick_run_is_repeated_until_a_sample_lasts_and_a_collector_never_runs() -> None:
     toy = Toy("toy", costs={"solve": 1_000_000})
     raced(toy)
@@ -103,16 +94,3 @@ def test_what_breaks_down_in_any_run_has_a_failed_row_and_no_time(phase: str, ru
 def test_what_does_not_apply_is_left_out(error: Exception) -> None:
     [row] = raced(failing("set-up", error, 1))
     assert (row.verdict, row.reason) == ("left out", "not for struts")
-
-
-def test_progress_counts_to_its_end_whatever_becomes_of_a_run() -> None:
-    told: list[tuple[str, int, int]] = []
-    toys = [Toy("a"), failing("solve", ValueError("no"), 6), Toy("c")]
-    for toy in toys:
-        toy.clock = toys[0].clock
-    race([toy.runner for toy in toys], FULL, lambda *what: told.append(what), toys[0].clock)
-    done = [number for _, number, _ in told]
-    assert done == sorted(done)
-    assert {of for *_, of in told} == {3 * (FULL.repeats + 1)}
-    assert max(done) < 3 * (FULL.repeats + 1)
-    assert any(words == "scene: a, repeat 3" for words, *_ in told)

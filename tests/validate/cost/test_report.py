@@ -5,7 +5,6 @@ import io
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 
-import pytest
 from made_rows import alike, measured, study
 
 from validate.cost.looks import looks
@@ -17,19 +16,6 @@ from validate.output.table import Table as Shown
 
 ROWS = tuple(study())
 REPORT = Report("rows.parquet", "pointcoord cost --from-rows", False, ROWS)
-
-
-def test_a_terminal_sees_the_sentences_first_and_tables_of_positions() -> None:
-    text = REPORT.text()
-    lines = text.splitlines()
-    assert lines[0] == "What accuracy costs in time"
-    assert lines[1].startswith("A pose to 1e-9 mm of position takes series")
-    assert "a made machine, 2 cores" in text
-    titles = [line for line in lines if "by the cheapest setting" in line]
-    assert [title.split(":")[0] for title in titles] == ["bounce", "double-wishbone"]
-    assert all("accuracy of position" in title for title in titles)
-    # A page has every quantity.
-    assert REPORT.markdown().count("by the cheapest setting") == 10
 
 
 def test_a_table_has_the_quickest_way_first_and_the_dialled_number() -> None:
@@ -49,15 +35,6 @@ def test_what_has_no_numbers_is_told_with_its_reason_once() -> None:
     assert told["bounce exudyn"] == ("failed", "no convergence at 1.25 s")
     assert told["double-wishbone printed"][0] == "left out"
     assert told["chain relative"] == ("left out", "1500 unknowns: would take an hour")
-
-
-def test_growth_and_loading_have_their_tables() -> None:
-    titles = {table.caption: table for table in REPORT.tables()}
-    growth = titles["Growth in unknowns of chain: value = factor x size^exponent, of the largest sizes"]
-    assert growth.rows[0][:3] == ("series 1e-09 mm", "time", "1.10 +- 0.00")
-    assert titles["Loading, the start of Python included"].rows == (
-        ("import pointcoord", "150 ms", "100 ms to 200 ms"),
-    )
 
 
 def test_the_csv_is_the_long_table_with_every_digit() -> None:
@@ -89,22 +66,6 @@ def test_a_folder_has_a_picture_of_each_scene_and_growth() -> None:
             assert ET.fromstring(content).tag.endswith("svg")
     assert report.headline() == found["headline.svg"]
     assert b"![headline](headline.svg)" in found["report.md"]
-
-
-def test_the_headline_draws_every_way_that_gives_positions_where_it_is() -> None:
-    page = headline(REPORT.table)
-    assert page is not None
-    (axes,) = page.axes
-    lines = [line for line in axes.lines if line.get_zorder() == 3]
-    there = {
-        row.way
-        for row in ROWS
-        if row.scene == "bounce" and row.quantity == "position" and row.part == "accuracy"
-    }
-    assert len(lines) == len(there)
-    times = {round(float(x), 6) for line in lines for x in line.get_xdata()}
-    assert round(37.0, 6) in times
-    assert page.legends[0].get_title().get_text().startswith("A line is a way")
 
 
 def test_an_error_of_exactly_nothing_has_a_place_and_is_told() -> None:
@@ -139,8 +100,3 @@ def test_no_two_ways_share_a_line_or_a_mark_and_new_ones_have_looks_too() -> Non
     assert len({look.marker for look in found.values()}) == len({look.symbol for look in found.values()})
     assert len({look.marker for look in found.values()}) == len(names) + 2
     assert looks(["mujoco"])["mujoco"] == found["mujoco"]
-
-
-@pytest.mark.parametrize("quick", [True, False])
-def test_a_quick_study_is_called_a_first_look(quick: bool) -> None:
-    assert ("quick" in dict(replace(REPORT, quick=quick).head())) == quick

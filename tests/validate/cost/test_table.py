@@ -13,8 +13,7 @@ from made_rows import WHERE, study
 
 from pointcoord import Scene
 from validate.cost.scenes import StudyScene
-from validate.cost.table import Row, Store, StoreError, frame, latest, measured_here, read_rows
-from validate.output.files import OutputError
+from validate.cost.table import Row, Store, StoreError, frame, read_rows
 
 HERE = Row("accuracy", "", "", **WHERE)
 ROW = replace(study()[0], error=1.0 / 3.0, rms=1e-300, **WHERE)
@@ -30,12 +29,6 @@ def test_rows_come_back_as_they_were_with_every_digit_and_pandas_reads_them(tmp_
     store.write(every[1:])
     assert read_rows(path) == store.rows == Store(path, HERE).rows == every
     pd.testing.assert_frame_equal(pd.read_parquet(path), frame(every))
-
-
-def test_tables_of_several_machines_can_be_put_behind_one_another(tmp_path: Path) -> None:
-    other = replace(ROW, machine="another", size=None)
-    pd.concat([frame([ROW]), frame([other])]).to_parquet(tmp_path / "both")
-    assert read_rows(tmp_path / "both") == [ROW, other]
 
 
 def test_a_row_is_measured_again_where_anything_makes_it_another_run() -> None:
@@ -67,14 +60,6 @@ def test_rows_that_do_not_compare_are_not_gone_on_with_but_can_be_read(tmp_path:
     assert read_rows(path) == [ROW]
     # Another command adds to the same file.
     Store(path, replace(HERE, command="another")).write([replace(ROW, way="newton")])
-
-
-def test_what_another_program_wrote_meanwhile_is_not_written_over(tmp_path: Path) -> None:
-    store = Store(tmp_path / "rows", HERE)
-    (tmp_path / "rows").write_text("a thesis")
-    with pytest.raises(OutputError, match="is no Parquet file"):
-        store.write([ROW])
-    assert (tmp_path / "rows").read_text() == "a thesis"
 
 
 WHOLE = frame([ROW]).to_parquet()
@@ -116,20 +101,6 @@ def test_a_file_that_is_no_such_table_is_refused_with_the_reason(
         assert words in str(caught.value)
         assert str(caught.value).endswith("; give another file")
     assert path.read_bytes() == content
-
-
-def test_of_a_scene_that_was_changed_the_last_rows_count_and_quick_ones_are_apart() -> None:
-    old, new, quick = replace(ROW, digest="old"), replace(ROW, digest="new"), replace(ROW, quick=True)
-    assert latest([old, quick, new], quick=False) == [new]
-    assert latest([old, quick, new], quick=True) == [quick]
-
-
-def test_this_process_says_where_it_is() -> None:
-    here = measured_here("command")
-    assert here == replace(measured_here("another"), command="command")
-    assert here.program.startswith("pointcoord 0.")
-    for package in ("numpy", "pin", "mujoco", "exudyn"):
-        assert package in here.packages
 
 
 def test_the_digest_of_a_scene_is_of_all_that_it_says_but_not_of_its_title() -> None:

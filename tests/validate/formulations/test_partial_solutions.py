@@ -39,25 +39,3 @@ def test_what_both_models_solved_before_a_lock_agrees_within_their_claims(
         for point, array in arrays.items():
             claims = (s.accuracy.claims[quantity][point] for s in (one, two))
             assert (np.abs(array - one.numbers[quantity][point]) <= sum(claims)).all(), (quantity, point)
-
-
-def test_a_scene_refused_at_its_start_keeps_nothing() -> None:
-    scene = Scene.load("double-wishbone").model_dump(exclude_none=True)
-    scene["inputs"] = {"arm_angle": {"constant": 3.0}, "rack": {"constant": 0.0}}
-    for solver in ("pointcoord", "pointcoord-newton", "absolute", "relative"):
-        with pytest.raises(FormulationError) as caught:
-            formulation(solver).solve(Scene.from_mapping(scene))
-        assert caught.value.partial is None
-
-
-def test_what_was_solved_before_a_refusal_is_found_once_and_only_if_asked_for() -> None:
-    found: list[int] = []
-
-    def before() -> Solution | None:
-        found.append(1)
-        return None
-
-    refusal = FormulationError("somebody", ValueError("no way on"), before)
-    assert found == []
-    assert (refusal.partial, refusal.partial) == (None, None)
-    assert found == [1]

@@ -76,9 +76,3 @@ def test_a_lock_is_told_with_the_same_instant_and_limit(name: str) -> None:
     # Both follow the way to a lock until their steps are some 1e-13 of it.
     assert relative.limit == pytest.approx(absolute.limit, abs=1e-9)
     assert relative.condition > 1e4
-
-
-def test_what_another_formulation_says_is_not_taken_for_a_reason_of_ours() -> None:
-    assert not same_reason(DRAWING, MOTION)
-    assert not same_reason(INPUT, START)
-    assert same_reason(START, MOTION)

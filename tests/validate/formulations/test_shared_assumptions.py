@@ -12,8 +12,6 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import QUANTITIES
-from validate.formulations.asked_numbers import per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
@@ -60,77 +58,6 @@ def solved(name: str, car: str, points: Points | None = None, side: str = "", **
     return formulation(name).solve(Scene.from_mapping(content))
 
 
-def same_knuckle(one: Solution, other: Solution, points: tuple[str, ...]) -> None:
-    """The points move alike, and every angle of the car is the same."""
-    for quantity, numbers in one.numbers.items():
-        if QUANTITIES[quantity].of == "car":
-            for angle, values in numbers.items():
-                assert np.abs(values - other.numbers[quantity][angle]).max() <= CLOSE / 100.0, angle
-        elif QUANTITIES[quantity].of == "point":
-            for point in points:
-                gap = np.abs(numbers[point] - other.numbers[quantity][point]).max()
-                assert gap <= CLOSE * 10.0 ** per_second(quantity), (quantity, point)
-
-
-@models
-@pytest.mark.parametrize("place", [-0.4, 0.3, 1.7])
-def test_the_strut_axis_is_a_line_wherever_on_it_strut_lower_is_drawn(name: str, place: float) -> None:
-    drawn = CARS["strut"]
-    top, lower = drawn["strut_top"], drawn["strut_lower"]
-    elsewhere = {**drawn, "strut_lower": top + place * (lower - top)}
-    points = ("lower_ball_joint", "tie_rod_outer", "wheel_centre", "tie_rod_inner")
-    if place < 0.0:
-        # Above the strut top the axis points the other way, and so does the rod's end on it.
-        elsewhere["strut_rod_end"] = drawn["strut_rod_end"]
-    same_knuckle(solved(name, "strut"), solved(name, "strut", elsewhere), (*points, "strut_rod_end"))
-
-
-@models
-@cars
-def test_the_spin_axis_is_a_line_wherever_on_it_its_inner_point_is_drawn(name: str, car: str) -> None:
-    inner, centre = CARS[car]["wheel_axis_inner"], CARS[car]["wheel_centre"]
-    elsewhere = {**CARS[car], "wheel_axis_inner": centre + 2.5 * (inner - centre)}
-    same_knuckle(solved(name, car), solved(name, car, elsewhere), ("wheel_centre", "tie_rod_outer"))
-
-
-@models
-def test_the_spin_axis_is_drawn_through_strut_lower_where_it_has_no_point_of_its_own(name: str) -> None:
-    drawn = CARS["strut"]
-    without = {point: place for point, place in drawn.items() if point != "wheel_axis_inner"}
-    through = {**drawn, "wheel_axis_inner": drawn["strut_lower"]}
-    points = ("wheel_centre", "tie_rod_outer")
-    same_knuckle(solved(name, "strut", without), solved(name, "strut", through), points)
-
-
-@models
-@cars
-def test_the_line_of_the_rack_is_a_line_wherever_on_it_its_centre_is_drawn(name: str, car: str) -> None:
-    shift = 17.0  # towards -y, as a positive travel goes
-    elsewhere = {**CARS[car], "rack_centre": CARS[car]["tie_rod_inner"] + [0.0, shift, 0.0]}
-    value, *rates_of_it = LAWS[car]["rack"]["polynomial"]
-    later = {"polynomial": [value + shift, *rates_of_it]}
-    same_knuckle(
-        solved(name, car),
-        solved(name, car, elsewhere, rack=later),
-        ("wheel_centre", "tie_rod_inner", "tie_rod_outer"),
-    )
-
-
-@models
-@pytest.mark.parametrize(
-    ("car", "arm"), [("strut", "lower_arm"), ("wishbone", "lower_arm"), ("wishbone", "upper_arm")]
-)
-def test_an_arm_turns_about_a_line_wherever_on_it_its_pivots_are_drawn(name: str, car: str, arm: str) -> None:
-    """But the arm angle is measured at the lower arm's front pivot, which must stay."""
-    front, rear = f"{arm}_front", f"{arm}_rear"
-    along = CARS[car][rear] - CARS[car][front]
-    elsewhere = {**CARS[car], rear: CARS[car][rear] + 0.7 * along}
-    if arm == "upper_arm":
-        elsewhere[front] = CARS[car][front] - 0.4 * along
-    points = ("lower_ball_joint", "tie_rod_outer", "wheel_centre")
-    same_knuckle(solved(name, car), solved(name, car, elsewhere), points)
-
-
 @models
 @cars
 def test_bodies_are_rigid_their_carried_points_too(name: str, car: str) -> None:
@@ -155,23 +82,6 @@ def test_bodies_are_rigid_their_carried_points_too(name: str, car: str) -> None:
     drawing = np.array([CARS[car][point] for point in (*knuckle, "wheel_centre")])
     volumes, volume = (np.linalg.det(np.moveaxis(c[1:] - c[0], 0, -1)) for c in (corners, drawing))
     assert np.abs(volumes / volume - 1.0).max() <= 1e-9
-
-
-@models
-def test_the_steering_axis_of_a_double_wishbone_runs_through_its_ball_joints(name: str) -> None:
-    """The kingpin angle is that of the line between them; turned about it, the rack turns the wheel."""
-    solution = solved(name, "wishbone")
-    places = solution.numbers["position"]
-    axis = places["upper_ball_joint"] - places["lower_ball_joint"]
-    # A right wheel: y is outboard. Leaning in at the top is positive.
-    assert np.abs(solution.numbers["wheel"]["kingpin"] - np.arctan2(-axis[:, 1], axis[:, 2])).max() <= 1e-14
-    held = solved(name, "wishbone", arm_angle={"constant": 1.5})
-    turning = held.numbers["angular_velocity"]["knuckle"]
-    ends = held.numbers["position"]
-    across = np.cross(turning, ends["upper_ball_joint"] - ends["lower_ball_joint"])
-    # Both ball joints stand still while the arms do: omega is along the line between them, 220 mm long.
-    assert np.abs(across).max() <= CLOSE * np.abs(turning).max()
-    assert np.abs(turning).max() > 0.05
 
 
 @models

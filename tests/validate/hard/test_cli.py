@@ -1,8 +1,6 @@
 """`pointcoord hard` as its users meet it: text, JSON, exit status, and one line for every mistake."""
 
 import json
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -44,19 +42,6 @@ def made(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(catalogue, "CASES", (wrong("ours-fails", "pointcoord"), wrong("quiet", "absolute")))
 
 
-def test_a_named_case_prints_a_row_per_formulation_and_per_value(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "omega-in-the-knuckle-plane"]) == 0
-    out, err = capsys.readouterr()
-    assert err == ""
-    assert "== Body rates" in out
-    assert "omega-in-the-knuckle-plane: Omega lies in the plane" in out
-    for name in ("pointcoord", "pointcoord-newton", "absolute", "printed"):
-        # Once in the summary of the case, once for each of its 13 values, once in the counts.
-        assert sum(name in line.split() for line in out.splitlines()) >= 15
-    assert "error of it, printed [rad/s]" in out
-    assert "All as expected" in out
-
-
 def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["hard", "at-rest", "--json", "-"]) == 0
     out, err = capsys.readouterr()
@@ -71,25 +56,6 @@ def test_json_goes_alone_to_standard_output_and_holds_every_trial(capsys: pytest
     assert sorted(len(each) - ("pointcoord-map" in each) for each in answers) == [4] * 13
     assert sum("pointcoord-map" in each for each in answers) == 2
     assert data["counts"]["absolute"] == {"right": 13}
-
-
-def test_times_are_told_the_longest_first(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "minus-infinity", "link-twice", "--times"]) == 0
-    out = capsys.readouterr().out
-    table = out[out.index("s a scene") :].splitlines()
-    rows = [line.split() for line in table if line.split()[:1] in (["minus-infinity"], ["link-twice"])]
-    seconds = [float(row[2]) for row in rows]
-    assert len(rows) == 2
-    assert seconds == sorted(seconds, reverse=True)
-
-
-def test_the_list_names_every_case_with_its_reason_and_tries_none(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "--list"]) == 0
-    out, _ = capsys.readouterr()
-    assert catalogue.CASES
-    for one in catalogue.CASES:
-        assert f"  {one.name}: {one.why}" in out.splitlines()
-        assert one.group in out.splitlines()
 
 
 @pytest.mark.parametrize("name", ["at-rests", "AT-REST"])
@@ -115,15 +81,6 @@ def test_a_wrong_number_without_a_warning_ends_with_1(capsys: pytest.CaptureFixt
     assert "2 cases, 2 scenes:" in out
 
 
-@pytest.mark.usefixtures("made")
-def test_one_is_counted_as_one(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", "quiet"]) == 1
-    out, _ = capsys.readouterr()
-    assert "1 case, 1 scene:" in out
-    assert "parameter: a number, 1, 1 value\n" in out
-    assert "NOT as expected: 1 answer, 1 wrong without a warning, in quiet." in out
-
-
 def test_the_list_is_json_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["hard", "--list", "--json", "-"]) == 0
     listed = json.loads(capsys.readouterr().out)["cases"]
@@ -135,34 +92,6 @@ def test_the_list_is_json_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[
     (case,) = json.loads(target.read_text())["cases"]
     assert case["name"] == "at-rest"
     assert "trials" not in case
-
-
-@pytest.mark.parametrize("more", [[], ["--list"]])
-def test_a_file_that_cannot_be_written_is_told_before_anything_is_tried(
-    more: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def never(value: float) -> Trial:
-        raise AssertionError("tried")
-
-    monkeypatch.setattr(catalogue, "CASES", (case_of("untried", never),))
-    for target in (tmp_path / "no" / "x.json", tmp_path):
-        assert main(["hard", *more, "--json", str(target)]) == 4
-        out, err = capsys.readouterr()
-        assert out == ""
-        (line,) = err.splitlines()
-        assert f"{target}: cannot be written" in line
-
-
-@pytest.mark.parametrize("before", [None, "kept"])
-def test_an_interrupted_run_leaves_the_file_as_it_was(
-    before: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(catalogue, "CASES", (case_of("stop", interrupted),))
-    target = tmp_path / "hard.json"
-    if before is not None:
-        target.write_text(before)
-    assert main(["hard", "--json", str(target)]) == 130
-    assert (target.read_text() if target.exists() else None) == before
 
 
 def test_an_interrupted_run_leaves_the_cases_that_are_finished(
@@ -178,17 +107,3 @@ def test_an_interrupted_run_leaves_the_cases_that_are_finished(
     data = json.loads(target.read_text())
     assert (data["complete"], data["exit_status"]) == (False, 130)
     assert [one["name"] for one in data["cases"]] == ["done-0", "done-1", "done-2"]
-
-
-def test_without_the_packages_of_the_reference_one_line_says_what_to_install() -> None:
-    program = (
-        "import sys; sys.modules['flint'] = None\n"
-        "from validate.cli import main\n"
-        "raise SystemExit(main(['hard', '--list']))"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert done.stdout == ""
-    (line,) = done.stderr.splitlines()
-    assert "'flint'" in line
-    assert "pip install 'pointcoord[validate]'" in line

@@ -39,16 +39,6 @@ def map_instead(monkeypatch: pytest.MonkeyPatch, change: Callable[[Solution], So
     stand_in(monkeypatch, lambda scene: change(replace(formulation(OURS).solve(scene), formulation=MAP)), MAP)
 
 
-def test_the_value_amid_the_others_and_the_last_are_tried_and_are_right() -> None:
-    result = examine(steered(lambda value: value))
-    assert [(value, a.outcome) for value, a in result.answers(MAP)] == [
-        (1e-3, "right"),
-        (1e-6, "right"),
-    ]
-    assert len(result.answers(OURS)) == 7
-    assert as_expected([result])
-
-
 def test_a_wrong_number_of_the_map_is_neither_expected_nor_passed_over(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -88,9 +78,3 @@ def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(
     assert "Refused by the map, whose effort is bounded here: 2 MotionNotMapped." in text_of(
         summary_parts([result])
     )
-
-
-def test_a_case_that_pointcoord_does_not_try_is_not_tried_by_the_map() -> None:
-    result = examine(replace(steered(lambda value: value, "absolute"), values=(1.0,)))
-    assert not result.answers(MAP)
-    assert MAP not in result.case.expected

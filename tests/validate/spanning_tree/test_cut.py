@@ -5,7 +5,7 @@ import pytest
 from mechanism_files import SCENES, mechanism_file, plain, plain_scene
 
 from validate.spanning_tree.cut import CHASSIS, COORDINATES, Coincide, CutError, OnLine, Rod, Square, cut
-from validate.spanning_tree.determined import blocks, independent_rows
+from validate.spanning_tree.determined import independent_rows
 
 ROWS = {Coincide: 3, OnLine: 2, Square: 1, Rod: 1}
 
@@ -89,14 +89,3 @@ def test_a_wheel_that_lies_flat_or_has_no_radius_has_no_contact_point() -> None:
 def test_rows_that_depend_on_others_are_not_chosen_and_drives_come_after_closures() -> None:
     jacobian = np.array([[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     assert independent_rows(jacobian, 2).tolist() == [1, 2, 4]
-
-
-def test_blocks_are_solved_one_after_the_other() -> None:
-    pattern = np.array([[1, 1, 0, 0], [0, 0, 0, 1], [1, 1, 1, 1], [1, 1, 0, 1]], dtype=bool)
-    order = [(rows.tolist(), columns.tolist()) for rows, columns in blocks(pattern)]
-    assert [columns for _, columns in order] == [[3], [0, 1], [2]]
-    solved: set[int] = set()
-    for rows, columns in order:
-        for row in rows:
-            assert set(np.flatnonzero(pattern[row])) <= solved | set(columns)
-        solved |= set(columns)

@@ -9,12 +9,11 @@ import pytest
 from mechanism_files import plain_scene
 from numpy.typing import NDArray
 
-from validate.peers.in_mujoco import InMujoco
+from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.linkage import linkage_of
 from validate.peers.motion import numbers as numbers_of
 from validate.reference import Design, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS, OF_POSITIONS
-from validate.relative.model import build
 from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
@@ -35,8 +34,8 @@ def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
         "aside": {"moves": "chassis", "along": "right"},
         "up": {"moves": "chassis", "along": "up"},
     }
-    drawn = {drive.input: drive for drive in build(plain).tree.drives}
-    unit = build(plain).unit
+    tree = linkage_of(plain).tree
+    drawn, unit = {drive.input: drive for drive in tree.drives}, tree.unit
     values = {n: d.drawn if d.is_angle else d.drawn * unit for n, d in drawn.items()}
     sizes = {n: 0.1 if d.is_angle else 8.0 for n, d in drawn.items()}
     values |= {"roll": 0.03, "pitch": -0.02, "aside": 40.0, "up": -70.0, "heave": 5.0}
@@ -47,43 +46,42 @@ def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
     return plain, laws
 
 
+def found(plain: dict[str, Any], laws: dict[str, Array], *effects: Any) -> dict[str, Array]:
+    linkage = linkage_of(plain)
+    program, inputs = InPinocchio(linkage), linkage.inputs(laws)
+    poses = program.poses(inputs.values, 1e-12, program.closed(1e-12))
+    return numbers_of(linkage, inputs, poses, None, *effects)[OF_CAR]
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_witnesses_give_every_number_of_positions(name: str) -> None:
     plain, laws = moved(name)
-    model = build(plain)
-    by_tree = model.numbers(model.poses(laws, np.arange(3.0)), None, laws, OF_POSITIONS)[OF_CAR]
-    linkage = linkage_of(plain)
-    engine, inputs = InMujoco(linkage), linkage.inputs(laws)
-    poses = engine.poses(inputs.driven[:, 0], 1e-12, engine.closed(1e-12))
-    by_program = numbers_of(linkage, inputs, poses, effects=EFFECTS)[OF_CAR]
+    numbers = found(plain, laws, EFFECTS)
     each = [{n: tuple(law[i].tolist()) for n, law in laws.items()} for i in range(3)]
     exact = list(instants_of(Design.from_plain(plain), each, effects=OF_POSITIONS))
-    assert set(by_tree) == set(by_program) == set(exact[0].effects)
-    assert ("damper_length" in by_tree) == ("damper" in plain["roles"])
-    for found in (by_tree, by_program):
-        for number, values in found.items():
-            within = WITHIN_RAD if EFFECTS[number].unit == "rad" else WITHIN_MM
-            wanted = [float(instant.effects[number]) for instant in exact]
-            assert np.abs(values - wanted).max() < within, number
+    assert set(numbers) == set(exact[0].effects)
+    assert ("damper_length" in numbers) == ("damper" in plain["roles"])
+    for number, values in numbers.items():
+        within = WITHIN_RAD if EFFECTS[number].unit == "rad" else WITHIN_MM
+        wanted = [float(instant.effects[number]) for instant in exact]
+        assert np.abs(values - wanted).max() < within, number
 
 
 def test_only_the_numbers_that_are_asked_for_are_given_and_angles_where_none_are() -> None:
     plain, laws = moved("double-wishbone")
-    model = build(plain)
-    poses = model.poses(laws, np.arange(3.0))
-    assert set(model.numbers(poses)[OF_CAR]) == set(ANGLES)
+    assert set(found(plain, laws)) == set(ANGLES)
     asked = ["toe", "recession", "toe_by_travel", "no such number"]
-    assert set(model.numbers(poses, effects=asked)[OF_CAR]) == {"toe", "recession"}
+    assert set(found(plain, laws, asked)) == {"toe", "recession"}
 
 
 def test_the_wheels_of_an_axle_are_each_of_their_own_side() -> None:
     plain = plain_scene("axle-parallel", wheel_radius=300.0)
-    model = build(plain)
     values = {"left.wheel_travel": 20.0, "right.wheel_travel": 20.0, "rack": 0.0}
-    laws = {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}
-    found = model.numbers(model.poses(laws, np.zeros(1)), effects=OF_POSITIONS)[OF_CAR]
-    right = {name.removeprefix("right."): x for name, x in found.items() if name.startswith("right.")}
+    numbers = found(
+        plain, {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}, OF_POSITIONS
+    )
+    right = {name.removeprefix("right."): x for name, x in numbers.items() if name.startswith("right.")}
     assert set(right) == set(OF_POSITIONS) - {"damper_length"}
     for name, value in right.items():
-        assert np.abs(found[f"left.{name}"] - value).max() < WITHIN_MM, name
+        assert np.abs(numbers[f"left.{name}"] - value).max() < WITHIN_MM, name
     assert np.abs(right["travel"] - 20.0).max() < WITHIN_MM

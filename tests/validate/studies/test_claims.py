@@ -1,6 +1,5 @@
 """What both models claim of every number holds against the reference, up to singular poses."""
 
-import numpy as np
 import pytest
 from counted_study import worked_out
 
@@ -29,23 +28,6 @@ def test_no_number_is_off_by_more_than_is_claimed(held: tuple[str, list[Row]]) -
     assert len({row["number"] for row in rows if row["kind"] == "near an end"}) >= 4
     for row in rows:
         assert row["error"] <= row["claim"], (name, row)
-
-
-def test_pointcoords_claims_are_its_errors_and_the_models_are_estimates(held: tuple[str, list[Row]]) -> None:
-    """A proof in twice the working precision leaves nothing between the error and its bound.
-
-    But an angle, whose cosine is rounded once more. An estimate from what equations are rounded from counts
-    every rounding at its worst, and they cancel as random numbers do: it is loose by about two digits.
-    """
-    name, rows = held
-
-    def loose(quantity: str) -> float:
-        ratios = [r["claim"] / r["error"] for r in rows if r["quantity"] == quantity and r["error"]]
-        return float(np.median(ratios))
-
-    for quantity in ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration"):
-        assert loose(quantity) < (1.01 if name == "pointcoord" else 1000.0)
-    assert loose("wheel") < (5.0 if name == "pointcoord" else 1000.0)
 
 
 def test_a_claim_below_the_error_is_found_and_ends_with_status_1() -> None:

@@ -1,12 +1,10 @@
 """Studies on Dask: whoever works out a task, it is worked out once and recorded whole."""
 
-import json
 import os
 import re
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing
@@ -14,21 +12,17 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import dask
 import pandas
-import psutil
 import pytest
 from counted_study import counted, without_who_and_how_long, worked_out
 from program import ENVIRONMENT, PROGRAM
 
 from validate.cli import main
 from validate.errors import UsageError
-from validate.extras import MissingPackage
 from validate.studies import cluster
-from validate.studies.hard_cases import hard
 from validate.studies.random_cars import random_cars
-from validate.studies.store import Store, adding_to, look
-from validate.studies.study import Row, StudyStopped, Task, made_by
+from validate.studies.store import adding_to, look
+from validate.studies.study import StudyStopped, made_by
 
 
 def cluster_of(threads_per_worker: int = 1, **options: Any) -> Any:
@@ -79,33 +73,6 @@ def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_record
     assert len({row["worker"] for row in rows}) >= 2
 
 
-def test_processes_of_this_machine_listen_to_this_machine_only() -> None:
-    with cluster.opened("local", 1):
-        own = psutil.Process()
-        found = [c for one in (own, *own.children(recursive=True)) for c in one.net_connections("inet")]
-        ours = {c.laddr.ip for c in found if c.status == psutil.CONN_LISTEN}
-    assert ours == {"127.0.0.1"}
-
-
-def test_a_task_is_the_same_wherever_it_is_worked_out(
-    address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    cases = ["minus-infinity", "link-twice"]
-    words = ["study", "hard", *cases, "--records", str(tmp_path)]
-    assert main([*words, "--scheduler", address, "--json", "-"]) == 0
-    out, err = capsys.readouterr()
-    assert "; a study that is stopped goes on with the same command" in err
-    assert main(["hard", *cases, "--json", "-"]) == 0
-    there, here = (json.loads(text)["cases"] for text in (out, capsys.readouterr().out))
-    assert [{**case, "seconds": None} for case in there] == [{**case, "seconds": None} for case in here]
-    study = hard(["link-twice"])
-    rows = look(tmp_path).rows(study.tasks)
-    assert without_who_and_how_long(rows) == without_who_and_how_long(worked_out(study))
-    # Nobody is asked for what is recorded.
-    assert main([*words, "--scheduler", "tcp://127.0.0.1:1"]) == 0
-    assert "All as expected" in capsys.readouterr().out
-
-
 def test_a_worker_of_another_version_records_nothing(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -150,14 +117,6 @@ def test_an_error_of_a_task_names_it_and_leaves_what_was_recorded(address: str, 
     assert {task.number for task in look(tmp_path / "records").tasks()} == {0, 1, 2, 3}
 
 
-def test_a_package_that_a_worker_lacks_is_named_and_is_no_defect() -> None:
-    def lacking(task: Task) -> list[Row]:
-        raise MissingPackage("mujoco", ModuleNotFoundError(name="mujoco"), "peers")
-
-    with pytest.raises(UsageError, match=r"^worker tcp://far:1: 'mujoco' needs the package .*peers\]'$"):
-        cluster.rows_of(lacking, Task("scenes", 0), "tcp://far:1")
-
-
 def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
     killed = cluster.quiet_dask().KilledWorker("t", SimpleNamespace(address="tcp://far:1"), 3)
 
@@ -169,25 +128,6 @@ def test_a_task_that_ends_its_workers_is_named_with_the_last_of_them() -> None:
 
     with pytest.raises(StudyStopped, match=r"-scenes-7 ended 4 workers .*, the last of them tcp://far:1;"):
         cluster._result(Fatal(), None)
-
-
-def test_ctrl_c_just_when_a_file_is_written_records_nothing_twice(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(cluster, "WRITTEN", 0.0)
-    write, told = Store.write, list[int]()
-
-    def interrupted(store: Store, file: Path, rows: Any) -> None:
-        write(store, file, rows)
-        monkeypatch.setattr(Store, "write", write)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(Store, "write", interrupted)
-    study = counted(4, tmp_path / "marks", pause=0.1)
-    with cluster_of(n_workers=1, processes=False) as other, pytest.raises(KeyboardInterrupt):
-        ran(study, tmp_path / "records", other, told.append)
-    assert list(pandas.read_parquet(tmp_path / "records")["number"]) == [0, 1]
-    assert told[-1] == 2
 
 
 def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
@@ -205,19 +145,6 @@ def test_a_scheduler_that_goes_away_leaves_what_is_recorded(
             ran(study, tmp_path / "records", gone, tell)
     store = look(tmp_path / "records")
     assert 0 < len(store.tasks()) == len(store.rows()) < 40
-
-
-def test_dasks_settings_of_tls_are_taken(tmp_path: Path) -> None:
-    cluster.quiet_dask()  # whose own settings come with it
-    # A key that protects nothing, with its certificate, until 2126.
-    file = str(Path(__file__).with_name("self_signed.pem"))
-    roles = [f"{role}.{kind}" for role in ("client", "scheduler", "worker") for kind in ("cert", "key")]
-    tls = {f"distributed.comm.tls.{part}": file for part in (*roles, "ca-file")}
-    study = counted(4, tmp_path / "marks")
-    with dask.config.set(tls), cluster_of(n_workers=1, processes=False, protocol="tls://") as other:
-        assert other.scheduler_address.startswith("tls://")
-        ran(study, tmp_path / "records", other)
-    assert len(look(tmp_path / "records").tasks()) == 4
 
 
 @pytest.mark.parametrize("listening", [False, True])
@@ -276,19 +203,6 @@ def test_a_mistake_of_the_command_line_is_one_line(
     (line,) = [line for line in err.splitlines() if ": note: " not in line]
     assert told in line
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize("package", ["distributed", "pyarrow.parquet"])
-def test_without_the_extra_one_line_names_it(
-    package: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(sys.modules, package, None)
-    folder = tmp_path / "records"
-    assert main(["study", "random", "--count", "2", "--records", str(folder)]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert f"'study' needs the package '{package}'" in line
-    assert "pip install 'pointcoord[cluster]'" in line
-    assert not folder.exists()
 
 
 def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(tmp_path: Path) -> None:

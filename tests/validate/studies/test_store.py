@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import pandas
-import pyarrow.dataset
 import pytest
 
 from validate.cli import main
@@ -15,7 +13,7 @@ from validate.output.files import OutputError
 from validate.studies import store
 from validate.studies.bounds import bounds
 from validate.studies.claims import claims
-from validate.studies.store import HEAD, Store, adding_to, look
+from validate.studies.store import Store, adding_to
 from validate.studies.study import Row, Study, Task
 
 BOUNDS = bounds(3, 0, seed=5)
@@ -52,24 +50,6 @@ def test_numbers_come_back_to_the_last_bit_and_none_as_none(tmp_path: Path) -> N
     assert [repr(one["bound"]) for one in there.rows()] == [repr(value) for value in values]
 
 
-def test_others_read_the_folder_while_something_is_being_written(tmp_path: Path) -> None:
-    with adding_to(tmp_path, BOUNDS) as there:
-        there.write(there.next_file(), [row(0), row(1)])
-        (tmp_path / ".pointcoord-1-ab.part").write_bytes(b"PAR1 half a file")
-        assert pyarrow.dataset.dataset(str(tmp_path)).to_table().num_rows == 2
-        assert list(pandas.read_parquet(tmp_path)["number"]) == [0, 1]
-        assert len(look(tmp_path).tasks()) == 2
-        with pytest.raises(UsageError, match="another run adds to them now"):
-            recorded(tmp_path, [2])
-
-
-def test_what_a_kill_left_half_written_is_no_reason_to_refuse_a_folder(tmp_path: Path) -> None:
-    left = tmp_path / ".pointcoord-1-ab.part"
-    left.write_bytes(b"{")
-    recorded(tmp_path, [0])
-    assert not left.exists()
-
-
 @pytest.mark.parametrize(
     ("other", "words"),
     [(bounds(3, 0, seed=6), "seed 5, here 6"), (claims(1), "holds the study 'bounds', not 'claims'")],
@@ -89,21 +69,6 @@ def test_records_of_another_program_are_not_gone_on_with(
     monkeypatch.setattr(store, "made_by", lambda: {**mine, changed: "9.0"})
     with pytest.raises(UsageError, match=rf"{changed} .*, here 9\.0"):
         recorded(tmp_path, [1])
-
-
-def test_a_run_that_recorded_nothing_leaves_nothing_and_holds_nobody_to_anything(tmp_path: Path) -> None:
-    recorded(tmp_path / "new")
-    assert not (tmp_path / "new").exists()
-    recorded(tmp_path)
-    recorded(tmp_path, [0], study=bounds(3, 0, seed=6))
-    assert look(tmp_path).settings == {"seed": 6}
-
-
-@pytest.mark.parametrize("head", ["[]", "{}", '{"study": 7}', "", '{"format": 1, "study": "bounds"}'])
-def test_a_folder_that_does_not_say_what_it_is_is_refused(tmp_path: Path, head: str) -> None:
-    (tmp_path / HEAD).write_text(head)
-    with pytest.raises(UsageError, match="give another folder"):
-        recorded(tmp_path, [0])
 
 
 def test_nothing_is_put_beside_other_peoples_files(tmp_path: Path) -> None:

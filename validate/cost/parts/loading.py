@@ -6,11 +6,12 @@ needs: the part that no change of ours can save. Files are in the system's cache
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from functools import partial
 
 from pointcoord import Scene
-from validate.cost.apart import run_python
 from validate.cost.race import Found, Runner
 from validate.cost.table import Row
 from validate.cost.way import require
@@ -35,9 +36,10 @@ def runners_of(quick: bool = False) -> list[Runner]:
     def row(way: str) -> Row:
         return Row("loading", "", way, poses=1, quantity="loading", quick=quick)
 
-    def started(words: tuple[str, ...]) -> Callable[[], bytes]:
+    def started(words: tuple[str, ...]) -> Callable[[], object]:
         require("pinocchio" if "validate" in words else "")
-        return partial(run_python, *words)
+        command = [sys.executable, *words]
+        return partial(subprocess.run, command, check=True, capture_output=True, timeout=300.0)
 
     return [
         Runner(row(f"Scene.load({SCENE!r})"), lambda: partial(Scene.load, SCENE), _timed_alone),

@@ -1,4 +1,4 @@
-"""Other people's programs: the suspension in MuJoCo and in Exudyn, which the extra `peers` brings.
+"""The suspension as a tree of joints with loops: in Pinocchio, and in MuJoCo and Exudyn (extra `peers`).
 
 The set-up makes the program's model, closes its drawing and brings it to where the scene starts. The setting
 is the last correction of Newton's method on its loops, in rad and sizes of the car.
@@ -16,8 +16,8 @@ from pointcoord.effects.plan import plan_effects
 from validate.cost.way import Answer, Solve, Way, laws_at
 from validate.formulations.asked_numbers import asked_of_the_car
 from validate.formulations.modelled import asked_of, require_the_drawn_car
-from validate.formulations.outside_programs import linkage_in
-from validate.formulations.registry import OUTSIDE, WORDS, engine_of
+from validate.formulations.registry import OUTSIDE, WORDS, program_of
+from validate.formulations.trees import linkage_in
 from validate.peers.errors import PeerError
 from validate.peers.motion import numbers
 
@@ -27,31 +27,33 @@ Array = NDArray[np.float64]
 def in_program(name: str, scene: Scene, tolerance: float) -> Solve:
     """The car in a program, by its formulation's name."""
     linkage = linkage_in(scene)
-    engine = engine_of(name)(linkage)
-    closed = engine.closed(tolerance)
+    program = program_of(name)(linkage)
+    closed = program.closed(tolerance)
     require_the_drawn_car(scene, linkage.moved(closed.places))
-    first = linkage.inputs(laws_at(scene, np.array([scene.time.start]))).driven[:, 0]
-    start = engine.poses(first, tolerance, closed)
+    first = linkage.inputs(laws_at(scene, np.array([scene.time.start])))
+    start = program.poses(first.values, tolerance, closed)
     moves = plan_effects(scene.effects).derivative > 0
 
     def solve(instants: Array) -> Answer:
         inputs = linkage.inputs(laws_at(scene, instants))
-        value, rate, bend = inputs.driven.swapaxes(0, 1)
         try:
-            poses = engine.poses(value, tolerance, start)
+            poses = program.poses(inputs.values, tolerance, start)
         except PeerError as error:
             if error.instant is None:
                 raise
             when = f"at t = {instants[error.instant]:.6g} s: {error.problem}"
             raise PeerError(when, error.instant) from None
-        rates = engine.rates(poses, rate, bend) if moves else None
+        rates = program.rates(poses, inputs.series) if moves else None
         found = numbers(linkage, inputs, poses, rates, asked_of_the_car(scene))
         return Answer(asked_of(found, scene), poses.counts)
 
     return solve
 
 
+PACKAGES = {"relative": "pinocchio"}
 WAYS = tuple(
-    Way(name, WORDS[name], partial(in_program, name), setting="last step {}", package=name)
-    for name in OUTSIDE
+    Way(
+        name, WORDS[name], partial(in_program, name), setting="last step {}", package=PACKAGES.get(name, name)
+    )
+    for name in ("relative", *OUTSIDE)
 )

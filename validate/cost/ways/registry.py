@@ -12,7 +12,6 @@ from validate.cost.ways import (
     peers,
     point_coordinates,
     printed,
-    relative,
     scipy_solvers,
 )
 
@@ -21,7 +20,6 @@ WAYS: tuple[Way, ...] = (
     *differences.WAYS,
     *printed.WAYS,
     *absolute.WAYS,
-    *relative.WAYS,
     *scipy_solvers.WAYS,
     *peers.WAYS,
 )

@@ -10,7 +10,7 @@ from validate.adjudication.reference_solution import inputs_at, reference_instan
 from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.case import Case
 from validate.hard.cases.body_rates import CASES, PLANE_ANGLE
-from validate.hard.run import as_expected, examine
+from validate.hard.run import examine
 from validate.hard.trial import Trial
 
 BY_NAME = {case.name: case for case in CASES}
@@ -62,11 +62,3 @@ def test_a_car_at_rest_has_rates_of_exactly_zero(name: str) -> None:
     rates = {key: rate for key, rate in trial.facts.items() if key.startswith("largest rate")}
     assert len(rates) == len(OURS)
     assert set(rates.values()) == {0.0}
-
-
-@pytest.mark.parametrize("name", ["arm-hardly-moves", "rack-hardly-moves"])
-def test_slow_rates_are_as_accurate_as_fast_ones(name: str) -> None:
-    result = examine(at(name, 1e-25, 1e-150, 1e-300))
-    assert as_expected([result]), result.unexpected
-    for trial in result.trials:
-        assert 0.0 < float(trial.facts["largest rate, pointcoord"]) < 1e4 * trial.value

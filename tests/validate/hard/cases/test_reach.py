@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Scene
@@ -14,7 +13,6 @@ from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.cases.reach import (
-    ARM,
     TIE_ROD,
     Drive,
     blocked_held,
@@ -119,9 +117,3 @@ def test_a_way_is_blocked_where_the_reference_loses_its_pose(
         answer = blocked_held(FormulationError("absolute", told), end)
         assert answer.outcome == outcome
     assert says in answer.reason
-
-
-def test_the_overshoot_of_the_arm_ends_where_angles_do() -> None:
-    for ahead, upright in ((False, 0.0), (True, np.pi)):
-        law = Drive(PAPER, "arm_angle", ahead, ARM).content(PAPER, 1.0)["inputs"]["arm_angle"]["polynomial"]
-        assert sum(law) == upright
