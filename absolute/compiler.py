@@ -15,22 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from absolute.description import (
-    Axis,
-    Corner,
-    Input,
-    Joint,
-    Model,
-    Vector,
-    plain,
-    point_of,
-    unit_of,
-    vector_of,
-)
+from absolute.description import Axis, Corner, Input, Joint, Model, Vector
 from absolute.errors import DescriptionError
 from absolute.solution import Array
 
 CHASSIS = "chassis"
+# The product of three vectors between such points, mm^3, is far from the end of the floating-point range.
+LARGEST_COORDINATE = 1e100
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
 # Which of these directions is outboard.
@@ -103,6 +94,7 @@ class _Compiler:
                 kind = next((kind for kind in drive if kind in given), "")
                 _one_of(f"the kind of input {name!r}", kind or str(list(given)), drive)
                 drive[kind](name, given)
+        self._check()
         return Model(
             self.points,
             CHASSIS,
@@ -113,6 +105,25 @@ class _Compiler:
             frozenset(self.aids),
             self.turns,
         )
+
+    def _check(self) -> None:
+        for body, names in self.bodies.items():
+            if not names:
+                raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
+        if loose := sorted(set(self.points).difference(*self.bodies.values())):
+            raise DescriptionError(
+                f"points {loose} belong to no body; add them to one or drop them", loose[0]
+            )
+        rows = sum(joint.rows for joint in self.joints.values()) + len(self.inputs)
+        unknowns = 6 * (len(self.bodies) - 1)
+        if not 0 < unknowns <= rows:
+            raise DescriptionError(
+                f"joints and inputs give {rows} rows for {unknowns} unknown velocities (6 for each of "
+                f"{len(self.bodies) - 1} moving bodies), so {unknowns - rows} freedoms are left over: "
+                "add an input or a joint",
+                "rows",
+                rows,
+            )
 
     def _directions(self) -> dict[str, Vector]:
         up, right = (unit_of(name, vector_of(name, name, self.of[name])) for name in ("up", "right"))
@@ -248,7 +259,7 @@ class _Compiler:
                     name,
                     shared,
                 )
-            self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0)
+            self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0, name)
             return
         of, about = given["of"], given["about"]
         for end in (of, about):
@@ -265,7 +276,8 @@ class _Compiler:
             self.joints[f"axes of {ground}"] = Joint(
                 "parallel", CHASSIS, ground, Axis(self.bodies[CHASSIS][0]), at
             )
-        self.inputs[name] = Input(ground, Axis(about, self.directions[start]), body, of, "cosine", length)
+        axis = Axis(about, self.directions[start])
+        self.inputs[name] = Input(ground, axis, body, of, "cosine", length, name)
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
         slides = given["travel"]
@@ -286,7 +298,8 @@ class _Compiler:
 
     def _over_drawn(self, name: str, body: str, point: str, along: str) -> None:
         drawn = self._aid_point(f"{point} as drawn by {name}", self.points[point], CHASSIS)
-        self.inputs[name] = Input(CHASSIS, Axis(drawn, self.directions[along]), body, point, "linear", 1.0)
+        axis = Axis(drawn, self.directions[along])
+        self.inputs[name] = Input(CHASSIS, axis, body, point, "linear", 1.0, name)
 
     def _contact(self, name: str, given: Mapping[str, Any]) -> None:
         inner, centre = given["contact"]
@@ -326,7 +339,7 @@ class _Compiler:
             _one_of(f"a point of input {name!r}", end, self.points)
         self._line(*ends)
         first, second = self._two_bodies(f"input {name!r}", *ends)
-        self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0)
+        self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0, name)
 
     def _holders(self, point: str) -> list[str]:
         return [body for body, names in self.bodies.items() if point in names]
@@ -381,3 +394,43 @@ class _Compiler:
 def _one_of(what: str, value: object, allowed: Iterable[str]) -> None:
     if value not in (names := list(allowed)):
         raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
+
+
+def vector_of(what: str, name: str, value: object) -> Vector:
+    """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
+    return plain(array)
+
+
+def point_of(name: str, value: object) -> Vector:
+    """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
+    point = vector_of(f"point {name!r}", name, value)
+    if max(map(abs, point)) > LARGEST_COORDINATE:
+        raise DescriptionError(
+            f"point {name!r} is {point}; products of such coordinates overflow: correct it or use a larger "
+            f"unit of length, so that all are below {LARGEST_COORDINATE:g} mm",
+            name,
+            point,
+        )
+    return point
+
+
+def unit_of(name: str, vector: Vector) -> Array:
+    """The direction of a vector, or a DescriptionError where it is zero."""
+    array = np.array(vector)
+    largest = float(np.abs(array).max())
+    if largest == 0:
+        raise DescriptionError(f"{name} is {vector}; a direction must not be zero", name, vector)
+    # Scaled before the norm: squares of the smallest and largest numbers are lost.
+    array = array / largest
+    return np.asarray(array / np.linalg.norm(array))
+
+
+def plain(vector: Array) -> Vector:
+    """Three numbers."""
+    return (float(vector[0]), float(vector[1]), float(vector[2]))

@@ -18,7 +18,6 @@ import numpy as np
 from absolute.description import Model
 from absolute.dual import Dual, arctan2, constant, hypot
 from absolute.errors import DescriptionError, InputError
-from absolute.mapping import ReadOnly
 from absolute.results import Motion
 from absolute.solution import Array
 
@@ -221,7 +220,7 @@ def _off_axis(motion: Motion, beside: Dual | None = None) -> Dual:
     return point - axis * (point[2] / axis[2])
 
 
-EFFECTS: Mapping[str, Effect] = ReadOnly(dict(_effects()))
+EFFECTS: Mapping[str, Effect] = dict(_effects())
 
 
 def effects_of(names: Sequence[str]) -> dict[str, Effect]:

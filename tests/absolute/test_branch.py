@@ -135,7 +135,7 @@ def test_a_pose_that_left_the_branch_is_led_to_by_nearer_ones_or_refused(
             return found._replace(signs=-found.signs)
         if check == "far":
             return found._replace(closed=np.zeros_like(found.closed))
-        return found._replace(placed=found.placed._replace(world=np.zeros_like(found.placed.world)))
+        return found._replace(placed=found.placed._replace(rotation=np.zeros_like(found.placed.rotation)))
 
     monkeypatch.setattr(absolute.follow, "newton", wrong)
     if always:

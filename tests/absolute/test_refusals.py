@@ -225,9 +225,7 @@ def test_a_turn_that_is_no_motion_is_refused_with_what_and_where(law: Array, wor
 
 
 @pytest.mark.parametrize("instant", [0, 1, 100])
-@pytest.mark.parametrize(
-    ("name", "fast"), [("arm_angle", [1e200, 0.0]), ("rack", [1e300, 1e308]), ("rack", [0.0, 1.7e308])]
-)
+@pytest.mark.parametrize(("name", "fast"), [("arm_angle", [1e200, 0.0]), ("rack", [1e300, 1e308])])
 def test_rates_too_large_for_floating_point_are_refused_with_their_instant(
     name: str, fast: list[float], instant: int
 ) -> None:
