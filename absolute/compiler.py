@@ -56,12 +56,11 @@ class _Compiler:
         self.of = mechanism
         self.points = {name: point_of(name, value) for name, value in mechanism["points"].items()}
         bodies = mechanism["bodies"]
-        _one_of("the ground", CHASSIS, bodies)
+        _one_of("the ground", bodies, CHASSIS)
         order = sorted(bodies, key=lambda body: body != CHASSIS)
         self.bodies = {body: tuple(bodies[body]) for body in order}
         for body, names in self.bodies.items():
-            for point in names:
-                _one_of(f"a point of body {body!r}", point, self.points)
+            _one_of(f"a point of body {body!r}", self.points, *names)
         self.rods = {name: tuple(ends) for name, ends in mechanism.get("rods", {}).items()}
         self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
         self.joints: dict[str, Joint] = {}
@@ -87,12 +86,12 @@ class _Compiler:
         }
         for name, given in self.of.get("inputs", {}).items():
             if "turns" in given:
-                _one_of(f"the point of input {name!r}", given["about"], self.points)
-                _one_of(f"`along` of input {name!r}", given["along"], self.directions)
+                _one_of(f"the point of input {name!r}", self.points, given["about"])
+                _one_of(f"`along` of input {name!r}", self.directions, given["along"])
                 self.turns[name] = Axis(given["about"], self.directions[given["along"]])
             elif "moves" not in given:
                 kind = next((kind for kind in drive if kind in given), "")
-                _one_of(f"the kind of input {name!r}", kind or str(list(given)), drive)
+                _one_of(f"the kind of input {name!r}", drive, kind or str(list(given)))
                 drive[kind](name, given)
         self._check()
         return Model(
@@ -141,11 +140,10 @@ class _Compiler:
     def _corner(self) -> Corner:
         side = self.of.get("side")
         side = "left" if side is None else side
-        _one_of("side", side, SIDES)
+        _one_of("side", SIDES, side)
         roles = {role: tuple(ends) for role, ends in self.of.get("roles", {}).items() if role in ROLES}
         for role, ends in roles.items():
-            for end in ends:
-                _one_of(f"an end of the {role}", end, self.points)
+            _one_of(f"an end of the {role}", self.points, *ends)
         outboard, rearward, up = (self.directions[name] for name in (side, "rearward", "up"))
         return Corner(outboard, rearward, up, roles, self._radius())
 
@@ -193,10 +191,10 @@ class _Compiler:
 
     def _slide(self, name: str, slide: Mapping[str, Any]) -> None:
         what, body, points = f"slide {name!r}", slide["body"], tuple(slide["points"])
-        _one_of(f"the body of {what}", body, self.bodies)
+        _one_of(f"the body of {what}", self.bodies, body)
         line, along = self._line_of(name)
+        _one_of(f"a point of {what}", self.points, *points)
         for point in points:
-            _one_of(f"a point of {what}", point, self.points)
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
             held = self._holders(point)
             if held:
@@ -224,8 +222,8 @@ class _Compiler:
     def _line_of(self, slide: str) -> tuple[Axis, Vector]:
         """The line of a slide and its direction."""
         through, along = self.slides[slide]["through"], self.slides[slide]["along"]
-        _one_of(f"the point `through` of slide {slide!r}", through, self.points)
-        _one_of(f"`along` of slide {slide!r}", along, (*self.directions, *self.points))
+        _one_of(f"the point `through` of slide {slide!r}", self.points, through)
+        _one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
         if along in self.directions:
             return Axis(through, self.directions[along]), self.directions[along]
         return Axis(through, along), plain(self._line(through, along))
@@ -233,8 +231,8 @@ class _Compiler:
     def _rod(self, name: str, ends: Sequence[str]) -> None:
         if len(ends) != 2:
             raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
+        _one_of(f"an end of rod {name!r}", self.points, *ends)
         for end in ends:
-            _one_of(f"an end of rod {name!r}", end, self.points)
             if not self._holders(end):
                 body = self._free(end)
                 self.joints[f"free point {end}"] = Joint(
@@ -246,11 +244,11 @@ class _Compiler:
 
     def _angle(self, name: str, given: Mapping[str, Any]) -> None:
         body, start = given["angle"], given["from"]
-        _one_of(f"the body of input {name!r}", body, self.bodies)
-        _one_of(f"`from` of input {name!r}", start, (*self.directions, "drawing"))
+        _one_of(f"the body of input {name!r}", self.bodies, body)
+        _one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
         if start == "drawing":
             on = given.get("on", CHASSIS)
-            _one_of(f"`on` of input {name!r}", on, self.bodies)
+            _one_of(f"`on` of input {name!r}", self.bodies, on)
             shared = [point for point in self.bodies[body] if point in self.bodies[on]]
             if body == on or len(shared) != 2:
                 raise DescriptionError(
@@ -262,8 +260,7 @@ class _Compiler:
             self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0, name)
             return
         of, about = given["of"], given["about"]
-        for end in (of, about):
-            _one_of(f"a point of input {name!r}", end, self.bodies[body])
+        _one_of(f"a point of input {name!r}", self.bodies[body], of, about)
         self._line(about, of)
         # Without the squares of a norm, which are zero for the smallest numbers.
         length = math.hypot(*(np.subtract(self.points[of], self.points[about])).tolist())
@@ -281,8 +278,8 @@ class _Compiler:
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
         slides = given["travel"]
+        _one_of(f"a slide of input {name!r}", self.slides, *slides)
         for slide in slides:
-            _one_of(f"a slide of input {name!r}", slide, self.slides)
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second = self._other_than(body, point, f"slide {slide!r}")
             own = name if len(slides) == 1 else f"{name} of {slide}"
@@ -291,8 +288,8 @@ class _Compiler:
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
         point, along = given["height"], given.get("along", "up")
-        _one_of(f"the point of input {name!r}", point, self.points)
-        _one_of(f"`along` of input {name!r}", along, self.directions)
+        _one_of(f"the point of input {name!r}", self.points, point)
+        _one_of(f"`along` of input {name!r}", self.directions, along)
         body = self._other_than(CHASSIS, point, f"input {name!r}")
         self._over_drawn(name, body, point, along)
 
@@ -303,8 +300,7 @@ class _Compiler:
 
     def _contact(self, name: str, given: Mapping[str, Any]) -> None:
         inner, centre = given["contact"]
-        for end in (inner, centre):
-            _one_of(f"a point of input {name!r}", end, self.points)
+        _one_of(f"a point of input {name!r}", self.points, inner, centre)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
         radius = self.corner.wheel_radius
         if carrier is None or radius is None:
@@ -335,8 +331,7 @@ class _Compiler:
 
     def _distance(self, name: str, given: Mapping[str, Any]) -> None:
         ends = given["distance"]
-        for end in ends:
-            _one_of(f"a point of input {name!r}", end, self.points)
+        _one_of(f"a point of input {name!r}", self.points, *ends)
         self._line(*ends)
         first, second = self._two_bodies(f"input {name!r}", *ends)
         self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0, name)
@@ -391,9 +386,11 @@ class _Compiler:
         return unit_of(start, plain(line))
 
 
-def _one_of(what: str, value: object, allowed: Iterable[str]) -> None:
-    if value not in (names := list(allowed)):
-        raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
+def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
+    names = list(allowed)
+    for value in values:
+        if value not in names:
+            raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
 
 
 def vector_of(what: str, name: str, value: object) -> Vector:

@@ -13,8 +13,6 @@ from absolute.solution import Array, Counts, Solution
 from absolute.turning import Turning
 from absolute.vectors import EPS, cross
 
-# Jacobians at once when condition numbers are asked for: what stays in fast memory.
-BATCH = 32
 OF_POINTS = ("position", "velocity", "acceleration")
 OF_BODIES = ("angular_velocity", "angular_acceleration")
 
@@ -198,13 +196,9 @@ class Motion:
         return state.copy()
 
     def _condition_numbers(self) -> Array:
-        stack, count = self.mechanism.stack, len(self.instants.residual)
-        numbers = np.zeros(count)
-        for start in range(0, count, BATCH):
-            part = slice(start, start + BATCH)
-            placed = stack.place(self.instants.rotation[part], self.instants.origin[part])
-            numbers[part] = np.linalg.cond(stack.jacobian(placed))
-        return numbers
+        stack = self.mechanism.stack
+        placed = stack.place(self.instants.rotation, self.instants.origin)
+        return np.asarray(np.linalg.cond(stack.jacobian(placed)))
 
 
 def _locked(array: Array) -> Array:

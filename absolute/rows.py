@@ -199,7 +199,7 @@ class RowStack:
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
         turned = self._local @ rotation.swapaxes(-1, -2)
-        turned = turned.reshape(*turned.shape[:-3], -1, 3).take(self._where, -2)
+        turned = turned.reshape(*turned.shape[:-3], self._local.size // 3, 3).take(self._where, -2)
         a, arms = turned[..., 0, :, :], turned[..., 1:, :, :]
         apart = origin.take(self.second, -2) - origin.take(self.first, -2)
         e = self._offset[:, None] * apart + (arms[..., 1, :, :] - arms[..., 0, :, :])
@@ -254,7 +254,7 @@ class RowStack:
         matrix[..., self._numbers, self.first, 1, :] = turning[..., 0, :, :]
         matrix[..., self._numbers, self.second, 0, :] = push
         matrix[..., self._numbers, self.second, 1, :] = -turning[..., 1, :, :]
-        return matrix[..., 1:, :, :].reshape(*lead, self.count, -1)
+        return matrix[..., 1:, :, :].reshape(*lead, self.count, 6 * (bodies - 1))
 
     def rounding(self, placed: Placed) -> Array:
         """(..., rows) what rounding alone may make of a row: ROUNDINGS times the lengths of the vectors that

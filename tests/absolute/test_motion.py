@@ -12,6 +12,9 @@ from one_arm import DIGITS, TURNS, place, plain
 from shipped import EPS, ORDERS, Array, Motion, error, off, shipped
 
 import absolute
+import absolute.follow
+from absolute.mechanism import Mechanism
+from absolute.newton import Configurations, newton
 
 BODY_ORDERS = ("angular_velocity", "angular_acceleration")
 # Polynomials with exact coefficients: value, rate and acceleration are exact in few digits.
@@ -190,6 +193,23 @@ def test_many_near_instants_take_few_corrections_together() -> None:
     iterations = motion.solve().iterations
     assert iterations.min() >= 1
     assert iterations[1:].max() <= 4
+
+
+def test_a_step_is_predicted_to_the_second_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    assembled, missed = absolute.Assembled(absolute.compile(shipped("bounce").plain)), list[float]()
+
+    def watched(within: Mechanism, near: Configurations, q: Array, *rest: Any) -> Configurations:
+        found = newton(within, near, q, *rest)
+        missed.append(float(np.linalg.norm(q - found.q)))
+        return found
+
+    monkeypatch.setattr(absolute.follow, "newton", watched)
+    for step in (0.02, 0.01):
+        goal = {name: value + step for name, value in assembled.drawn_inputs.items()}
+        assembled.solve({name: np.array([[value, 0.0, 0.0]]) for name, value in goal.items()})
+    # Half of a step leaves an eighth; by a prediction of first order it leaves a quarter.
+    assert len(missed) == 2
+    assert missed[0] / missed[1] == pytest.approx(8.0, rel=0.1)
 
 
 def test_models_solutions_and_refusals_travel_between_processes_and_results_cannot_be_changed() -> None:
