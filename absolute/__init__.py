@@ -1,6 +1,5 @@
 """Mechanisms in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
-from absolute.closing import ClosedDrawing, close_drawing
 from absolute.compiler import compile
 from absolute.description import Axis, Corner, Input, Joint, Model
 from absolute.effects import EFFECTS, Effect
@@ -15,7 +14,7 @@ from absolute.errors import (
     UnreachableError,
 )
 from absolute.solution import Solution
-from absolute.solve import Assembled, solve
+from absolute.solve import Assembled, ClosedDrawing, close_drawing, solve
 
 __all__ = [
     "EFFECTS",

@@ -1,10 +1,10 @@
 """The car that a wheel belongs to: what a linkage does not tell, for effects that look at the whole car."""
 
 import json
+import sys
 from collections.abc import Mapping
 from typing import Any
 
-from absolute.description import LARGEST_COORDINATE
 from absolute.errors import DescriptionError
 
 # The names, and what messages show as an example of each.
@@ -15,6 +15,7 @@ EXAMPLES: Mapping[str, str | float] = {
     "brake_share": 0.6,
     "drive_share": 0.5,
 }
+LONGEST = sys.float_info.max
 # Which way the axle is from the middle of the car, rearward.
 AXLES = {"front": -1.0, "rear": 1.0}
 
@@ -66,8 +67,7 @@ def _checked(name: str, value: Any) -> float:
     if name.endswith("share"):
         fine, allowed = number and 0.0 <= value <= 1.0, "a number from 0 to 1 is needed"
     else:
-        fine = number and 0.0 < value <= LARGEST_COORDINATE
-        allowed = f"a length above 0 and up to {LARGEST_COORDINATE:g} is needed, in mm"
+        fine, allowed = number and 0.0 < value <= LONGEST, "a length above 0 is needed, in mm"
     if not fine:
         raise DescriptionError(f"{name} is {value!r}; {allowed}", name, value)
     return float(value)

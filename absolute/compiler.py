@@ -16,22 +16,13 @@ from typing import Any
 import numpy as np
 
 from absolute.car import car_of
-from absolute.description import (
-    Axis,
-    Corner,
-    Input,
-    Joint,
-    Model,
-    Vector,
-    plain,
-    point_of,
-    unit_of,
-    vector_of,
-)
+from absolute.description import Axis, Corner, Input, Joint, Model, Vector
 from absolute.errors import DescriptionError
 from absolute.solution import Array
 
 CHASSIS = "chassis"
+# The product of three vectors between such points, mm^3, is far from the end of the floating-point range.
+LARGEST_COORDINATE = 1e100
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
 # Which of these directions is outboard.
@@ -67,12 +58,11 @@ class _Compiler:
         self.of = mechanism
         self.points = {name: point_of(name, value) for name, value in mechanism["points"].items()}
         bodies = mechanism["bodies"]
-        _one_of("the ground", CHASSIS, bodies)
+        _one_of("the ground", bodies, CHASSIS)
         order = sorted(bodies, key=lambda body: body != CHASSIS)
         self.bodies = {body: tuple(bodies[body]) for body in order}
         for body, names in self.bodies.items():
-            for point in names:
-                _one_of(f"a point of body {body!r}", point, self.points)
+            _one_of(f"a point of body {body!r}", self.points, *names)
         self.rods = {name: tuple(ends) for name, ends in mechanism.get("rods", {}).items()}
         self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
         self.joints: dict[str, Joint] = {}
@@ -98,13 +88,14 @@ class _Compiler:
         }
         for name, given in self.of.get("inputs", {}).items():
             if "turns" in given:
-                _one_of(f"the point of input {name!r}", given["about"], self.points)
-                _one_of(f"`along` of input {name!r}", given["along"], self.directions)
+                _one_of(f"the point of input {name!r}", self.points, given["about"])
+                _one_of(f"`along` of input {name!r}", self.directions, given["along"])
                 self.turns[name] = Axis(given["about"], self.directions[given["along"]])
             elif "moves" not in given:
                 kind = next((kind for kind in drive if kind in given), "")
-                _one_of(f"the kind of input {name!r}", kind or str(list(given)), drive)
+                _one_of(f"the kind of input {name!r}", drive, kind or str(list(given)))
                 drive[kind](name, given)
+        self._check()
         return Model(
             self.points,
             CHASSIS,
@@ -115,6 +106,25 @@ class _Compiler:
             frozenset(self.aids),
             self.turns,
         )
+
+    def _check(self) -> None:
+        for body, names in self.bodies.items():
+            if not names:
+                raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
+        if loose := sorted(set(self.points).difference(*self.bodies.values())):
+            raise DescriptionError(
+                f"points {loose} belong to no body; add them to one or drop them", loose[0]
+            )
+        rows = sum(joint.rows for joint in self.joints.values()) + len(self.inputs)
+        unknowns = 6 * (len(self.bodies) - 1)
+        if not 0 < unknowns <= rows:
+            raise DescriptionError(
+                f"joints and inputs give {rows} rows for {unknowns} unknown velocities (6 for each of "
+                f"{len(self.bodies) - 1} moving bodies), so {unknowns - rows} freedoms are left over: "
+                "add an input or a joint",
+                "rows",
+                rows,
+            )
 
     def _directions(self) -> dict[str, Vector]:
         up, right = (unit_of(name, vector_of(name, name, self.of[name])) for name in ("up", "right"))
@@ -132,11 +142,10 @@ class _Compiler:
     def _corner(self) -> Corner:
         side = self.of.get("side")
         side = "left" if side is None else side
-        _one_of("side", side, SIDES)
+        _one_of("side", SIDES, side)
         roles = {role: tuple(ends) for role, ends in self.of.get("roles", {}).items() if role in ROLES}
         for role, ends in roles.items():
-            for end in ends:
-                _one_of(f"an end of the {role}", end, self.points)
+            _one_of(f"an end of the {role}", self.points, *ends)
         outboard, rearward, up = (self.directions[name] for name in (side, "rearward", "up"))
         return Corner(outboard, rearward, up, roles, self._radius(), car_of(self.of.get("car")))
 
@@ -184,10 +193,10 @@ class _Compiler:
 
     def _slide(self, name: str, slide: Mapping[str, Any]) -> None:
         what, body, points = f"slide {name!r}", slide["body"], tuple(slide["points"])
-        _one_of(f"the body of {what}", body, self.bodies)
+        _one_of(f"the body of {what}", self.bodies, body)
         line, along = self._line_of(name)
+        _one_of(f"a point of {what}", self.points, *points)
         for point in points:
-            _one_of(f"a point of {what}", point, self.points)
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
             held = self._holders(point)
             if held:
@@ -215,8 +224,8 @@ class _Compiler:
     def _line_of(self, slide: str) -> tuple[Axis, Vector]:
         """The line of a slide and its direction."""
         through, along = self.slides[slide]["through"], self.slides[slide]["along"]
-        _one_of(f"the point `through` of slide {slide!r}", through, self.points)
-        _one_of(f"`along` of slide {slide!r}", along, (*self.directions, *self.points))
+        _one_of(f"the point `through` of slide {slide!r}", self.points, through)
+        _one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
         if along in self.directions:
             return Axis(through, self.directions[along]), self.directions[along]
         return Axis(through, along), plain(self._line(through, along))
@@ -224,8 +233,8 @@ class _Compiler:
     def _rod(self, name: str, ends: Sequence[str]) -> None:
         if len(ends) != 2:
             raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
+        _one_of(f"an end of rod {name!r}", self.points, *ends)
         for end in ends:
-            _one_of(f"an end of rod {name!r}", end, self.points)
             if not self._holders(end):
                 body = self._free(end)
                 self.joints[f"free point {end}"] = Joint(
@@ -237,11 +246,11 @@ class _Compiler:
 
     def _angle(self, name: str, given: Mapping[str, Any]) -> None:
         body, start = given["angle"], given["from"]
-        _one_of(f"the body of input {name!r}", body, self.bodies)
-        _one_of(f"`from` of input {name!r}", start, (*self.directions, "drawing"))
+        _one_of(f"the body of input {name!r}", self.bodies, body)
+        _one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
         if start == "drawing":
             on = given.get("on", CHASSIS)
-            _one_of(f"`on` of input {name!r}", on, self.bodies)
+            _one_of(f"`on` of input {name!r}", self.bodies, on)
             shared = [point for point in self.bodies[body] if point in self.bodies[on]]
             if body == on or len(shared) != 2:
                 raise DescriptionError(
@@ -250,11 +259,10 @@ class _Compiler:
                     name,
                     shared,
                 )
-            self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0)
+            self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0, name)
             return
         of, about = given["of"], given["about"]
-        for end in (of, about):
-            _one_of(f"a point of input {name!r}", end, self.bodies[body])
+        _one_of(f"a point of input {name!r}", self.bodies[body], of, about)
         self._line(about, of)
         # Without the squares of a norm, which are zero for the smallest numbers.
         length = math.hypot(*(np.subtract(self.points[of], self.points[about])).tolist())
@@ -267,12 +275,13 @@ class _Compiler:
             self.joints[f"axes of {ground}"] = Joint(
                 "parallel", CHASSIS, ground, Axis(self.bodies[CHASSIS][0]), at
             )
-        self.inputs[name] = Input(ground, Axis(about, self.directions[start]), body, of, "cosine", length)
+        axis = Axis(about, self.directions[start])
+        self.inputs[name] = Input(ground, axis, body, of, "cosine", length, name)
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
         slides = given["travel"]
+        _one_of(f"a slide of input {name!r}", self.slides, *slides)
         for slide in slides:
-            _one_of(f"a slide of input {name!r}", slide, self.slides)
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second = self._other_than(body, point, f"slide {slide!r}")
             own = name if len(slides) == 1 else f"{name} of {slide}"
@@ -281,19 +290,19 @@ class _Compiler:
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
         point, along = given["height"], given.get("along", "up")
-        _one_of(f"the point of input {name!r}", point, self.points)
-        _one_of(f"`along` of input {name!r}", along, self.directions)
+        _one_of(f"the point of input {name!r}", self.points, point)
+        _one_of(f"`along` of input {name!r}", self.directions, along)
         body = self._other_than(CHASSIS, point, f"input {name!r}")
         self._over_drawn(name, body, point, along)
 
     def _over_drawn(self, name: str, body: str, point: str, along: str) -> None:
         drawn = self._aid_point(f"{point} as drawn by {name}", self.points[point], CHASSIS)
-        self.inputs[name] = Input(CHASSIS, Axis(drawn, self.directions[along]), body, point, "linear", 1.0)
+        axis = Axis(drawn, self.directions[along])
+        self.inputs[name] = Input(CHASSIS, axis, body, point, "linear", 1.0, name)
 
     def _contact(self, name: str, given: Mapping[str, Any]) -> None:
         inner, centre = given["contact"]
-        for end in (inner, centre):
-            _one_of(f"a point of input {name!r}", end, self.points)
+        _one_of(f"a point of input {name!r}", self.points, inner, centre)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
         radius = self.corner.wheel_radius
         if carrier is None or radius is None:
@@ -324,11 +333,10 @@ class _Compiler:
 
     def _distance(self, name: str, given: Mapping[str, Any]) -> None:
         ends = given["distance"]
-        for end in ends:
-            _one_of(f"a point of input {name!r}", end, self.points)
+        _one_of(f"a point of input {name!r}", self.points, *ends)
         self._line(*ends)
         first, second = self._two_bodies(f"input {name!r}", *ends)
-        self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0)
+        self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0, name)
 
     def _holders(self, point: str) -> list[str]:
         return [body for body, names in self.bodies.items() if point in names]
@@ -380,6 +388,48 @@ class _Compiler:
         return unit_of(start, plain(line))
 
 
-def _one_of(what: str, value: object, allowed: Iterable[str]) -> None:
-    if value not in (names := list(allowed)):
-        raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
+def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
+    names = list(allowed)
+    for value in values:
+        if value not in names:
+            raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
+
+
+def vector_of(what: str, name: str, value: object) -> Vector:
+    """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
+    try:
+        array = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        array = np.empty(0)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
+    return plain(array)
+
+
+def point_of(name: str, value: object) -> Vector:
+    """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
+    point = vector_of(f"point {name!r}", name, value)
+    if max(map(abs, point)) > LARGEST_COORDINATE:
+        raise DescriptionError(
+            f"point {name!r} is {point}; products of such coordinates overflow: correct it or use a larger "
+            f"unit of length, so that all are below {LARGEST_COORDINATE:g} mm",
+            name,
+            point,
+        )
+    return point
+
+
+def unit_of(name: str, vector: Vector) -> Array:
+    """The direction of a vector, or a DescriptionError where it is zero."""
+    array = np.array(vector)
+    largest = float(np.abs(array).max())
+    if largest == 0:
+        raise DescriptionError(f"{name} is {vector}; a direction must not be zero", name, vector)
+    # Scaled before the norm: squares of the smallest and largest numbers are lost.
+    array = array / largest
+    return np.asarray(array / np.linalg.norm(array))
+
+
+def plain(vector: Array) -> Vector:
+    """Three numbers."""
+    return (float(vector[0]), float(vector[1]), float(vector[2]))

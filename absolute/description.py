@@ -6,27 +6,23 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from absolute.errors import DescriptionError
-from absolute.mapping import ReadOnly
 from absolute.solution import Array
 
 Vector = tuple[float, float, float]
 
-# Rows each joint kind takes away from the six relative freedoms of its two bodies.
-JOINT_ROWS = {
-    "spherical": 3,
-    "revolute": 5,
-    "prismatic": 5,
-    "on_line": 2,
-    "key": 1,
-    "parallel": 3,
-    "level": 1,
-    "distance": 1,
+X, Y, Z = 0, 1, 2
+# Of each joint kind: axes i of the first body's frame along which the origins may not part; axes (i of the
+# first, j of the second) that stay at a right angle; axes whose product must stay positive.
+KINDS: Mapping[str, tuple[tuple[int, ...], tuple[tuple[int, int], ...], tuple[tuple[int, int], ...]]] = {
+    "spherical": ((X, Y, Z), (), ()),
+    "revolute": ((X, Y, Z), ((Y, Z), (X, Z)), ((Z, Z),)),
+    "prismatic": ((X, Y), ((Y, Z), (X, Z), (Y, X)), ((Z, Z), (X, X))),
+    "on_line": ((X, Y), (), ()),
+    "key": ((), ((Y, X),), ((X, X),)),
+    "parallel": ((), ((Y, Z), (X, Z), (Y, X)), ((Z, Z), (X, X))),
+    "level": ((), ((Z, Z),), ()),
+    "distance": ((), (), ()),
 }
-# Of these only the points matter.
-WITHOUT_LINE = ("spherical", "parallel", "distance")
-
-# The product of three vectors between such points, mm^3, is far from the end of the floating-point range.
-LARGEST_COORDINATE = 1e100
 
 
 @dataclass(frozen=True)
@@ -36,7 +32,7 @@ class Axis:
     Attributes:
         through: a point of the body.
         toward: a second point, of any body: the line leads to where it is drawn; or a direction in
-            the frame of the points; or None where only the point matters (spherical joint).
+            the frame of the points; or None where only the point matters.
     """
 
     through: str
@@ -61,6 +57,12 @@ class Joint:
     on_first: Axis
     on_second: Axis
 
+    @property
+    def rows(self) -> int:
+        """How many of the six relative freedoms it takes away."""
+        offsets, angles, _ = KINDS[self.kind]
+        return len(offsets) + len(angles) + (self.kind == "distance")
+
 
 @dataclass(frozen=True)
 class Input:
@@ -73,7 +75,7 @@ class Input:
                                                             law "turn", value in rad, 0 in the drawing
 
     Attributes:
-        value: name of the value where several coordinates take the same; the coordinate's own by default.
+        value: name of the value, which several coordinates may take.
         steers: whether it is the travel of a slide.
     """
 
@@ -83,7 +85,7 @@ class Input:
     point: str
     law: str
     factor: float
-    value: str = ""
+    value: str
     steers: bool = False
 
 
@@ -107,21 +109,13 @@ class Corner:
     wheel_radius: float | None = None
     car: Mapping[str, float] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        for name in ("roles", "car"):
-            object.__setattr__(self, name, ReadOnly(getattr(self, name)))
-
     @property
     def axes(self) -> Array:
         """(3, 3) with outboard, rearward and up as rows."""
         return np.array((self.outboard, self.rearward, self.up))
 
     def ends(self, role: str) -> tuple[str, str]:
-        """The two points of a role.
-
-        Raises:
-            DescriptionError: the mechanism has no such role.
-        """
+        """The two points of a role; DescriptionError where the mechanism has none."""
         if role not in self.roles:
             raise DescriptionError(
                 f"needs the role {role!r}, and the mechanism has none: name the two points of {role} in "
@@ -132,11 +126,7 @@ class Corner:
 
     @property
     def radius(self) -> float:
-        """The wheel's radius, mm.
-
-        Raises:
-            DescriptionError: it is not given.
-        """
+        """The wheel's radius, mm; DescriptionError where it is not given."""
         if self.wheel_radius is None:
             raise DescriptionError(
                 "needs wheel_radius, and none is given: write it in [mechanism], in mm, or ask for other "
@@ -160,9 +150,6 @@ class Model:
         aids: bodies, and points, that are there for the equations only and are not reported.
         turns: name -> Axis through the drawn place of a point, by which inputs of these names turn the whole
             car, one after the other; these directions do not turn.
-    Raises:
-        DescriptionError: no body moves, a body has no point or a point no body, or joints and inputs give
-            fewer than six rows per moving body.
     """
 
     points: Mapping[str, Vector]
@@ -174,15 +161,6 @@ class Model:
     aids: frozenset[str] = frozenset()
     turns: Mapping[str, Axis] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        # Turns last: rows of lengths and rows of angles stay apart.
-        driven = dict(sorted(self.inputs.items(), key=lambda drive: drive[1].law == "turn"))
-        object.__setattr__(self, "inputs", driven)
-        for name in ("points", "bodies", "joints", "inputs", "turns"):
-            object.__setattr__(self, name, ReadOnly(getattr(self, name)))
-        _check_bodies(self)
-        self._check_count()
-
     @property
     def moving(self) -> tuple[str, ...]:
         """Names of the bodies that move, in the order given."""
@@ -191,80 +169,14 @@ class Model:
     @property
     def values(self) -> tuple[str, ...]:
         """Names of the values that the inputs take, each once."""
-        return tuple(dict.fromkeys(drive.value or name for name, drive in self.inputs.items()))
+        return tuple(dict.fromkeys(drive.value for drive in self.inputs.values()))
 
     @property
     def steering(self) -> frozenset[str]:
         """Names of the values that are the travel of a slide."""
-        return frozenset(drive.value or name for name, drive in self.inputs.items() if drive.steers)
+        return frozenset(drive.value for drive in self.inputs.values() if drive.steers)
 
     @property
     def reported(self) -> tuple[str, ...]:
         """Names of the points that are not aids."""
         return tuple(name for name in self.points if name not in self.aids)
-
-    def _check_count(self) -> None:
-        rows = sum(JOINT_ROWS[joint.kind] for joint in self.joints.values()) + len(self.inputs)
-        unknowns = 6 * len(self.moving)
-        if rows < unknowns:
-            raise DescriptionError(
-                f"joints and inputs give {rows} rows for {unknowns} unknown velocities (6 for each of "
-                f"{len(self.moving)} moving bodies), so {unknowns - rows} freedoms are left over: add "
-                "an input or a joint",
-                "rows",
-                rows,
-            )
-
-
-def vector_of(what: str, name: str, value: object) -> Vector:
-    """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
-    try:
-        array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
-        array = np.empty(0)
-    if array.shape != (3,) or not np.isfinite(array).all():
-        raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
-    return (float(array[0]), float(array[1]), float(array[2]))
-
-
-def unit_of(name: str, vector: Vector) -> Array:
-    """The direction of a vector, or a DescriptionError where it is zero."""
-    array = np.array(vector)
-    largest = float(np.abs(array).max())
-    if largest == 0:
-        raise DescriptionError(f"{name} is {vector}; a direction must not be zero", name, vector)
-    # Scaled before the norm: squares of the smallest and largest numbers are lost.
-    array = array / largest
-    return np.asarray(array / np.linalg.norm(array))
-
-
-def plain(vector: Array) -> Vector:
-    """Three numbers."""
-    return (float(vector[0]), float(vector[1]), float(vector[2]))
-
-
-def point_of(name: str, value: object) -> Vector:
-    """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
-    point = vector_of(f"point {name!r}", name, value)
-    if max(map(abs, point)) > LARGEST_COORDINATE:
-        raise DescriptionError(
-            f"point {name!r} is {point}; products of such coordinates overflow, so they must lie "
-            f"between -{LARGEST_COORDINATE:g} and {LARGEST_COORDINATE:g} mm: correct it or use a larger "
-            "unit of length",
-            name,
-            point,
-        )
-    return point
-
-
-def _check_bodies(model: Model) -> None:
-    if not model.moving:
-        raise DescriptionError("there is no moving body; give at least one beside the chassis", "bodies")
-    placed: set[str] = set()
-    for body, names in model.bodies.items():
-        if not names:
-            raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
-        placed.update(names)
-    loose = sorted(set(model.points) - placed)
-    if loose:
-        raise DescriptionError(f"points {loose} belong to no body; add them to one or drop them", loose[0])

@@ -7,8 +7,8 @@ import numpy as np
 
 from absolute.description import Axis, Model
 from absolute.errors import DescriptionError
-from absolute.precision import EPS
 from absolute.solution import Array
+from absolute.vectors import EPS
 
 # Two points nearer than this to each other share half of their digits: rounding of the coordinates
 # given turns the line between them by as much as half of its digits.

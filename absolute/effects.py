@@ -26,11 +26,10 @@ from absolute.car import needed
 from absolute.description import Model
 from absolute.dual import Dual, arctan2, constant, hypot
 from absolute.errors import DescriptionError, InputError
-from absolute.mapping import ReadOnly
 from absolute.newton import SMALLEST_RCOND
-from absolute.precision import EPS
 from absolute.results import Motion
 from absolute.solution import Array
+from absolute.vectors import EPS
 
 Number = Callable[[Motion], Dual]
 
@@ -306,7 +305,7 @@ def _off_axis(motion: Motion, beside: Dual | None = None) -> Dual:
     return point - axis * (point[2] / axis[2])
 
 
-EFFECTS: Mapping[str, Effect] = ReadOnly(dict(_effects()))
+EFFECTS: Mapping[str, Effect] = dict(_effects())
 
 
 def effects_of(names: Sequence[str]) -> dict[str, Effect]:

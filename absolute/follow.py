@@ -22,9 +22,8 @@ from absolute.newton import (
     rates,
     rounding_of,
 )
-from absolute.precision import EPS
 from absolute.solution import Array
-from absolute.vectors import cross
+from absolute.vectors import EPS, cross
 
 # Inputs (..., inputs) and their rates -> (3, ..., rows): targets of the rows, and first and second rates.
 Targets = Callable[[Array, Array], Array]

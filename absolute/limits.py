@@ -18,14 +18,12 @@ def limits_at(mechanism: Mechanism, jacobian: Array) -> tuple[str, ...]:
     There some forces y in the rows are in equilibrium, y J = 0 nearly, without any load: in the group of
     bodies whose block is nearest to singular.
     """
-    groups = mechanism.groups
-    ordered = jacobian[groups.rows[:, None], groups.columns]
-    blocks = [(block, np.linalg.svd(ordered[block, block])) for block in groups.blocks]
-    block, (left, strengths, _) = min(blocks, key=lambda found: float(found[1][1][-1] / found[1][1][0]))
+    blocks = [(rows, np.linalg.svd(jacobian[rows[:, None], columns])) for rows, columns in mechanism.groups]
+    rows, (left, strengths, _) = min(blocks, key=lambda found: float(found[1][1][-1] / found[1][1][0]))
     if not strengths[-1] <= LARGEST_SHARE * strengths[0]:
         return ()
     forces: dict[str, float] = {}
-    for row, force in zip(groups.rows[block].tolist(), left[:, -1].tolist(), strict=True):
+    for row, force in zip(rows.tolist(), left[:, -1].tolist(), strict=True):
         if row < mechanism.joint_rows:
             owner = mechanism.stack.owners[row]
             forces[owner] = forces.get(owner, 0.0) + force * force
@@ -43,8 +41,7 @@ def limiting_input(mechanism: Mechanism, jacobian: Array, change: Array) -> str:
     """
     left = np.linalg.svd(jacobian)[0]
     blocked = np.abs(left[mechanism.joint_rows :, -1] * change)
-    name, drive = list(mechanism.model.inputs.items())[int(np.argmax(blocked))]
-    return drive.value or name
+    return list(mechanism.model.inputs.values())[int(np.argmax(blocked))].value
 
 
 def limited_by(limits: tuple[str, ...]) -> str:

@@ -11,10 +11,8 @@ from absolute.description import Model
 from absolute.drawing import Drawing
 from absolute.errors import DescriptionError
 from absolute.groups import groups_of, signs_of
-from absolute.laws import LAWS
-from absolute.rows import rows_of
+from absolute.rows import RowStack, rows_of
 from absolute.solution import Array
-from absolute.stack import RowStack
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
@@ -52,11 +50,15 @@ class Mechanism:
         self.model = model
         self.drawing = drawing = Drawing(model)
         bodies, inputs = len(drawing.bodies), len(model.inputs)
-        rows = rows_of(model, drawing)
+        rows, senses = rows_of(model, drawing)
         still = np.broadcast_to(np.eye(3), (bodies, 3, 3)), drawing.origins
-        left_out = _left_out(RowStack(rows, bodies), inputs, *still)
-        self.stack = RowStack(rows.part(lambda row: row not in left_out), bodies)
-        self.redundant = RowStack(rows.part(lambda row: row in left_out), bodies) if left_out else None
+        left_out = _left_out(RowStack(rows, senses, bodies), inputs, *still)
+        self.stack = RowStack(
+            [row for number, row in enumerate(rows) if number not in left_out], senses, bodies
+        )
+        self.redundant = (
+            RowStack([rows[number] for number in sorted(left_out)], (), bodies) if left_out else None
+        )
         self.groups = groups_of(self.stack.first, self.stack.second, bodies)
         self.joint_rows = self.stack.count - inputs
         self.pin_model = pin.Model()
@@ -71,23 +73,18 @@ class Mechanism:
         first, second = (placement.rotation for placement in list(self.pin_data.oMi)[:2])
         apart = address(second) - address(first)
         self._placements = as_strided(first, (bodies, 12), (apart, first.itemsize))
-        # Turns are no lengths.
-        self._laws = [
-            (LAWS[drive.law].expand, drive.factor / (1.0 if drive.law == "turn" else drawing.size))
-            for drive in model.inputs.values()
-        ]
+        # Of turns the factor is no length.
+        drives = list(model.inputs.values())
+        self._factors = np.array([of.factor / (1.0 if of.law == "turn" else drawing.size) for of in drives])
+        self._cosines = np.array([of.law == "cosine" for of in drives], dtype=np.bool_)
         values = self.stack.place(*still).values[self.joint_rows :]
-        for number, drive in enumerate(model.inputs.values()):
+        for number, drive in enumerate(drives):
             # From the coordinates given: the places of bodies have been rounded before.
             if drive.law in ("linear", "cosine"):
                 along = drawing.direction("input", drive.axis)
                 values[number] = along @ drawing.line(drive.axis.through, drive.point)
-        self.drawn_inputs = np.array(
-            [
-                LAWS[drive.law].invert(float(value) / factor)
-                for drive, value, (_, factor) in zip(model.inputs.values(), values, self._laws, strict=True)
-            ]
-        )
+        ratios = values / self._factors
+        self.drawn_inputs = np.where(self._cosines, np.arccos(np.clip(ratios, -1.0, 1.0)), ratios)
 
     def signs(self, jacobian: Array) -> Array:
         """(..., groups) signs of the determinants of Jacobians (..., rows, rows), group by group."""
@@ -111,14 +108,16 @@ class Mechanism:
         moved, model = np.empty_like(q), self.pin_model
         each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
         for one, way, there in zip(*each, strict=True):
-            there[...] = pin.normalize(model, pin.integrate(model, one, way))
+            there[...] = pin.integrate(model, one, way)
+        quaternions = moved.reshape(-1, 7)[:, 3:]
+        quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
         return moved
 
     def named(self, values: Sequence[float]) -> dict[str, float]:
         """Values by name; of inputs that take the same one, that of the first."""
         named: dict[str, float] = {}
-        for (name, drive), value in zip(self.model.inputs.items(), values, strict=True):
-            named.setdefault(drive.value or name, value)
+        for drive, value in zip(self.model.inputs.values(), values, strict=True):
+            named.setdefault(drive.value, value)
         return named
 
     def targets(self, values: Array, rates: Array | None = None, seconds: Array | None = None) -> Array:
@@ -132,12 +131,16 @@ class Mechanism:
         lead = np.broadcast_shapes(values.shape, rates.shape)[:-1]
         targets = np.zeros((3, *lead, self.stack.count))
         targets[0] = self.stack.drawn
-        for number, (law, factor) in enumerate(self._laws):
-            value, rate, second = values[..., number], rates[..., number], seconds[..., number]
-            f, f1, f2 = law(value)
-            row = factor * f, factor * f1 * rate, factor * (f2 * rate * rate + f1 * second)
-            for target, part in zip(targets, row, strict=True):
-                target[..., self.joint_rows + number] = part
+        # f(value) is the value or its cosine.
+        f, f1, f2 = values, np.ones_like(values), nothing
+        if self._cosines.any():
+            cosine, minus_sine = np.cos(values), -np.sin(values)
+            f, f1, f2 = (
+                np.where(self._cosines, *of) for of in ((cosine, f), (minus_sine, f1), (-cosine, f2))
+            )
+        driven = f, f1 * rates, f2 * rates * rates + f1 * seconds
+        for target, part in zip(targets, driven, strict=True):
+            target[..., self.joint_rows :] = self._factors * part
         return targets
 
 

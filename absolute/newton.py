@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from absolute.mechanism import Mechanism
-from absolute.precision import EPS
+from absolute.rows import Placed
 from absolute.solution import Array, Counts
-from absolute.stack import Placed
+from absolute.vectors import EPS
 
 # Below this reciprocal condition number a fold of the motion is nearer than sqrt(eps): the two
 # branches that meet there can no longer be told apart, nor half of the digits trusted.

@@ -8,15 +8,11 @@ import numpy as np
 
 from absolute.description import Corner
 from absolute.dual import Dual, constant
-from absolute.mapping import ReadOnly
 from absolute.mechanism import Mechanism
-from absolute.precision import EPS
 from absolute.solution import Array, Counts, Solution
 from absolute.turning import Turning
-from absolute.vectors import cross
+from absolute.vectors import EPS, cross
 
-# Jacobians at once when condition numbers are asked for: what stays in fast memory.
-BATCH = 32
 OF_POINTS = ("position", "velocity", "acceleration")
 OF_BODIES = ("angular_velocity", "angular_acceleration")
 
@@ -39,6 +35,18 @@ class Instants(NamedTuple):
     slopes: Array
     residual: Array
     corrections: Counts
+
+    @classmethod
+    def none(cls, bodies: int, slopes: int) -> "Instants":
+        """No instants."""
+        return cls(
+            np.zeros((0, bodies, 3, 3)),
+            np.zeros((0, bodies, 3)),
+            np.zeros((0, 2, bodies, 2, 3)),
+            np.zeros((0, slopes, bodies, 2, 3)),
+            np.zeros(0),
+            np.zeros(0, dtype=np.int64),
+        )
 
 
 @dataclass(frozen=True)
@@ -82,7 +90,7 @@ class Motion:
             # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths
             # up to the diameter.
             accuracy=_locked((residual + EPS) * size),
-            **{kind: ReadOnly({n: _locked(a) for n, a in of.items()}) for kind, of in numbers.items()},
+            **{kind: {n: _locked(a) for n, a in of.items()} for kind, of in numbers.items()},
         )
 
     @property
@@ -192,13 +200,9 @@ class Motion:
         return state.copy()
 
     def _condition_numbers(self) -> Array:
-        stack, count = self.mechanism.stack, len(self.instants.residual)
-        numbers = np.zeros(count)
-        for start in range(0, count, BATCH):
-            part = slice(start, start + BATCH)
-            placed = stack.place(self.instants.rotation[part], self.instants.origin[part])
-            numbers[part] = np.linalg.cond(stack.jacobian(placed))
-        return numbers
+        stack = self.mechanism.stack
+        placed = stack.place(self.instants.rotation, self.instants.origin)
+        return np.asarray(np.linalg.cond(stack.jacobian(placed)))
 
 
 def _locked(array: Array) -> Array:

@@ -1,6 +1,7 @@
 """Solve a motion: assemble the drawing, follow it through the instants, and take the rates there."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +14,42 @@ from absolute.initial_assembly import assemble, locked
 from absolute.input_arrays import chassis_series, input_series
 from absolute.mechanism import Mechanism
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates, velocities
-from absolute.precision import EPS
 from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
 from absolute.turning import turnings
+from absolute.vectors import EPS
 
-# Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `stack`).
+# Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `rows`).
 LEFT_OUT = 3 * 4 * EPS
+
+
+@dataclass(frozen=True)
+class ClosedDrawing:
+    """A drawing solved at its own inputs.
+
+    Attributes:
+        inputs: input name -> its value in the drawing, rad or mm.
+        position: point name -> (3,) where it is when the drawing is closed, mm.
+        movement: point name -> how far that is from where it is drawn, mm.
+    """
+
+    inputs: Mapping[str, float]
+    position: Mapping[str, Array]
+    movement: Mapping[str, float]
+
+
+def close_drawing(model: Model) -> ClosedDrawing:
+    """Solve a model at the inputs of its own drawing, chassis at rest.
+
+    Raises:
+        DescriptionError, AssemblyError, SingularError: as `solve`.
+    """
+    assembled = Assembled(model)
+    inputs = assembled.drawn_inputs
+    still = {name: np.array([[value, 0.0, 0.0]]) for name, value in inputs.items()}
+    position = {name: place[0] for name, place in assembled.solve(still, rates=False).position.items()}
+    moved = {n: float(np.linalg.norm(place - np.array(model.points[n]))) for n, place in position.items()}
+    return ClosedDrawing(inputs, position, moved)
 
 
 def solve(
@@ -80,6 +110,12 @@ class Assembled:
         with np.errstate(over="ignore", invalid="ignore"):
             self._drawn = assemble(self._mechanism)
 
+    @property
+    def drawn_inputs(self) -> dict[str, float]:
+        """Values of the inputs in the drawing, rad or mm."""
+        # A drawn rack at its centre is at 0, not at -0.
+        return self._mechanism.named((self._mechanism.drawn_inputs + 0.0).tolist())
+
     def solve(
         self,
         inputs: Mapping[str, Array],
@@ -92,80 +128,67 @@ class Assembled:
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects)
         by = inputs_of(asked, model)
-        series = driven_series(model, inputs)
-        carried = chassis_series(chassis, len(series))
-        turns = turnings(model, inputs, len(series))
-        bodies = len(mechanism.drawing.bodies)
-        rotation, origin, moving, slopes, residual = (
-            np.zeros((0, *shape))
-            for shape in ((bodies, 3, 3), (bodies, 3), (2, bodies, 2, 3), (len(by), bodies, 2, 3), ())
-        )
-        runs = [Instants(rotation, origin, moving, slopes, residual, np.zeros(0, dtype=np.int64))]
+        driving = {name: law for name, law in inputs.items() if name not in model.turns}
+        series = input_series(model.values, driving)
+        carried, turns = chassis_series(chassis, len(series)), turnings(model, inputs, len(series))
+        # Inputs that take the same value have a column each.
+        series = series[..., [model.values.index(drive.value) for drive in model.inputs.values()]]
+        runs = [Instants.none(len(mechanism.drawing.bodies), len(by))]
 
-        def motion() -> Motion:
-            instants = Instants(*(np.concatenate(parts) for parts in zip(*runs, strict=True)))
-            count = len(instants.residual)
-            turned = tuple(turn.first(count) for turn in turns)
-            return Motion(mechanism, instants, carried[:count], turned, tuple(by))
+        def solution(count: int | None = None) -> Solution:
+            found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
+            turned = tuple(turn.first(len(found.residual)) for turn in turns)
+            motion = Motion(mechanism, found, carried[: len(found.residual)], turned, tuple(by))
+            return motion.solution(rates, conditions, numbers_of(asked, motion))
 
-        def solution() -> Solution:
-            found = motion()
-            return found.solution(rates, conditions, numbers_of(asked, found))
-
-        # What effects lack is missing from no instants as well.
-        numbers_of(asked, motion())
-        # Absurd inputs may overflow on the way; what is not finite is refused where it arises.
-        try:
-            with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):
+            # What effects lack is missing from no instants as well.
+            solution()
+            try:
                 for run in self._followed(series, rates, tuple(by.values())):
                     runs.append(run)
-        except AbsoluteError as error:
-            error.partial = solution() if len(runs) > 1 else None
-            raise
-        return solution()
+            except AbsoluteError as error:
+                error.partial = solution() if len(runs) > 1 else None
+                raise
+            whole = solution()
+            # Where rates overflow, so do accelerations.
+            finite = np.ones(len(series), dtype=np.bool_)
+            for of in whole.acceleration.values():
+                finite &= np.isfinite(of).all(axis=1)
+            if finite.all():
+                return whole
+            bad = leading(finite)
+            refused = _overflow(bad, {name: np.array(law, float)[bad, 1:] for name, law in inputs.items()})
+            refused.partial = solution(bad) if bad else None
+            raise refused
 
     def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
         """The instants of inputs (N, 3, inputs), one run of them after the other, and the velocities for unit
         rates of some values."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
-        named = np.array([drive.value or name for name, drive in self.model.inputs.items()])
+        named = np.array([drive.value for drive in self.model.inputs.values()])
         units = np.array([mechanism.targets(series[:, 0], 1.0 * (named == value))[1] for value in by])
         for found in through(mechanism, self._drawn, series[:, 0]):
             count, bodies = found.origin.shape[:2]
             moving, residual = np.zeros((count, 2, bodies, 2, 3)), found.residual
-            slopes = np.zeros((count, len(by), bodies, 2, 3))
-            held = fine = np.ones(count, dtype=np.bool_)
+            slopes, held = np.zeros((count, len(by), bodies, 2, 3)), np.ones(count, dtype=np.bool_)
             for number, unit in enumerate(units):
                 velocity = velocities(found, unit[done : done + count])
                 slopes[:, number, 1:] = velocity.reshape(count, -1, 2, 3)
-                held = held & _of_rates(mechanism, found, velocity)[1]
+                held &= _of_rates(mechanism, found, velocity)[1]
             if rated:
                 both = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
                 moving[:, :, 1:] = both.reshape(count, 2, -1, 2, 3)
                 residual, followed = _of_rates(mechanism, found, both[:, 0])
-                held, fine = held & followed, _in_range(mechanism, both)
-            good = leading(held & fine)
+                held &= followed
+            good = leading(held)
             if good:
                 few, fewer = found.part(slice(good)), (moving[:good], slopes[:good], residual[:good])
                 yield Instants(few.rotation, few.origin, *fewer, few.corrections)
             done += good
             if good < count:
-                if held[good]:
-                    raise _overflow(mechanism, done, series[done, 1:])
                 raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
-
-
-def driven_series(model: Model, inputs: Mapping[str, Array]) -> Array:
-    """(N, 3, inputs) of inputs by the names of their values; turns of the chassis are passed over.
-
-    Raises:
-        InputError: one is missing, unknown, of another length, or not finite.
-    """
-    driving = {name: law for name, law in inputs.items() if name not in model.turns}
-    # Inputs that take the same value have a column each.
-    columns = [model.values.index(drive.value or name) for name, drive in model.inputs.items()]
-    return input_series(model.values, driving)[..., columns]
 
 
 def _of_rates(
@@ -180,26 +203,18 @@ def _of_rates(
     rate = np.abs(np.matvec(left_out.jacobian(placed), velocity)).max(axis=1)
     speed = lengths(velocity)
     missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
-    return np.maximum(found.residual, missed), rate <= LEFT_OUT * more_than_rounding(found.inverse) * speed
+    allowed = LEFT_OUT * more_than_rounding(found.inverse) * speed
+    # What overflows is refused for that.
+    return np.maximum(found.residual, missed), ~(rate > allowed)
 
 
-def _in_range(mechanism: Mechanism, rates: Array) -> NDArray[np.bool_]:
-    """(N,) whether accelerations of all points are finite in mm: o'' + w' x r + w x (w x r), where no r is
-    longer than twice the size, so that no component is more than 8 (|a| + |v|^2) for the largest of the
-    numbers (N, 2, rows) of the bodies."""
-    speed, second = np.abs(rates).max(axis=2).T
-    return np.asarray(np.isfinite(8.0 * (second + speed * speed) * max(1.0, mechanism.drawing.size)))
-
-
-def _overflow(mechanism: Mechanism, instant: int, rates: Array) -> InputError:
-    names = [drive.value or name for name, drive in mechanism.model.inputs.items()]
-    speed, second = np.abs(rates)
+def _overflow(instant: int, rates: Mapping[str, Array]) -> InputError:
     # The squares of speeds are accelerations.
-    fastest = int(np.argmax(np.maximum(speed, np.sqrt(second))))
+    fastest = max(rates, key=lambda name: max(abs(rates[name][0]), np.sqrt(abs(rates[name][1]))))
     return InputError(
-        f"instant {instant}: rates and accelerations {rates.tolist()} of the inputs {names} overflow; "
-        "give smaller ones",
-        names[fastest],
+        f"instant {instant}: the rates and accelerations of points overflow; those of {fastest!r} are "
+        f"{rates[fastest].tolist()}: give smaller ones",
+        fastest,
         instant,
-        rates.tolist(),
+        rates[fastest].tolist(),
     )

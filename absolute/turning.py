@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from absolute.description import Model, unit_of, vector_of
-from absolute.input_arrays import turn_series
+from absolute.description import Model
+from absolute.input_arrays import checked
 from absolute.solution import Array
 from absolute.vectors import cross
 
@@ -76,18 +76,19 @@ class Turning:
 
 
 def turnings(model: Model, inputs: Mapping[str, Array], count: int) -> tuple[Turning, ...]:
-    """The turns of a model that are told, in its order.
+    """The turns of a model that are given, in its order.
 
     Args:
         inputs: name -> (N, 3) angle, rate and acceleration of some of them, among others. count: N.
     Raises:
-        InputError: one is of another length, not finite, or too fast.
+        InputError: one is of another length, or not finite.
     """
     return tuple(
         Turning(
-            np.array(model.points[model.turns[name].through]),
-            unit_of(name, vector_of(name, name, model.turns[name].toward)),
-            angle,
+            np.array(model.points[axis.through]),
+            np.array(axis.toward),
+            checked(name, inputs[name], (3,), count),
         )
-        for name, angle in turn_series(tuple(model.turns), inputs, count).items()
+        for name, axis in model.turns.items()
+        if name in inputs
     )

@@ -149,7 +149,7 @@ def test_pointcoord_works_without_pinocchio() -> None:
         "from pointcoord import Scene, simulate\n"
         "from validate.cli import main\n"
         "print(simulate(Scene.load('steer')).position['wheel_centre'].shape)\n"
-        "raise SystemExit(main(['validate', 'steer']))"
+        "raise SystemExit(main(['validate', 'steer', '--second', 'absolute']))"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=False, cwd=ROOT

@@ -1,27 +1,22 @@
-"""A wheel on one arm whose hinge stands on a carriage, and its numbers written out in 40 digits.
+"""A wheel on one arm whose hinge stands on a carriage, on a car that rolls and pitches, in 40 digits.
 
 The arm turns by t about the line from pivot to pivot_end and the carriage travels by s, so that a point of
-the arm is at  P + R(t) (p - P) + s d;  then the car turns. Axes x rearward, y right, z up. Numbers are made
-of coordinates another way than in the model: points on lines by their height, the tyre's forward by the angle
-of its axle, the wheel's lowest point by two directions in its plane, instant centres as points of the hinge's
-line. Derivatives are mpmath's.
+the arm is at  P + R(t) (p - P) + s d;  then the car turns. Derivatives are mpmath's, and
+instant centres are points of the hinge's line.
 """
 
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from mpmath import atan2, cos, diff, mp, mpf, nan, sin, sqrt
-from numpy.typing import NDArray
+from mpmath import cos, diff, mp, mpf, nan, sin, sqrt
+from written import Vector, cross, dot, lowest, numbers, vector
 
 import absolute
 
-Array = NDArray[np.float64]
-Vector = Any
-
 DIGITS = 40
 RADIUS = 310.0
-CAR = {
+CAR: dict[str, Any] = {
     "axle": "front",
     "wheelbase": 2600.0,
     "centre_of_gravity_height": 520.0,
@@ -49,10 +44,7 @@ ROLES = {
 }
 BY_TRAVEL = (
     "roll_centre_height",
-    "front_view_swing_arm",
-    "front_view_centre_height",
-    "side_view_swing_arm",
-    "side_view_centre_height",
+    *(f"{view}_view_{number}" for view in ("front", "side") for number in ("swing_arm", "centre_height")),
     "anti_brake",
     "anti_drive",
 )
@@ -60,11 +52,10 @@ BY_TRAVEL = (
 TURNS = {"roll": ("forward", (-1, 0, 0), "damper_top"), "pitch": ("left", (0, -1, 0), "stop")}
 
 
-def plain(points: Mapping[str, Any] = DRAWN, **changed: Any) -> dict[str, Any]:
+def plain(
+    points: Mapping[str, Any] = DRAWN, turns: tuple[str, ...] = ("roll", "pitch"), **changed: Any
+) -> dict[str, Any]:
     """The mechanism as it is compiled."""
-    turns = {
-        n: {"turns": "chassis", "along": along, "about": about} for n, (along, _, about) in TURNS.items()
-    }
     return {
         "name": "one arm",
         "bodies": {
@@ -84,7 +75,7 @@ def plain(points: Mapping[str, Any] = DRAWN, **changed: Any) -> dict[str, Any]:
         "inputs": {
             "turn": {"angle": "arm", "from": "drawing", "on": "carriage"},
             "steer": {"travel": ["guide"]},
-            **turns,
+            **{n: {"turns": "chassis", "along": TURNS[n][0], "about": TURNS[n][2]} for n in turns},
         },
         "roles": ROLES,
         "points": {**points, "stop": points["guide"]},
@@ -102,22 +93,9 @@ def solved(
 ) -> dict[str, float]:
     """Effects at one instant, at values of the inputs that are not 0."""
     described = plain(points, **changed)
-    given = {name: (values or {}).get(name, 0.0) for name in described["inputs"]}
-    inputs = {name: np.array([[value, 0.0, 0.0]]) for name, value in given.items()}
+    inputs = {name: np.array([[(values or {}).get(name, 0.0), 0.0, 0.0]]) for name in described["inputs"]}
     motion = absolute.solve(absolute.compile(described), inputs, rates=False, effects=names)
     return {name: float(number[0]) for name, number in motion.effects.items()}
-
-
-def vector(values: Any) -> Vector:
-    return mp.matrix([mpf(float(value)) for value in values])
-
-
-def dot(a: Vector, b: Vector) -> Any:
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def cross(a: Vector, b: Vector) -> Vector:
-    return mp.matrix([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def turned(axis: Vector, angle: Any, v: Vector) -> Vector:
@@ -125,114 +103,72 @@ def turned(axis: Vector, angle: Any, v: Vector) -> Vector:
     return v * cos(angle) + cross(k, v) * sin(angle) + k * dot(k, v) * (1 - cos(angle))
 
 
-class Written:
-    """The arm at values of its inputs; `out` is y outboard, -1 of a left wheel."""
+def place(name: str, values: Mapping[str, Any], turns: tuple[str, ...] = ("roll", "pitch")) -> Vector:
+    """Where a point is at values of the inputs, the car turned in this order."""
+    p = vector(DRAWN["guide" if name == "stop" else name])
+    pivot, end = vector(DRAWN["pivot"]), vector(DRAWN["pivot_end"])
+    if name in RIDING:
+        p = pivot + turned(end - pivot, values["turn"], p - pivot)
+    if name not in ("stop", "damper_top"):
+        way = vector(DRAWN["guide_end"]) - vector(DRAWN["guide"])
+        p = p + way * (values["steer"] / sqrt(dot(way, way)))
+    for turn in turns:
+        _, axis, about = TURNS[turn]
+        middle = vector(DRAWN["guide" if about == "stop" else about])
+        p = middle + turned(vector(axis), values[turn], p - middle)
+    return p
 
-    def __init__(self, points: Mapping[str, Any] = DRAWN, out: int = -1, **values: float) -> None:
-        self.points, self.out, self.values = points, out, values
 
-    def place(self, name: str, t: Any, s: Any, turns: bool = True) -> Vector:
-        p = vector(self.points[name])
-        pivot, end = vector(self.points["pivot"]), vector(self.points["pivot_end"])
-        if name in RIDING:
-            p = pivot + turned(end - pivot, t, p - pivot)
-        if name in RIDING or name in ("pivot", "pivot_end"):
-            way = vector(self.points["guide_end"]) - vector(self.points["guide"])
-            p = p + way * (s / sqrt(dot(way, way)))
-        for turn, (_, axis, name) in TURNS.items() if turns else ():
-            about = vector(self.points["guide" if name == "stop" else name])
-            p = about + turned(vector(axis), mpf(self.values.get(turn, 0.0)), p - about)
-        return p
+def written(effect: str, given: Mapping[str, float]) -> float:
+    """An effect at values of the inputs that are not 0."""
+    with mp.workdps(DIGITS):
+        values = {name: mpf(given.get(name, 0.0)) for name in ("turn", "steer", *TURNS)}
+        name, _, by = effect.partition("_by_")
 
-    def lowest(self, inner: Vector, centre: Vector) -> Vector:
-        a = centre - inner
-        across = mp.matrix([a[1], -a[0], 0])
-        level = across / sqrt(dot(across, across))
-        steep = cross(a, level)
-        steep = steep / sqrt(dot(steep, steep))
-        return centre - steep * (mpf(RADIUS) * (1 if steep[2] > 0 else -1))
+        def number(name: str, **moved: Any) -> Any:
+            there = values | moved
+            places = (
+                lambda p: place(p, there),
+                lambda p: place(p, there, ()),
+                lambda p: vector(DRAWN[p]),
+            )
+            return numbers(*places, ROLES, RADIUS, -1)[name]
 
-    def contact(self, t: Any, s: Any, turns: bool = True) -> Vector:
-        return self.lowest(*(self.place(name, t, s, turns) for name in ("inner", "centre")))
+        if not by and name in BY_TRAVEL:
+            return float(_by_travel(values, number("contact_travel"))[name])
+        if by == "rack":
+            return float(diff(lambda s: number(name, steer=s), values["steer"]))
+        if not by:
+            return float(number(name))
+        slope, rise = (diff(lambda t, n=n: number(n, turn=t), values["turn"]) for n in (name, "travel"))
+        return float(slope / rise if rise else nan)
 
-    def number(self, name: str, t: Any, s: Any) -> Any:
-        out = self.out
-        inner, centre, lower, upper, top, foot = (
-            self.place(point, t, s)
-            for point in ("inner", "centre", "lower", "upper", "damper_top", "damper_foot")
-        )
-        c, drawn = (
-            self.contact(t, s),
-            self.lowest(vector(self.points["inner"]), vector(self.points["centre"])),
-        )
 
-        def at_height(z: Any) -> Vector:
-            share = (z - lower[2]) / (upper[2] - lower[2])
-            return mp.matrix([(1 - share) * a + share * b for a, b in zip(lower, upper, strict=True)])
+def _by_travel(values: Mapping[str, Any], rise: Any) -> dict[str, Any]:
+    """What is made of how the arm turns about its hinge; `rise` is the travel of the contact point."""
+    pivot, end, inner, centre = (place(p, values) for p in ("pivot", "pivot_end", "inner", "centre"))
+    c = lowest(inner, centre, RADIUS)
+    v = cross(end - pivot, c - pivot)
 
-        g, w = at_height(c[2]), at_height(centre[2])
-        spin, steer = centre - inner, upper - lower
-        # From outboard toward rearward.
-        heading = atan2(spin[0], out * spin[1])
-        return {
-            "camber": lambda: atan2(-spin[2], out * spin[1]),
-            "toe": lambda: -heading,
-            "kingpin": lambda: atan2(-out * steer[1], steer[2]),
-            "caster": lambda: atan2(steer[0], steer[2]),
-            "travel": lambda: self.place("centre", t, s, False)[2] - mpf(float(self.points["centre"][2])),
-            "contact_travel": lambda: self.contact(t, s, False)[2] - drawn[2],
-            "half_track_change": lambda: out * (c[1] - drawn[1]),
-            "recession": lambda: c[0] - drawn[0],
-            "kingpin_offset": lambda: out * (c[1] - g[1]),
-            "scrub_radius": lambda: sqrt((c[0] - g[0]) ** 2 + (c[1] - g[1]) ** 2),
-            "mechanical_trail": lambda: (g[0] - c[0]) * -cos(heading) + out * (g[1] - c[1]) * sin(heading),
-            "castor_offset": lambda: c[0] - g[0],
-            "kingpin_offset_at_wheel": lambda: out * (centre[1] - w[1]),
-            "hub_trail": lambda: w[0] - centre[0],
-            "damper_length": lambda: sqrt(dot(foot - top, foot - top)),
-        }[name]()
-
-    def effect(self, effect: str) -> float:
-        """Any effect of the model, by its name."""
-        with mp.workdps(DIGITS):
-            t, s = mpf(self.values.get("turn", 0.0)), mpf(self.values.get("steer", 0.0))
-            if effect in BY_TRAVEL:
-                return float(self.by_travel(effect, t, s))
-            name, _, by = effect.partition("_by_")
-            if by == "rack":
-                return float(diff(lambda s: self.number(name, t, s), s))
-            value = self.number(name, t, s) if not by else diff(lambda t: self.number(name, t, s), t)
-            rate = diff(lambda t: self.number("travel", t, s), t) if by else 1
-            return float(value / rate if rate else nan)
-
-    def by_travel(self, effect: str, t: Any, s: Any) -> Any:
-        if effect == "roll_centre_height":
-            return self.roll_centre(t, s)
-        c, w = self.contact(t, s), self.place("centre", t, s)
-        front, side, side_at_centre = (self.hinge_in_plane(*at, t, s) for at in ((c, 0), (c, 1), (w, 1)))
-
-        def anti(share: str, steepness: Any) -> Any:
-            height = CAR["centre_of_gravity_height"] - self.number("contact_travel", t, s)
-            return -100 * mpf(CAR[share]) * steepness * CAR["wheelbase"] / height
-
-        return {
-            "front_view_swing_arm": lambda: -self.out * front[1],
-            "front_view_centre_height": lambda: front[2],
-            "side_view_swing_arm": lambda: side[0],
-            "side_view_centre_height": lambda: side[2],
-            # A point goes at a right angle to the line to its centre.
-            "anti_brake": lambda: anti("brake_share", -side[2] / side[0]),
-            "anti_drive": lambda: anti("drive_share", -side_at_centre[2] / side_at_centre[0]),
-        }[effect]()
-
-    def hinge_in_plane(self, p: Vector, normal: int, t: Any, s: Any) -> Vector:
+    def hinge_in_plane(p: Vector, normal: int) -> Vector:
         """From p to where the hinge's line meets the plane through p across x (0) or y (1)."""
-        pivot, end = self.place("pivot", t, s), self.place("pivot_end", t, s)
         share = (p[normal] - pivot[normal]) / (end[normal] - pivot[normal])
         return pivot + (end - pivot) * share - p
 
-    def roll_centre(self, t: Any, s: Any) -> Any:
-        c, pivot = self.contact(t, s), self.place("pivot", t, s)
-        v = cross(self.place("pivot_end", t, s) - pivot, c - pivot)
+    front, side, side_at_centre = (hinge_in_plane(*at) for at in ((c, 0), (c, 1), (centre, 1)))
+
+    def anti(share: str, steepness: Any) -> Any:
+        height = CAR["centre_of_gravity_height"] - rise
+        return -100 * mpf(CAR[share]) * steepness * CAR["wheelbase"] / height
+
+    return {
         # From c along the normal of v in the front view until y = 0.
-        return c[1] * v[1] / v[2]
+        "roll_centre_height": c[1] * v[1] / v[2],
+        "front_view_swing_arm": front[1],
+        "front_view_centre_height": front[2],
+        "side_view_swing_arm": side[0],
+        "side_view_centre_height": side[2],
+        # A point goes at a right angle to the line to its centre.
+        "anti_brake": anti("brake_share", -side[2] / side[0]),
+        "anti_drive": anti("drive_share", -side_at_centre[2] / side_at_centre[0]),
+    }

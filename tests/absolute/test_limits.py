@@ -1,117 +1,258 @@
-"""At the ends of the motion: a pose is given where rows close to rounding, and nowhere else."""
+"""The ends of a motion: found where geometry has them, refused beyond, exact before, and named."""
 
-from collections.abc import Callable
+from typing import Any
 
-import exact_form as exact
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-from reach_of_accuracy import off
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mechanism_equations import DIGITS
+from mechanism_files import mechanism_file, plain, plain_scene
+from mpmath import cos, matrix, mp, mpf, sqrt
+from shipped import EPS, Array, Motion, error, off, shipped
+from test_branch import STRUT, short_lower_arm
+from written import cross, dot, vector
 
 import absolute
 
-Array = NDArray[np.float64]
-Table = dict[str, tuple[float, float, float]]
-Held = Callable[[float, float], dict[str, Array]]
-EPS = float(np.finfo(float).eps)
-# Two rows of the tie rod's ends, each closed to 4 eps of the vectors in it: these add up to less
-# than three times the 400 mm from the middle of the car to its furthest point.
-CLOSED = 2 * 4 * EPS * 3 * 400.0
-# Ends of the motion of the paper's car: (arm angle, rack) and the way out of it.
-ENDS = [
-    ((np.pi / 2, 130.100768319815), (0.0, 219.0)),
-    ((0.5624915120982854, 0.0), (-1.0, 0.0)),
-    ((2.653128692580990, 0.0), (1.0, 0.0)),
-    # Just beyond arm angles where two branches meet near the middle of the rack.
-    ((0.6143, -0.029827062709444303), (0.0, -219.0)),
-    ((0.6144, -0.03386460105999157), (0.0, -219.0)),
-    ((0.6145, -0.03818180922672851), (0.0, -219.0)),
-]
-BEYOND = [1e-13, 3e-13, 1e-12, 3e-12, 1e-11, 1e-10, 1e-9]
+ARM, UPPER, ROD = "hinge of lower_arm on chassis", "hinge of upper_arm on chassis", "rod tie_rod"
 
 
-def check_closed(table: Table, motion: absolute.Solution) -> None:
+def at(**values: float) -> dict[str, Array]:
+    """One instant at rest."""
+    return {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}
+
+
+def ball_joint(points: Any, angle: float) -> Any:
+    """The ball joint on its circle about the arm's axis, as high as the arm angle says; None beyond the ends.
+
+    The cosine of the arm angle is  (u_z (u . d) + rise radius w_z) / |d|,  with u the axis, d the arm,
+    and w the direction at a right angle to u that leads up.
+    """
+    with mp.workdps(DIGITS):
+        front, rear, ball = (
+            vector(points[n]) for n in ("lower_arm_front", "lower_arm_rear", "lower_ball_joint")
+        )
+        u, d, up = rear - front, ball - front, matrix([0, 0, 1])
+        u = u / sqrt(dot(u, u))
+        level = cross(u, up)
+        level = level / sqrt(dot(level, level))
+        w, along = cross(level, u), dot(u, d)
+        radius = sqrt(dot(d, d) - along**2)
+        rise = (sqrt(dot(d, d)) * cos(mpf(angle)) - u[2] * along) / (radius * w[2])
+        if abs(rise) >= 1:
+            return None
+        side = 1 if dot(d, level) > 0 else -1
+        return front + u * along + (w * rise + level * side * sqrt(1 - rise**2)) * radius
+
+
+@pytest.mark.parametrize(("end", "out"), [(0.5624915120982854, -1.0), (2.653128692580990, 1.0)])
+@pytest.mark.parametrize("by", [1e-13, 3e-13, 1e-12, 1e-11, 1e-9, 1e-6, 1e-3])
+def test_an_arm_goes_to_the_ends_of_the_circle_of_its_ball_joint_and_no_further(
+    end: float, out: float, by: float
+) -> None:
+    inside, beyond = end - by * out, end + by * out
+    # 1e-13 is far beyond the rounding of the end itself, so there is no pose.
+    assert ball_joint(STRUT["points"], beyond) is None
+    with pytest.raises(absolute.PoseError) as refused:
+        Motion(STRUT, at(arm_angle=beyond, rack=0.0)).solve()
+    assert refused.value.limits[0] == ARM
+    assert refused.value.limit == "arm_angle"
+    assert refused.value.inputs == {"arm_angle": beyond, "rack": 0.0}
+    # At distance e from a fold the condition number grows as 1 / sqrt(e); it is followed up to 1 / sqrt(eps),
+    # hence to e of the order of eps times constants of the mechanism.
+    assert abs(refused.value.reached["arm_angle"] - end) < 1e-10
+    solution = Motion(STRUT, at(arm_angle=inside, rack=0.0)).solve(rates=False, conditions=True)
+    assert (
+        error(solution.position["lower_ball_joint"][0], ball_joint(STRUT["points"], inside))
+        <= off(solution)[0]
+    )
+
+
+# Racks of the paper's car at which tie rod and steering arm come to lie in line with the steering axis, and
+# some just beyond arm angles where two branches meet near the middle of the rack.
+@pytest.mark.parametrize(
+    ("angle", "end", "out"),
+    [
+        (np.pi / 2, 130.100768319815, 219.0),
+        (0.6143, -0.029827062709444303, -219.0),
+        (0.6144, -0.03386460105999157, -219.0),
+        (0.6145, -0.03818180922672851, -219.0),
+    ],
+)
+@pytest.mark.parametrize("by", [1e-13, 1e-12, 1e-11, 1e-9, 1e-6])
+def test_a_rack_goes_to_where_the_tie_rod_locks_and_rows_close_up_to_there(
+    angle: float, end: float, out: float, by: float
+) -> None:
+    with pytest.raises(absolute.PoseError) as refused:
+        Motion(STRUT, at(arm_angle=angle, rack=end + by * out)).solve()
+    assert ROD in refused.value.limits
+    check_closed(Motion(STRUT, at(arm_angle=angle, rack=end - by * out)).solve(rates=False))
+
+
+def check_closed(solution: absolute.Solution) -> None:
     """Tie rod and arm keep their lengths in the points given, at every instant."""
     for a, b in (("tie_rod_outer", "tie_rod_inner"), ("lower_ball_joint", "lower_arm_front")):
-        drawn = np.linalg.norm(np.subtract(table[a], table[b]))
-        lengths = np.linalg.norm(motion.position[a] - motion.position[b], axis=1)
-        assert np.abs(lengths - drawn).max() <= CLOSED
-    assert motion.residual.max() <= CLOSED
+        drawn = np.linalg.norm(np.subtract(STRUT["points"][a], STRUT["points"][b]))
+        lengths = np.linalg.norm(solution.position[a] - solution.position[b], axis=1)
+        # Two rows of an end each, closed to 4 eps of the vectors in it: less than three times 400 mm.
+        assert np.abs(lengths - drawn).max() <= 2 * 4 * EPS * 3 * 400.0
 
 
-@pytest.mark.parametrize(("end", "out"), ENDS)
-@pytest.mark.parametrize("beyond", BEYOND)
-def test_nothing_stands_beyond_the_end_of_an_input_by_a_little(
-    strut: absolute.Model,
-    table: Table,
-    held: Held,
-    end: tuple[float, float],
-    out: tuple[float, float],
-    beyond: float,
-) -> None:
-    goal = end[0] + beyond * out[0], end[1] + beyond * out[1]
-    # 1e-13 is far beyond the rounding of the end itself, so there is no pose.
-    assert exact.exact_form(table, *goal) is None
-    with pytest.raises(absolute.PoseError):
-        absolute.solve(strut, held(*goal))
-
-
-@pytest.mark.parametrize(("end", "out"), ENDS)
-@pytest.mark.parametrize("inside", BEYOND)
-def test_just_inside_the_end_of_an_input_the_pose_is_the_exact_one(
-    strut: absolute.Model,
-    table: Table,
-    held: Held,
-    end: tuple[float, float],
-    out: tuple[float, float],
-    inside: float,
-) -> None:
-    goal = end[0] - inside * out[0], end[1] - inside * out[1]
-    expected = exact.exact_form(table, *goal)
-    assert expected is not None
-    motion = absolute.solve(strut, held(*goal), rates=False, conditions=True)
-    check_closed(table, motion)
-    assert motion.condition is not None
-    tolerance = 8 * EPS * 400 * motion.condition[0]
-    for name, place in expected[0].items():
-        assert exact.distance(place, motion.position[name][0]) <= tolerance, name
-        assert exact.distance(place, motion.position[name][0]) <= off(motion)[0], name
-
-
-@pytest.mark.parametrize("angle", np.linspace(0.6143, 0.6145, 9).tolist())
-def test_where_branches_nearly_meet_rows_are_closed_or_the_pose_is_refused(
-    strut: absolute.Model, table: Table, angle: float
-) -> None:
+@pytest.mark.parametrize("angle", np.linspace(0.6143, 0.6145, 5).tolist())
+def test_where_branches_nearly_meet_rows_are_closed_or_the_pose_is_refused(angle: float) -> None:
     racks = np.linspace(-15.0, 15.0, 121)
-    still = np.zeros_like(racks)
-    inputs = {
-        "arm_angle": np.stack([np.full_like(racks, angle), still, still], -1),
-        "rack": np.stack([racks, still, still], -1),
-    }
     for order in (slice(None), slice(None, None, -1), slice(60, None), slice(60, None, -1)):
-        part = {name: series[order] for name, series in inputs.items()}
+        rack = np.stack([racks, 0 * racks, 0 * racks], -1)[order]
+        held = np.tile([angle, 0.0, 0.0], (len(rack), 1))
         try:
-            motion = absolute.solve(strut, part, rates=False)
-        except absolute.PoseError as error:
-            if error.partial is None:
+            solution = Motion(STRUT, {"arm_angle": held, "rack": rack}).solve(rates=False)
+        except absolute.PoseError as refused:
+            if refused.partial is None:
                 continue
-            motion = error.partial
-        check_closed(table, motion)
+            solution = refused.partial
+        check_closed(solution)
 
 
-def test_an_instant_that_does_not_close_leaves_the_instants_before_it(
-    strut: absolute.Model, table: Table
+def low_mount(**moved: Any) -> dict[str, Any]:
+    """A strut so short that its ball joint comes abreast of its top mount, 130 mm beside the axis."""
+    top, low = np.array([460.0, -310.0, 190.0]), np.array([452.0, -420.0, 60.0])
+    points = {"strut_top": top, "strut_lower": low, "strut_rod_end": top - 0.3 * (top - low)}
+    part = {"points": STRUT["points"] | points | moved}
+    return plain(mechanism_file("macpherson"), part, ["arm_angle", "rack"])
+
+
+WISHBONE = plain_scene("double-wishbone", ["arm_angle", "rack"])
+
+
+@pytest.mark.parametrize(
+    ("described", "driven", "far", "link"),
+    [
+        (low_mount(), "arm_angle", -1.5, "slide strut at strut_top"),
+        (WISHBONE, "arm_angle", 1.5, UPPER),
+        (WISHBONE | {"points": short_lower_arm()}, "arm_angle", -1.5, ARM),
+        (WISHBONE, "rack", 1e3, ROD),
+        (WISHBONE, "rack", -1e280, ROD),
+        (plain_scene("five-link"), "wheel_travel", 900.0, "rod"),
+        (plain_scene("slider-crank", ["stroke"]), "stroke", 1e3, "rod"),
+        (plain_scene("pushrod-by-damper"), "damper_length", -1e3, "hinge of rocker on chassis"),
+    ],
+)
+def test_a_refusal_names_what_holds_the_mechanism_and_keeps_what_was_solved(
+    described: dict[str, Any], driven: str, far: float, link: str
 ) -> None:
-    # Twenty good instants and one beyond the end by rounding of the way there.
-    racks = np.append(np.linspace(0.0, 130.0, 20), 130.100768319815 + 1e-13 * 219)
-    still = np.zeros_like(racks)
-    inputs = {
-        "arm_angle": np.stack([np.full_like(racks, np.pi / 2), still, still], -1),
-        "rack": np.stack([racks, still, still], -1),
-    }
-    with pytest.raises(absolute.PoseError) as caught:
-        absolute.solve(strut, inputs)
-    assert caught.value.instant == 20
-    assert caught.value.partial is not None
-    assert len(caught.value.partial.residual) == 20
-    check_closed(table, caught.value.partial)
+    drawn = absolute.close_drawing(absolute.compile(described)).inputs
+    inputs = {name: np.array([[value, 0.1, 0.2]] * 4) for name, value in drawn.items()}
+    inputs[driven][1, 0] += 1e-3 * min(1.0, abs(far))
+    inputs[driven][2, 0] += far
+    with pytest.raises(absolute.UnreachableError, match=f"instant 2: .*locks at.*{link}") as caught:
+        Motion(described, inputs).solve(effects=["travel"] if "wheel_axis" in described["roles"] else [])
+    refused = caught.value
+    assert any(link in name for name in refused.limits)
+    assert (refused.instant, refused.limit) == (2, driven)
+    assert f"limited by {', '.join(refused.limits)}" in str(refused)
+    assert refused.partial is not None
+    assert all(len(number) == 2 for number in refused.partial.effects.values())
+    kept = Motion(described, {name: law[:2] for name, law in inputs.items()}).solve()
+    assert all((refused.partial.acceleration[name] == of).all() for name, of in kept.acceleration.items())
+
+
+@pytest.mark.parametrize("value", [1e6, -1e12, 1e200, -1.7e308])
+def test_absurd_inputs_are_refused_not_chased(value: float) -> None:
+    with pytest.raises(absolute.UnreachableError) as caught:
+        Motion(STRUT, at(arm_angle=1.6, rack=value)).solve()
+    assert caught.value.partial is None
+
+
+@pytest.mark.parametrize("degrees", [-31.0, 211.0, 360.0])
+def test_bricards_six_hinges_are_not_led_beyond_their_fold(degrees: float) -> None:
+    # One row follows from the others from -30 to 210 degrees only: without it bodies could go on, torn apart.
+    with pytest.raises(absolute.UnreachableError) as caught:
+        Motion(plain_scene("bricard"), at(turn=np.radians(degrees))).solve()
+    reached = np.degrees(caught.value.reached["turn"])
+    assert reached == pytest.approx(-30.0, abs=1e-6) if degrees < 0 else reached < 210.0 + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("moved", "link"),
+    [
+        # The ball joint straight above its arm's axis; the upper one in the plane of its pivots and the lower
+        # one; the tie rod's end in the plane of the kingpin and its other end.
+        (
+            lambda car: {
+                "lower_arm_rear": car["lower_arm_front"] + [200.0, 0.0, 0.0],
+                "lower_ball_joint": car["lower_arm_front"] + [100.0, 0.0, -60.0],
+            },
+            ARM,
+        ),
+        (
+            lambda car: {
+                "upper_ball_joint": 1.25 * (car["upper_arm_front"] + car["upper_arm_rear"])
+                - 1.5 * car["lower_ball_joint"]
+            },
+            UPPER,
+        ),
+        (
+            lambda car: {
+                "tie_rod_outer": 0.75 * car["lower_ball_joint"]
+                + 0.5 * car["upper_ball_joint"]
+                - 0.25 * car["tie_rod_inner"]
+            },
+            ROD,
+        ),
+    ],
+    ids=["lower arm", "upper arm", "tie rod"],
+)
+def test_a_drawing_at_a_dead_point_is_refused_with_its_links(moved: Any, link: str) -> None:
+    car = {name: np.array(place, float) for name, place in WISHBONE["points"].items()}
+    with pytest.raises((absolute.SingularError, absolute.AssemblyError), match=link) as caught:
+        absolute.close_drawing(absolute.compile(WISHBONE | {"points": car | moved(car)}))
+    assert link in caught.value.limits
+    assert caught.value.instant is None
+
+
+@pytest.mark.parametrize("lift", [0.0, 1e-13])
+def test_a_ball_joint_drawn_abreast_of_the_top_mount_is_refused(lift: float) -> None:
+    # The foot of its normal is the top mount itself; powers of two make it exact.
+    strut = {"strut_top": (512.0, -256.0, 256.0), "strut_lower": (512.0, -256.0, 128.0)}
+    rest = {"strut_rod_end": (512.0, -256.0, 192.0), "lower_ball_joint": (512.0, -384.0, 256.0 + lift)}
+    with pytest.raises(absolute.SingularError, match=r"slide strut at strut_top.*move a point off it"):
+        absolute.close_drawing(absolute.compile(low_mount(**strut, **rest)))
+
+
+def test_a_drawing_that_locks_before_it_closes_names_its_links() -> None:
+    # The rack's line further away than the tie rod is long.
+    points = STRUT["points"] | {"rack_centre": np.add(STRUT["points"]["rack_centre"], [0.0, 0.0, 1500.0])}
+    with pytest.raises(absolute.AssemblyError, match=r"limited by .*rod tie_rod") as caught:
+        absolute.close_drawing(absolute.compile(STRUT | {"points": points}))
+    assert caught.value.residual > 0
+
+
+@settings(max_examples=15, deadline=None)
+@given(racks=st.lists(st.floats(-60.0, 90.0), min_size=1, max_size=6), angles=st.integers(0, 10**6))
+def test_jumping_about_gives_the_pose_that_going_there_directly_gives(
+    racks: list[float], angles: int
+) -> None:
+    angle = np.random.default_rng(angles).uniform(np.radians(45.0), np.radians(145.0), len(racks))
+    inputs = {"arm_angle": angle, "rack": np.array(racks)}
+    inputs = {name: np.stack([values, 0 * values, 0 * values], -1) for name, values in inputs.items()}
+    jumping = Motion(STRUT, inputs).solve(rates=False)
+    for k in range(len(racks)):
+        alone = {name: law[k : k + 1] for name, law in inputs.items()}
+        direct = Motion(STRUT, alone).solve(rates=False, conditions=True)
+        for name, place in direct.position.items():
+            assert np.abs(jumping.position[name][k] - place[0]).max() <= 2 * off(direct)[0]
+
+
+def test_where_the_straight_way_is_blocked_inputs_go_one_by_one() -> None:
+    # Straight from the drawing to such a pose the tie rod locks; with one input after the other it does not.
+    motion = shipped("steer")
+    direct = None
+    for angle in np.linspace(0.57, 0.62, 26):
+        goal = at(arm_angle=float(angle), rack=-27.6)
+        try:
+            direct = Motion(motion.plain, goal).solve(rates=False)
+        except absolute.UnreachableError:
+            continue
+        check_closed(direct)
+    assert direct is not None

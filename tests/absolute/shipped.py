@@ -1,0 +1,91 @@
+"""The shipped scenes as the model is given them, drawings near theirs, and where a witness has their points.
+
+The witness (`mechanism_equations`) is held to closed forms and printed tables in tests/mechanisms.
+"""
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from mechanism_checks import instants, scene_inputs
+from mechanism_equations import DIGITS, Equations
+from mechanism_files import plain_scene
+from mechanism_poses import follow, rates, refined
+from mpmath import mp, mpf
+from numpy.typing import NDArray
+
+import absolute
+
+Array = NDArray[np.float64]
+EPS = float(np.finfo(float).eps)
+ORDERS = ("position", "velocity", "acceleration")
+
+
+class Motion(NamedTuple):
+    """A mechanism as it is compiled, the laws of its inputs (N, 3), and the displacement of its chassis."""
+
+    plain: dict[str, Any]
+    inputs: dict[str, Array]
+    chassis: Array | None = None
+
+    def solve(self, **options: Any) -> absolute.Solution:
+        return absolute.solve(absolute.compile(self.plain), self.inputs, self.chassis, **options)
+
+
+@cache
+def shipped(scene: str, count: int = 5) -> Motion:
+    """The motion of a shipped scene at some of its instants."""
+    plain, places = plain_scene(scene), instants(scene, count)
+    orders = [scene_inputs(scene, places, order) for order in range(3)]
+    laws = {
+        name: np.array([[float(order[k][name]) for order in orders] for k in range(len(places))])
+        for name in orders[0][0]
+    }
+    axes = Equations(plain).axes
+    moves = {name: drive["along"] for name, drive in plain["inputs"].items() if "moves" in drive}
+    shifts = [laws.pop(name)[..., None] * axes[along].astype(float) for name, along in moves.items()]
+    return Motion(plain, laws, sum(shifts) if shifts else None)
+
+
+def exact(motion: Motion) -> list[tuple[dict[str, Any], ...]]:
+    """Points and their first and second rates at every instant by the witness, the chassis at rest."""
+    equations, found = Equations(motion.plain), []
+    jets = [
+        {name: [mpf(x) for x in law[k].tolist()] for name, law in motion.inputs.items()}
+        for k in range(len(next(iter(motion.inputs.values()))))
+    ]
+    jets = [jet | {name: [mpf(0)] * 3 for name in equations.at_drawing if name not in jet} for jet in jets]
+    path = [{name: states[0] for name, states in jet.items()} for jet in jets]
+    for y, goal, jet in zip(follow(equations, path), path, jets, strict=True):
+        y = refined(equations, y, goal)
+        with mp.workdps(DIGITS):
+            found.append((equations.points(y), *rates(equations, y, jet)))
+    return found
+
+
+def error(found: Array, wanted: Any) -> float:
+    """The largest difference of a component from its exact value."""
+    with mp.workdps(DIGITS):
+        return max(float(abs(mpf(float(a)) - b)) for a, b in zip(found, wanted, strict=True))
+
+
+def off(solution: absolute.Solution) -> Array:
+    """(N,) mm: points that miss their rows by the accuracy that is stated lie within so many times that."""
+    assert solution.condition is not None
+    return np.asarray(solution.accuracy * solution.condition)
+
+
+def redrawn(motion: Motion, random: np.random.Generator, spread: float) -> Motion:
+    """The mechanism with every point up to so many mm elsewhere, at random inputs near its drawing."""
+    points = {
+        name: np.array(place, float) + random.uniform(-spread, spread, 3)
+        for name, place in motion.plain["points"].items()
+    }
+    plain = motion.plain | {"points": points}
+    drawn = absolute.close_drawing(absolute.compile(plain)).inputs
+    widths = {name: 0.2 if "angle" in plain["inputs"][name] else 25.0 for name in motion.inputs}
+    inputs = {
+        name: np.array([[drawn[name], 0.0, 0.0]]) + width * random.uniform(-1.0, 1.0, (1, 3))
+        for name, width in widths.items()
+    }
+    return Motion(plain, inputs)
