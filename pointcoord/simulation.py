@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,10 +56,11 @@ TRUNCATION_SHARE = 0.1
 BLOCK = 2**14
 
 
-def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
+def simulate(scene: Scene | str | PathLike[str], method: Method | str = AUTO) -> Motion:
     """Solve a scene by point coordinates.
 
     Args:
+        scene: or the name of a built-in one, or the path of a file.
         method: `auto` (`series`, and `map` where that would take too many series or cannot follow an input);
             dense in time `series` (a chain of power series) and `map` (series in the inputs, on patches
             that cover their way); at the scene's instants only `newton` (the paper's algorithm),
@@ -75,12 +77,14 @@ def simulate(scene: Scene, method: Method | str = AUTO) -> Motion:
         MotionTooRough: no series follows an input; likewise.
         MotionNotMapped: no map covers the way of the inputs, though no pose on it is singular; likewise.
 
-    >>> motion = simulate(Scene.load("steer"))
+    >>> motion = simulate("steer")
     >>> motion.position["wheel_centre"].shape
     (81, 3)
     >>> bool(motion.proof().bound.max() < 1e-11)
     True
     """
+    if isinstance(scene, str | PathLike):
+        scene = Scene.load(str(scene))
     require_scene(scene)
     return solve_task(checked_task(scene, method_of(method)))
 

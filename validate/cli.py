@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import NoReturn
 
+from pointcoord.wording import meant, shown
 from validate.door import guarded
 from validate.errors import UsageError
 from validate.exit_status import HELP, ExitStatus
@@ -60,6 +61,11 @@ def _run(words: list[str], console: Console) -> ExitStatus:
 
 def _parsed(words: list[str]) -> argparse.Namespace:
     """The options of a command line, whatever order they and the names of scenes stand in."""
+    if words and not words[0].startswith("-") and words[0] not in COMMANDS:
+        hint, known = meant(words[0], COMMANDS), ", ".join(COMMANDS)
+        raise UsageError(
+            f"no command is called {shown(words[0])}{hint}; there are: {known}; see pointcoord --help"
+        )
     top = parser(words[:1])
     try:
         return top.parse_args(words)

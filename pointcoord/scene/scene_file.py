@@ -36,6 +36,7 @@ from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.drawing_doubts import drawing_doubts
+from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
     Number,
@@ -65,6 +66,15 @@ PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 FARTHEST = 1e15
 # Where an axle lies, seen from the car's middle.
 AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
+# How a mechanism has the inputs of the chassis that many ask for by these names.
+MOVES = {
+    name: f" (to have it, write {name} = {{ {words} }} under [inputs] of a mechanism file of your own)"
+    for name, words in {
+        "heave": 'moves = "chassis", along = "up"',
+        "roll": 'turns = "chassis", about = "POINT", along = "forward"',
+        "pitch": 'turns = "chassis", about = "POINT", along = "left"',
+    }.items()
+}
 # Instants of one scene; a position, a velocity and an acceleration of ten points each take 7 GB at this.
 MOST_SAMPLES = 10_000_000
 
@@ -180,6 +190,7 @@ class MechanismPart(Part):
             SceneError: a mechanism file cannot be read, or something in it is wrong.
             TableFault: the tables are wrong, or stand beside a type.
         """
+        content = in_directions(content)
         given = [name for name in TABLES if content.get(name) is not None]
         if content.get("type") is not None and given:
             problem = f"there are {given[0]} beside type = {shown(content['type'])}"
@@ -480,15 +491,18 @@ class Scene(Part):
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:
-        """The content with inputs by their dotted names, which may be in a table for each part, and sweeps as
-        the polynomials that they stand for.
+        """The content in mm, with inputs by their dotted names, which may be in a table for each part, and
+        sweeps as the polynomials that they stand for.
 
         Raises:
-            TableFault: a sweep is no pair of numbers, or has no time to go through.
+            TableFault: a sweep is no pair of numbers, or has no time to go through; no unit has that name.
         """
         if "inputs" not in content:
-            return content
-        inputs = _by_dotted_name(content["inputs"], _is_no_part)
+            return in_mm(content, ())
+        content["inputs"] = _by_dotted_name(content["inputs"], _is_no_part)
+        if "units" in content:
+            content = in_mm(content, _lengths(content.get("mechanism")))
+        inputs = content["inputs"]
         if isinstance(inputs, Mapping):
             swept = [name for name, law in inputs.items() if isinstance(law, Mapping) and SWEEP in law]
             if swept:
@@ -546,7 +560,7 @@ class Scene(Part):
         known = self.mechanism.structure.inputs
         for name in self.inputs:
             if name not in known:
-                hint = meant(name, known)
+                hint = MOVES.get(name) or meant(name, known)
                 raise ValueError(f"no input is called {shown(name)}{hint}; allowed: {', '.join(known)}")
             if known[name].kind == "contact" and self.mechanism.wheel_radius is None:
                 raise ValueError(
@@ -659,7 +673,8 @@ class Scene(Part):
         if str(name) in built_in_scenes():
             written = (SCENES / f"{name}.toml").read_bytes()
         else:
-            written = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}")
+            hint = meant(str(name), built_in_scenes())
+            written = read_file(name, f"a path, or one of {', '.join(built_in_scenes())}{hint}")
         return cls.from_mapping(_found_beside(parsed(written, str(name)), Path(name).parent), str(name))
 
     @classmethod
@@ -670,6 +685,21 @@ class Scene(Part):
             SceneError: it is not written as it must be, or has no end within 64 MB.
         """
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
+
+
+def _lengths(mechanism: object) -> tuple[str, ...]:
+    """The inputs that are lengths; none of what is no mechanism, which is told when it is read."""
+    if not isinstance(mechanism, Mapping):
+        return ()
+    try:
+        content = MechanismPart.completed(dict(mechanism))
+        keys = dict.fromkeys(TABLES) | {"type": None} | content
+        file = _file_of({name: keys[name] for name in ("type", *TABLES)})
+    except (SceneError, TableFault):
+        return ()
+    structure = None if file is None else file.structures.get(content.get("closure", "drawn"))
+    inputs = {} if structure is None else structure.inputs
+    return tuple(name for name, one in inputs.items() if one.unit == "mm")
 
 
 def _swept(name: str, law: Mapping[str, Any], time: Any) -> dict[str, list[float]]:

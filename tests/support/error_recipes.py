@@ -396,7 +396,7 @@ RECIPES: dict[str, Recipe] = {
     "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
     "validate.errors.UsageError: a command": Recipe(
         lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
-        ("simulat", "invalid choice", "pointcoord --help"),
+        ("simulat", "did you mean 'simulate'?", "pointcoord --help"),
     ),
     "validate.errors.UsageError: records": Recipe(
         lambda folder, _: look(folder),

@@ -266,3 +266,13 @@ def test_a_scene_does_not_change_but_comes_back_from_a_copy_a_pickle_and_its_pla
         assert again.unchanged
     assert BOUNCE.model_copy(deep=True).mechanism.points is not BOUNCE.mechanism.points
     assert hash(BOUNCE.time) == hash(BOUNCE.time.model_copy())
+
+
+def test_a_scene_is_simulated_by_its_name_or_path_too(tmp_path: Path) -> None:
+    path = tmp_path / "car.toml"
+    path.write_text(resources.files("pointcoord").joinpath("scenes", "steer.toml").read_text("utf-8"))
+    motions = [simulate(given) for given in (Scene.load("steer"), "steer", path, str(path))]
+    for motion in motions[1:]:
+        assert np.array_equal(motion.position["wheel_centre"], motions[0].position["wheel_centre"])
+    with pytest.raises(SceneError, match="did you mean 'steer'"):
+        simulate("ster")

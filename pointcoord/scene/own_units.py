@@ -1,0 +1,97 @@
+"""A scene that is written in other units or axes than the project's: turned into mm and directions once.
+
+What comes of it is a plain scene in mm; every result is in mm. Angles and times have one unit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from pointcoord.mechanism.faults import TableFault
+from pointcoord.wording import shown
+
+UNITS = {"mm": 1.0, "m": 1000.0, "in": 25.4}
+"""The units of length that a scene may be written in, in mm."""
+
+AXES = {
+    "rearward-right-up": {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)},
+    "iso": {"up": (0.0, 0.0, 1.0), "right": (0.0, -1.0, 0.0)},
+    "sae": {"up": (0.0, 0.0, -1.0), "right": (0.0, 1.0, 0.0)},
+}
+"""Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
+
+OF_THE_WHEEL = ("wheel_radius",)
+OF_THE_CAR = ("wheelbase", "centre_of_gravity_height")
+
+
+def in_directions(mechanism: dict[str, Any]) -> dict[str, Any]:
+    """A mechanism's content with `up` and `right` in place of `axes`.
+
+    Raises:
+        TableFault: no axes have that name, or they stand beside a direction.
+    """
+    if "axes" not in mechanism:
+        return mechanism
+    axes, given = mechanism.pop("axes"), [name for name in ("up", "right") if name in mechanism]
+    if given:
+        raise TableFault(("axes",), f"stands beside {given[0]}", "axes by their name, or up and right")
+    if not isinstance(axes, str) or axes not in AXES:
+        raise TableFault(("axes",), f"is {shown(axes)}", ", ".join(AXES))
+    return mechanism | AXES[axes]
+
+
+def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
+    """A scene's content with every length in mm, in place of `units`.
+
+    What is no number stays as it is, to be told as in any scene.
+
+    Args:
+        lengths: names of the inputs that are lengths.
+    Raises:
+        TableFault: no unit has that name.
+    """
+    if "units" not in content:
+        return content
+    units = content.pop("units")
+    if not isinstance(units, str) or units not in UNITS:
+        raise TableFault(("units",), f"is {shown(units)}", ", ".join(UNITS))
+    factor = UNITS[units]
+    if "tolerance" in content:
+        content["tolerance"] = _times(factor, content["tolerance"])
+    mechanism = content.get("mechanism")
+    if isinstance(mechanism, Mapping):
+        lengthy = {
+            name: _times(factor, mechanism[name]) for name in ("points", *OF_THE_WHEEL) if name in mechanism
+        }
+        car = mechanism.get("car")
+        if isinstance(car, Mapping):
+            lengthy["car"] = {n: _times(factor, v) if n in OF_THE_CAR else v for n, v in car.items()}
+        content["mechanism"] = {**mechanism, **lengthy}
+    inputs = content.get("inputs")
+    if isinstance(inputs, Mapping):
+        content["inputs"] = {n: _law(factor, v) if n in lengths else v for n, v in inputs.items()}
+    return content
+
+
+def _law(factor: float, law: Any) -> Any:
+    """A law of an input with its values, not its times, so many times as large."""
+    if not isinstance(law, Mapping):
+        return law
+    of_time = {"sine": ("angular_frequency", "phase"), "table": ("times",)}
+
+    def parts(kind: str, value: Any) -> Any:
+        if not isinstance(value, Mapping):
+            return _times(factor, value)
+        return {n: v if n in of_time.get(kind, ()) else _times(factor, v) for n, v in value.items()}
+
+    return {kind: parts(kind, value) for kind, value in law.items()}
+
+
+def _times(factor: float, value: Any) -> Any:
+    """Numbers, lists and tables of them so many times as large."""
+    if isinstance(value, Mapping):
+        return {name: _times(factor, each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_times(factor, each) for each in value]
+    return factor * value if isinstance(value, int | float) and not isinstance(value, bool) else value
