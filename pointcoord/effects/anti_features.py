@@ -18,7 +18,7 @@ from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.knuckle import component, contact_place, velocity_at
 
-SHARE = Quantity("share", "share", "%", "car")
+SHARE = Quantity("load_share", "share of the load", "%", "car")
 PERCENT = 100.0
 
 

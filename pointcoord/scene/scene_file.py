@@ -70,7 +70,6 @@ AXLES: Mapping[Any, float] = {"front": -1.0, "rear": 1.0}
 MOVES = {
     name: f" (to have it, write {name} = {{ {words} }} under [inputs] of a mechanism file of your own)"
     for name, words in {
-        "heave": 'moves = "chassis", along = "up"',
         "roll": 'turns = "chassis", about = "POINT", along = "forward"',
         "pitch": 'turns = "chassis", about = "POINT", along = "left"',
     }.items()

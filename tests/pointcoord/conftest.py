@@ -64,6 +64,13 @@ def make_scene() -> Callable[..., Scene]:
                     "side": side or car.side,
                     "points": located,
                     "wheel_radius": 300.0,
+                    "car": {
+                        "axle": "front",
+                        "wheelbase": 2500.0,
+                        "centre_of_gravity_height": 500.0,
+                        "brake_share": 0.6,
+                        "drive_share": 0.3,
+                    },
                     "up": tuple(np.asarray(up, float).tolist()),
                     "right": tuple(np.asarray(right, float).tolist()),
                 },

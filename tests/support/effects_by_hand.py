@@ -258,7 +258,7 @@ def _anti_features(car: Car) -> Numbers:
         way = _going(car, place)
         steep = dot(way, rearward) / dot(way, car.up)
         found[name] = [100 * data[share] * data["axle"] * steep * data["wheelbase"] / height]
-    return {"share": found}
+    return {"load_share": found}
 
 
 PER_MM = {"wheel": "angle_gradient", "dimension": "dimension_gradient"}

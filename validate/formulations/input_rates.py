@@ -99,11 +99,19 @@ def _of_polynomial(coefficients: tuple[float, ...], instants: Array) -> Array:
 
 
 def _exact_sum(coefficients: tuple[float, ...], t: float, d: int) -> float:
-    exact, instant = Fraction(0), Fraction(t)
+    """The d-th derivative by Horner's rule in whole numbers: all of it times one power of two."""
+    from flint import fmpz
+
+    n, power = t.as_integer_ratio()
+    ratios = [c.as_integer_ratio() for c in coefficients]
+    common, step = max(below for _, below in ratios), power.bit_length() - 1
+    exact, shift = fmpz(0), 0
     for k in range(len(coefficients) - 1, d - 1, -1):
-        exact = exact * instant + math.perm(k, d) * Fraction(coefficients[k])
+        above, below = ratios[k]
+        exact = exact * n + (fmpz(math.perm(k, d) * above * (common // below)) << shift)
+        shift += step
     try:
-        return float(exact)
+        return int(exact) / (common << max(shift - step, 0))
     except OverflowError:
         return math.inf if exact > 0 else -math.inf
 

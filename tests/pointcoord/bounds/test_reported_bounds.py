@@ -20,7 +20,7 @@ from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.motion import Motion
-from pointcoord.results.states import StatesOfChain
+from pointcoord.results.ways import ByChain
 
 Array = NDArray[np.float64]
 
@@ -146,19 +146,18 @@ def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_make
 ) -> None:
     sine = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offset": 1.5}}
     motion = simulate(make_scene(sine, [0.0, 5.0]))
-    states = motion.solved.states
-    assert isinstance(states, StatesOfChain)
-    segments = list(states.chain.segments)
+    solved = motion.solved
+    assert isinstance(solved, ByChain)
+    segments = list(solved.chain.segments)
     coefficients = segments[0].coefficients.copy()
-    layout = states.readout.mechanism.layout
+    layout = solved.readout.mechanism.layout
     for name, sign in (("lower_ball_joint", 1.0), ("tie_rod_outer", -1.0)):
         coefficients[1, layout.vector(name)[1]] += sign * relative
     segments[0] = replace(segments[0], coefficients=coefficients)
-    wrong_states = replace(states, chain=replace(states.chain, segments=tuple(segments)))
-    wrong = replace(motion, solved=replace(motion.solved, states=wrong_states))
+    wrong = replace(motion, solved=replace(solved, chain=replace(solved.chain, segments=tuple(segments))))
     instants = np.linspace(motion.times[0], segments[0].stop, 400)[:-1]
     right, samples = motion.at(instants), wrong.at(instants)
-    names = states.readout.mechanism.topology.moving
+    names = solved.readout.mechanism.topology.moving
     error = np.max([np.abs(samples.position[n] - right.position[n]).max(axis=-1) for n in names], axis=0)
     proof, before = wrong.proof_of(samples), motion.proof_of(right).bound
     assert np.isfinite(proof.bound).all()

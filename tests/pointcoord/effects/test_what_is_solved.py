@@ -5,9 +5,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
+import pointcoord.solve.place
 import pointcoord.solve.pointwise
 import pointcoord.solve.proven_path
-import pointcoord.solve.standing_still
 from pointcoord import AssemblyError, Motion, NotComputed, Scene, UnknownName, simulate
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS
@@ -64,7 +64,7 @@ def scene(name: str, points: Sequence[str] | None = None, effects: Sequence[str]
 def test_only_the_blocks_that_move_and_are_needed_are_solved_for(
     name: str, points: Sequence[str] | None, unknowns: int
 ) -> None:
-    work = solve_by_series(prepare_task(scene(name, points, []), METHODS["series"])).states.work
+    work = solve_by_series(prepare_task(scene(name, points, []), METHODS["series"])).solving
     assert work.unknowns_solved / work.series_orders == unknowns
 
 
@@ -79,7 +79,7 @@ def test_only_the_derivatives_that_are_asked_for_are_evaluated(
     everything = max((NEEDED[e] for e in effects if e in OF_EVERY_POINT), default=0)
     assert work.derivatives_evaluated == highest + 1
     # Positions always; then each derivative of every point, or of the knuckle's points only.
-    points = len(topology.points) - (len(topology.chassis) if METHODS[method].dense else 0)
+    points = len(topology.points) - len(topology.chassis)
     wanted, knuckle = 3 * points * (everything + 1), len(topology.bodies["knuckle"])
     more = 3 * knuckle * (highest - everything)
     # One product gives all derivatives of a group of points, so the series sum the knuckle's from position.
@@ -119,7 +119,7 @@ def test_counts_are_what_was_done(
 
     solving = pointcoord.solve
     monkeypatch.setattr(solving.proven_path, "inverses", inverted)
-    own = (newton, assembly, solving.follower, solving.standing_still, flood)
+    own = (newton, assembly, solving.follower, solving.place, flood)
     for module in (*own, solving.pointwise, solving.proven_path):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)

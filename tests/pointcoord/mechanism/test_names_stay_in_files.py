@@ -11,13 +11,17 @@ import pointcoord
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.structure import KINDS
+from pointcoord.scene.scene_file import CarPart
 
 PACKAGE = Path(pointcoord.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
 POINTS = {point for name in shipped() for point in mechanism_file(name).points}
 INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
 # A file may call an input as the format calls its kind, such as `turn`, or as an effect calls what it drives.
-EXACT = {*shipped(), *(INPUTS - KINDS.keys() - EFFECTS.keys() - NUMBERS_OF_THE_CAR.keys())}
+# A type may be called as what a scene says of its car.
+EXACT = {*shipped()} - CarPart.model_fields.keys() | {
+    *(INPUTS - KINDS.keys() - EFFECTS.keys() - NUMBERS_OF_THE_CAR.keys())
+}
 
 
 def said(module: ast.Module) -> Iterator[tuple[int, str]]:

@@ -178,7 +178,7 @@ def test_poses_ahead_are_those_one_after_the_other(
     plain, allowed, unit = plainly(scene)
     motion = simulate(scene, "newton")
     assert len(plain) == samples
-    found = motion.solved.states.coordinates(scene.instants, 0)[0]
+    found = motion.solved.coordinates(scene.instants, 0)[0]
     # Each is within what its tolerance left, and within the proof's rounding, of the one assembly there.
     off = unit * np.abs(found - plain).max()
     assert off <= 2.0 * (unit * allowed + float(motion.proof().bound.max()))
@@ -225,7 +225,7 @@ def test_another_assembly_is_not_taken_for_the_next_pose(
     # Newton's method is started at another assembly of each instant, and stays there.
     monkeypatch.setattr(pointwise, "_guessed", lambda system, inverse, start, targets: at(others, targets, n))
     motion = simulate(scene, "newton")
-    found = motion.solved.states.coordinates(scene.instants, 0)[0]
+    found = motion.solved.coordinates(scene.instants, 0)[0]
     assert unit * np.abs(found - plain).max() <= 2.0 * (unit * allowed + float(motion.proof().bound.max()))
 
 

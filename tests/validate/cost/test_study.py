@@ -34,8 +34,8 @@ def test_instants_are_special_to_no_way_and_one_lies_in_each_part_of_the_time() 
     assert np.floor(instants / time.stop * len(instants)).tolist() == list(range(len(instants)))
     special = [scene.instants, np.linspace(time.start, time.stop, 2 * len(instants) + 1)]
     for tolerance in (1e-3, 1e-9, 1e-13):
-        states: Any = simulate(scene.model_copy(update={"tolerance": tolerance})).solved.states
-        special.append(np.array([segment.start for segment in states.chain.segments]))
+        solved: Any = simulate(scene.model_copy(update={"tolerance": tolerance})).solved
+        special.append(np.array([segment.start for segment in solved.chain.segments]))
     assert np.abs(instants[:, None] - np.concatenate(special)).min() > 1e-9 * time.stop
 
 
