@@ -19,9 +19,8 @@ POINTS = {point for name in shipped() for point in mechanism_file(name).points}
 INPUTS = {name for one in shipped() for name in mechanism_file(one).inputs}
 # A file may call an input as the format calls its kind, such as `turn`, or as an effect calls what it drives.
 # A type may be called as what a scene says of its car.
-EXACT = {*shipped()} - CarPart.model_fields.keys() | {
-    *(INPUTS - KINDS.keys() - EFFECTS.keys() - NUMBERS_OF_THE_CAR.keys())
-}
+ELSEWHERE = {*KINDS, *EFFECTS, *NUMBERS_OF_THE_CAR}
+EXACT = {*shipped()} - CarPart.model_fields.keys() | (INPUTS - ELSEWHERE)
 
 
 def said(module: ast.Module) -> Iterator[tuple[int, str]]:
