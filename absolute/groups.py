@@ -5,12 +5,11 @@ freedoms: a driven link alone, then what hangs between such (Assur). A group's d
 where the assemblies of it meet, and so tells more than that of the Jacobian, which is the product of all.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 from absolute.solution import Array
 
@@ -27,24 +26,53 @@ class Group(NamedTuple):
 def groups_of(first: Places, second: Places, bodies: int) -> list[Group]:
     """Groups of the moving bodies 1 .. bodies - 1, each as small as can be.
 
-    Rows are matched with freedoms. A freedom then waits for all others in its row, and freedoms that wait for
-    each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be matched, all are one group:
-    some body can still move.
+    Six rows are matched with each body. A body then waits for all others in its own rows, and bodies that
+    wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be matched, all are one
+    group: some body can still move.
 
     Args:
         first, second: the two bodies of each row.
     """
-    numbers, freedoms = np.arange(len(first)), 6 * (bodies - 1)
-    touched = np.zeros((len(first), bodies), dtype=np.bool_)
-    touched[numbers, first] = touched[numbers, second] = True
-    touched = np.repeat(touched[:, 1:], 6, axis=1)
-    matched = maximum_bipartite_matching(csr_array(touched), perm_type="column")
-    if len(first) != freedoms or (matched < 0).any():
-        return [Group(numbers, np.arange(freedoms))]
-    waits = np.zeros((freedoms, freedoms), dtype=np.bool_)
-    waits[matched] = touched
-    count, group = connected_components(csr_array(waits), connection="strong")
-    return [Group(np.flatnonzero(group[matched] == k), np.flatnonzero(group == k)) for k in range(count)]
+    pairs, freedoms = list(zip(first.tolist(), second.tolist(), strict=True)), 6 * (bodies - 1)
+    own = _matched(pairs, bodies) if len(pairs) == freedoms else None
+    if own is None:
+        return [Group(np.arange(len(pairs)), np.arange(freedoms))]
+    waits = np.eye(bodies, dtype=np.bool_)
+    for body, rows in enumerate(own):
+        waits[body, [each for row in rows for each in pairs[row]]] = True
+    waits[:, 0] = False
+    for _ in range(bodies.bit_length()):  # also for those that these wait for
+        waits = waits @ waits
+    group = (waits & waits.T).argmax(axis=1)
+    together = [np.flatnonzero(group == one) for one in np.unique(group[1:])]
+    return [
+        Group(
+            np.sort(np.concatenate([own[body] for body in some])),
+            np.add.outer(6 * (some - 1), np.arange(6)).ravel(),
+        )
+        for some in together
+    ]
+
+
+def _matched(pairs: Sequence[tuple[int, int]], bodies: int) -> list[list[int]] | None:
+    """Six rows of each body that they touch, each row once, by augmenting paths; None if there are none."""
+    own: list[list[int]] = [[] for _ in range(bodies)]
+
+    def placed(row: int, tried: set[int]) -> bool:
+        """Whether a body of the row has a place for it, or one of its rows can go to another body."""
+        for body in pairs[row]:
+            if body and body not in tried:
+                tried.add(body)
+                if len(own[body]) < 6:
+                    own[body].append(row)
+                    return True
+                for place, other in enumerate(own[body]):
+                    if placed(other, tried):
+                        own[body][place] = row
+                        return True
+        return False
+
+    return own if all(placed(row, set()) for row in range(len(pairs))) else None
 
 
 def signs_of(groups: list[Group], jacobian: Array) -> Array:
