@@ -35,6 +35,7 @@ from pointcoord.mechanism.file import (
 from pointcoord.mechanism.freedoms import free_directions
 from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
 from pointcoord.results.even_instants import even_instants
+from pointcoord.scene.csv_table import beside, read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts
 from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
@@ -494,11 +495,12 @@ class Scene(Part):
         sweeps as the polynomials that they stand for.
 
         Raises:
+            SceneError: a table's file cannot be read.
             TableFault: a sweep is no pair of numbers, or has no time to go through; no unit has that name.
         """
         if "inputs" not in content:
             return in_mm(content, ())
-        content["inputs"] = _by_dotted_name(content["inputs"], _is_no_part)
+        content["inputs"] = read_in(_by_dotted_name(content["inputs"], _is_no_part))
         if "units" in content:
             content = in_mm(content, _lengths(content.get("mechanism")))
         inputs = content["inputs"]
@@ -740,7 +742,8 @@ def _is_no_part(table: Mapping[str, Any]) -> bool:
 
 
 def _found_beside(content: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """A scene's content with the paths of its mechanism files counted from a folder."""
+    """A scene's content with the paths of its mechanism files and of its tables counted from a folder."""
+    content = {**content, "inputs": beside(content["inputs"], folder)} if "inputs" in content else content
     mechanism = content.get("mechanism")
     if not isinstance(mechanism, dict):
         return content

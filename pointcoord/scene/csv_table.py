@@ -1,0 +1,58 @@
+"""An input's table in a file of its own: a column of times, s, and one of values, under titles or not."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pointcoord.errors import SceneError
+from pointcoord.toml_text import read_file
+from pointcoord.wording import shown
+
+TABLE = "table"
+
+
+def beside(inputs: Any, folder: Path) -> Any:
+    """A scene's inputs with the paths of their tables counted from a folder."""
+    if not isinstance(inputs, Mapping):
+        return inputs
+    return {
+        name: {TABLE: str(folder / law[TABLE])} if _of_a_file(law) else beside(law, folder)
+        for name, law in inputs.items()
+    }
+
+
+def read_in(inputs: Any) -> Any:
+    """A scene's inputs with tables in place of their paths.
+
+    Raises:
+        SceneError: a file cannot be read, or is not two columns of numbers.
+    """
+    if not isinstance(inputs, Mapping):
+        return inputs
+    return {name: {TABLE: _table_of(law[TABLE])} if _of_a_file(law) else law for name, law in inputs.items()}
+
+
+def _of_a_file(law: Any) -> bool:
+    return isinstance(law, Mapping) and law.keys() == {TABLE} and isinstance(law[TABLE], str)
+
+
+def _table_of(path: str) -> dict[str, list[float]]:
+    allowed = "two columns of numbers, time in s and the input's value, with commas between them"
+    try:
+        text = read_file(path, "the path of a file of two columns").decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SceneError(path, "", "is no text in UTF-8", allowed) from None
+    rows: list[tuple[float, float]] = []
+    for number, cells in enumerate(csv.reader(text.splitlines()), start=1):
+        try:
+            time, value = map(float, cells)
+        except ValueError:
+            if number == 1 or not cells:
+                continue  # titles, or an empty line
+            raise SceneError(path, f"line {number}", f"is {shown(','.join(cells))}", allowed) from None
+        rows.append((time, value))
+    times, values = ([row[i] for row in rows] for i in range(2))
+    return {"times": times, "values": values}
