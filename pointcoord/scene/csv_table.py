@@ -45,14 +45,21 @@ def _table_of(path: str) -> dict[str, list[float]]:
         text = read_file(path, "the path of a file of two columns").decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(path, "", "is no text in UTF-8", allowed) from None
-    rows: list[tuple[float, float]] = []
+    rows: list[list[Any]] = []
     for number, cells in enumerate(csv.reader(text.splitlines()), start=1):
-        try:
-            time, value = map(float, cells)
-        except ValueError:
-            if number == 1 or not cells:
-                continue  # titles, or an empty line
-            raise SceneError(path, f"line {number}", f"is {shown(','.join(cells))}", allowed) from None
-        rows.append((time, value))
+        numbers = [_number(cell) for cell in cells]
+        titles = number == 1 and all(one is None for one in numbers)
+        if not cells or titles:
+            continue
+        if len(numbers) != 2 or None in numbers:
+            raise SceneError(path, f"line {number}", f"is {shown(','.join(cells))}", allowed)
+        rows.append(numbers)
     times, values = ([row[i] for row in rows] for i in range(2))
     return {"times": times, "values": values}
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return float(cell)
+    except ValueError:
+        return None

@@ -23,9 +23,8 @@ def written(folder: Path, law: str) -> Path:
 
 @pytest.mark.parametrize("head", ["", "time [s],travel [mm]\n", "\n"])
 def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) -> None:
-    (tmp_path / "bump.csv").write_text(
-        head + "".join(f"{t!r},{v!r}\n" for t, v in zip(TIMES, VALUES, strict=True))
-    )
+    lines = [f"{t!r},{v!r}\n" for t, v in zip(TIMES.tolist(), VALUES.tolist(), strict=True)]
+    (tmp_path / "bump.csv").write_text(head + "".join(lines))
     beside = written(tmp_path, '{ table = "bump.csv" }')
     other = tmp_path / "inside"
     other.mkdir()
@@ -39,6 +38,7 @@ def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) ->
     ("text", "words"),
     [
         ("t,z\n0,1\n1\n", "bump.csv: line 3: is '1'; allowed: two columns of numbers"),
+        ("0,down\n1,2\n", "bump.csv: line 1: is '0,down'; allowed"),
         ("0,1\n0.5,up\n", "bump.csv: line 2: is '0.5,up'; allowed"),
         ("", "inputs.wheel_travel.table.times: "),
         ("0,1\n1,2\n", "inputs.wheel_travel.table.times: "),
