@@ -45,7 +45,8 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         Doubt(
             ~((size >= SMALLEST) & (size <= LARGEST)),
             lambda one: (
-                f"the car is {float(size[one]):.3g} mm long: points are in mm; are these in another unit?"
+                f"the car is {float(size[one]):.3g} mm long: points are in mm; are these in another unit, "
+                'which units = "m" or "in" at the top of the scene would say?'
             ),
         ),
         *_front_behind_rear(topology, points, axes),
