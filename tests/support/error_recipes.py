@@ -395,7 +395,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
     "validate.errors.UsageError: a command": Recipe(
-        lambda *_: cli.parser().parse_args(["simulat", "bounce"]),
+        lambda *_: cli._parsed(["simulat", "bounce"]),
         ("simulat", "did you mean 'simulate'?", "pointcoord --help"),
     ),
     "validate.errors.UsageError: records": Recipe(
