@@ -108,9 +108,7 @@ class Mechanism:
         moved, model = np.empty_like(q), self.pin_model
         each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
         for one, way, there in zip(*each, strict=True):
-            there[...] = pin.integrate(model, one, way)
-        quaternions = moved.reshape(-1, 7)[:, 3:]
-        quaternions /= np.linalg.norm(quaternions, axis=1, keepdims=True)
+            there[...] = pin.normalize(model, pin.integrate(model, one, way))
         return moved
 
     def named(self, values: Sequence[float]) -> dict[str, float]:
