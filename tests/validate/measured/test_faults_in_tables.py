@@ -138,6 +138,7 @@ def test_rows_in_any_order_have_their_misread_hardpoint() -> None:
         (late, "camber, kingpin, toe, caster: one sample late, the first one twice"),
         (toe_out, "toe: the other sign"),
         (lambda t: t | {"camber": 1.03 * t["camber"]}, "camber: 1.03 times ours"),
+        (lambda t: t | {"toe": t["toe"] + 0.3}, "toe: a constant offset of 0.00523599 rad (0.3 deg)"),
     ],
 )
 def test_a_fault_of_the_numbers_alone_is_named(change: Callable[[Table], Table], words: str) -> None:

@@ -144,6 +144,14 @@ def _less(evidence: Evidence, row: Row, value: Array | float) -> WouldBe:
     return evidence.held[row] - value, evidence.rounded(row, value)
 
 
+def _as_round_as_may_be(evidence: Evidence, row: Row, offset: Array) -> Array:
+    """The roundest offset, in the unit that a row is given in, that explains it: means of digits miss it."""
+    _, factor = evidence.theirs.get(row, ("", 1.0))
+    rounder = (factor * np.round(offset / factor, decimals) for decimals in range(7))
+    explains = (near for near in rounder if evidence.left(row, *_less(evidence, row, -near)) <= 1.0)
+    return np.asarray(next(explains, offset))
+
+
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
     """What is subtracted: the chassis' motion, the first or the drawn value, another origin, a constant."""
     if evidence.over_time:
@@ -162,7 +170,7 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
         gap = np.mean(evidence.given[row] - evidence.held[row], axis=0)
         noise = float(evidence.rounded(row).max())
         if np.isfinite(gap).all() and np.abs(gap).max() > 8.0 * noise and len(evidence.times) > 2:
-            gap = np.where(np.abs(gap) <= noise, 0.0, gap)
+            gap = _as_round_as_may_be(evidence, row, np.where(np.abs(gap) <= noise, 0.0, gap))
             words, count = f"a constant offset of {evidence.in_words(row, gap)}", max(np.size(gap), 1)
             yield Hypothesis((row, "constant"), words, {row: _less(evidence, row, -gap)}, count, 1.0 + count)
 
