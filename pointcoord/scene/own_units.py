@@ -61,10 +61,10 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
         content["tolerance"] = _times(factor, content["tolerance"])
     mechanism = content.get("mechanism")
     if isinstance(mechanism, Mapping):
-        lengthy = {
-            name: _times(factor, mechanism[name]) for name in ("points", *OF_THE_WHEEL) if name in mechanism
-        }
-        car = mechanism.get("car")
+        lengthy = {name: _times(factor, mechanism[name]) for name in OF_THE_WHEEL if name in mechanism}
+        points, car = mechanism.get("points"), mechanism.get("car")
+        if isinstance(points, Mapping):
+            lengthy["points"] = _times(factor, points)
         if isinstance(car, Mapping):
             lengthy["car"] = {n: _times(factor, v) if n in OF_THE_CAR else v for n, v in car.items()}
         content["mechanism"] = {**mechanism, **lengthy}
@@ -81,9 +81,9 @@ def _law(factor: float, law: Any) -> Any:
     of_time = {"sine": ("angular_frequency", "phase"), "table": ("times",)}
 
     def parts(kind: str, value: Any) -> Any:
-        if not isinstance(value, Mapping):
-            return _times(factor, value)
-        return {n: v if n in of_time.get(kind, ()) else _times(factor, v) for n, v in value.items()}
+        if isinstance(value, Mapping):
+            return {n: v if n in of_time.get(kind, ()) else _times(factor, v) for n, v in value.items()}
+        return value if kind in of_time else _times(factor, value)
 
     return {kind: parts(kind, value) for kind, value in law.items()}
 

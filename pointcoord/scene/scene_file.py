@@ -698,7 +698,8 @@ def _lengths(mechanism: object) -> tuple[str, ...]:
         file = _file_of({name: keys[name] for name in ("type", *TABLES)})
     except (SceneError, TableFault):
         return ()
-    structure = None if file is None else file.structures.get(content.get("closure", "drawn"))
+    closure = content.get("closure", "drawn")
+    structure = file.structures.get(closure) if file is not None and isinstance(closure, str) else None
     inputs = {} if structure is None else structure.inputs
     return tuple(name for name, one in inputs.items() if one.unit == "mm")
 

@@ -62,6 +62,18 @@ def fitted(
     return np.asarray(found.x) if float(np.linalg.norm(found.fun)) <= PROMISING * apart else None
 
 
+def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool], unit: float = 1.0) -> Array:
+    """The roundest of the numbers next to found ones that fits as they do; they themselves if none does.
+
+    Least squares of printed digits miss what was meant by a little.
+
+    Args:
+        decimals: how many are tried, from none on. unit: in which the numbers are round.
+    """
+    rounder = (unit * np.round(np.asarray(found) / unit, places) for places in range(decimals))
+    return np.asarray(next((near for near in rounder if fits(near)), found))
+
+
 def meant(amount: float) -> float:
     """A number of six digits where that is nearly it."""
     rounded = float(f"{amount:.6g}")

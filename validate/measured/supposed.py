@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
-from validate.diagnosis.least import fitted
+from validate.diagnosis.least import fitted, roundest
 from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import CONTACT, INPUT, TIME, TRAVEL
 from validate.measured.poses import Driven, of_a_pose, ours_of
@@ -290,8 +290,7 @@ class _Trial:
         least = left(best)
         if not zeros or not least <= PROMISING:
             return None
-        rounded = (s.factor * round(best / s.factor, decimals) for decimals in range(7))
-        more = next((one for one in rounded if left(one) <= CLOSE * least), best)
+        more = float(roundest(best, 7, lambda near: left(float(near)) <= CLOSE * least, s.factor))
         return _Change(factor, more, found=True)
 
     def _gaps(self, changes: Changes) -> Array:

@@ -133,10 +133,12 @@ def test_mirrored_axes_are_told_how_to_say_so(make_scene: Callable[..., Scene]) 
 
 
 def test_what_is_no_scene_is_refused() -> None:
+    name: Any = "bounce"
+    number: Any = 7
     with pytest.raises(SceneError, match="is a str, and no scene; allowed: a Scene, as"):
-        standing("bounce")  # type: ignore[arg-type]
+        standing(name)
     with pytest.raises(SceneError, match="is a int, and no scene; allowed: a Scene, as"):
-        simulate(7)  # type: ignore[arg-type]
+        simulate(number)
 
 
 @pytest.mark.parametrize("name", [None, 3, b"bounce"])

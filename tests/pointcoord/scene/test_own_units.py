@@ -88,6 +88,8 @@ def test_a_car_in_named_axes_has_the_same_angles_and_its_points_in_these(
     [
         ({"units": "cm"}, "units: is 'cm'; allowed: mm, m, in"),
         ({"units": 1000}, "units: is 1000; allowed: mm, m, in"),
+        ({"units": "m", "closure": []}, "mechanism.closure: Input should be a valid string, not []"),
+        ({"units": "m", "points": 7}, "mechanism.points: Input should be a table, not 7"),
         ({"axes": "lotus"}, "mechanism.axes: is 'lotus'; allowed: rearward-right-up, iso, sae"),
         (
             {"axes": "iso", "up": [0.0, 0.0, 1.0]},

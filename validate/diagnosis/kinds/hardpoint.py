@@ -9,6 +9,7 @@ as the tie rod's inner end does for the rack's centre, is misread with it or alo
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import combinations, islice
 
 import numpy as np
@@ -18,7 +19,7 @@ from pointcoord import Scene, sweep
 from pointcoord.linkage.car_axes import Direction
 from validate.diagnosis.evidence import Evidence, Row, kind_of
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.least import LIKELY, fitted
+from validate.diagnosis.least import LIKELY, fitted, roundest
 
 Array = NDArray[np.float64]
 Coordinate = tuple[str, ...]
@@ -94,8 +95,9 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> Iterator[H
 
             amounts = fitted(moved, [0.0] * len(chosen), STEP, theirs)
             if amounts is not None and np.abs(amounts).max() < farthest:
-                left, amounts = _as_round_as_may_be(amounts, lambda sets: moved(sets) - theirs)
-                found.append((left, chosen, amounts))
+                left = _left(moved, theirs, amounts)
+                near = partial(_as_near, moved, theirs, CLOSE * left)
+                found.append((left, chosen, roundest(amounts, DECIMALS, near)))
         done = False
         for left, chosen, amounts in found:
             if left > POORER * min(rest for rest, _, _ in found):
@@ -111,12 +113,13 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> Iterator[H
             return
 
 
-def _as_round_as_may_be(amounts: Array, gaps: Callable[[Array], Array]) -> tuple[float, Array]:
-    """What amounts leave, and these: least squares of printed digits miss what was read by a little."""
-    sets = np.stack([*(np.round(amounts, decimals) for decimals in range(DECIMALS)), amounts])
-    left = np.linalg.norm(gaps(sets), axis=1)
-    first = int(np.argmax(left <= CLOSE * left[-1]))
-    return float(left[first]), sets[first]
+def _left(read: Callable[[Array], Array], theirs: Array, amounts: Array) -> float:
+    """What amounts leave of the difference."""
+    return float(np.linalg.norm(theirs - read(amounts[None])[0]))
+
+
+def _as_near(read: Callable[[Array], Array], theirs: Array, most: float, amounts: Array) -> bool:
+    return _left(read, theirs, amounts) <= most
 
 
 def _coordinates(scene: Scene) -> list[Coordinate]:

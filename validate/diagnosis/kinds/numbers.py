@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 from itertools import permutations, product
 from math import pi
 from typing import NamedTuple
@@ -16,6 +17,7 @@ from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import scene_mechanism
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+from validate.diagnosis.least import roundest
 
 Array = NDArray[np.float64]
 
@@ -132,24 +134,30 @@ def factors(evidence: Evidence) -> Iterator[Hypothesis]:
         factor = float(ours @ theirs) / square if square > 0.0 else np.nan
         if not np.isfinite(factor) or factor == 0.0 or abs(factor - 1.0) <= NEAR_ONE:
             continue
-        # Least squares of printed digits miss the factor by a little: the roundest that explains all.
-        for near in (*(float(f"{factor:.{digits}g}") for digits in range(2, 7)), factor):
-            rows = {row: (near * evidence.held[row], abs(near) * evidence.rounded(row)) for row in some}
-            if all(evidence.left(row, *numbers) <= 1.0 for row, numbers in rows.items()):
-                yield Hypothesis(f"{near:.9g}", f"{near:.7g} times ours", rows, 1, 2.0)
-                break
+        explains = partial(_explains, evidence, some)
+        # So many decimals of the factor's own power of ten.
+        near = float(roundest(factor, 7, explains, 10.0 ** np.floor(np.log10(abs(factor)))))
+        if explains(near):
+            yield Hypothesis(f"{near:.9g}", f"{near:.7g} times ours", _times(evidence, some, near), 1, 2.0)
+
+
+def _times(evidence: Evidence, rows: Iterable[Row], factor: float) -> dict[Row, WouldBe]:
+    return {row: (factor * evidence.held[row], abs(factor) * evidence.rounded(row)) for row in rows}
+
+
+def _explains(evidence: Evidence, rows: Iterable[Row], factor: Array | float) -> bool:
+    """Whether rows are so many times ours."""
+    would_be = _times(evidence, rows, float(factor))
+    return all(evidence.left(row, *numbers) <= 1.0 for row, numbers in would_be.items())
 
 
 def _less(evidence: Evidence, row: Row, value: Array | float) -> WouldBe:
     return evidence.held[row] - value, evidence.rounded(row, value)
 
 
-def _as_round_as_may_be(evidence: Evidence, row: Row, offset: Array) -> Array:
-    """The roundest offset, in the unit that a row is given in, that explains it: means of digits miss it."""
-    _, factor = evidence.theirs.get(row, ("", 1.0))
-    rounder = (factor * np.round(offset / factor, decimals) for decimals in range(7))
-    explains = (near for near in rounder if evidence.left(row, *_less(evidence, row, -near)) <= 1.0)
-    return np.asarray(next(explains, offset))
+def _is_less(evidence: Evidence, row: Row, offset: Array) -> bool:
+    """Whether a row is ours and so much more."""
+    return evidence.left(row, *_less(evidence, row, -offset)) <= 1.0
 
 
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -170,7 +178,10 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
         gap = np.mean(evidence.given[row] - evidence.held[row], axis=0)
         noise = float(evidence.rounded(row).max())
         if np.isfinite(gap).all() and np.abs(gap).max() > 8.0 * noise and len(evidence.times) > 2:
-            gap = _as_round_as_may_be(evidence, row, np.where(np.abs(gap) <= noise, 0.0, gap))
+            _, unit = evidence.theirs.get(row, ("", 1.0))
+            gap = roundest(
+                np.where(np.abs(gap) <= noise, 0.0, gap), 7, partial(_is_less, evidence, row), unit
+            )
             words, count = f"a constant offset of {evidence.in_words(row, gap)}", max(np.size(gap), 1)
             yield Hypothesis((row, "constant"), words, {row: _less(evidence, row, -gap)}, count, 1.0 + count)
 
