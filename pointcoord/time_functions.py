@@ -46,6 +46,10 @@ class TimeFunction(Protocol):
         """How far the computed value may be from the law's own, rounded once, shape (N,); or a derivative."""
         ...
 
+    def exact(self, instants: Array) -> list[Enclosed]:
+        """The law's own value, rate and acceleration, (N,)."""
+        ...
+
     def enclosed(self, instants: Array) -> list[Enclosed]:
         """The law's own value, rate and acceleration, each rounded once, (N,).
 
@@ -75,8 +79,21 @@ class TimeFunction(Protocol):
         ...
 
 
+class Rounded:
+    """A time function whose own value is known in twice the working precision."""
+
+    def exact(self, instants: Array) -> list[Enclosed]:
+        """See `TimeFunction`."""
+        raise NotImplementedError
+
+    def enclosed(self: TimeFunction, instants: Array) -> list[Enclosed]:
+        """See `TimeFunction`."""
+        values = enumerate(self.exact(instants))
+        return [_rounded_once(self, value, instants, derivative) for derivative, value in values]
+
+
 @dataclass(frozen=True)
-class Polynomial:
+class Polynomial(Rounded):
     """f(t) = sum_j coefficients[j] t^j.
 
     >>> Polynomial((1.0, 2.0, 3.0)).series(2.0, 2)  # value, rate and half the acceleration at 2 s
@@ -126,7 +143,7 @@ class Polynomial:
             terms = np.polynomial.polynomial.polyval(np.abs(instants), law)
         return np.asarray(4 * count**2 * UNIT_ROUNDOFF**2 * terms if count > 1 else np.zeros_like(instants))
 
-    def enclosed(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array) -> list[Enclosed]:
         """Horner's rule in twice the working precision, with the bound of its rounding."""
         t, found = Enclosed.of(instants), []
         for derivative in range(3):
@@ -134,7 +151,7 @@ class Polynomial:
             for j in range(len(self.coefficients) - 1, derivative - 1, -1):
                 factor = Enclosed.of(float(perm(j, derivative)))
                 total = total * t + factor * Enclosed.of(self.coefficients[j])
-            found.append(_rounded_once(self, total, instants, derivative))
+            found.append(total)
         return found
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
@@ -153,7 +170,7 @@ class Polynomial:
 
 
 @dataclass(frozen=True)
-class Sine:
+class Sine(Rounded):
     """f(t) = offset + amplitude sin(angular_frequency t + phase); rad/s and rad."""
 
     amplitude: float
@@ -213,18 +230,17 @@ class Sine:
             turned = np.where(swing > 0.0, 2.0 * np.abs(computed), 0.0)
         return np.asarray(UNIT_ROUNDOFF * (swing + turned))
 
-    def enclosed(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array) -> list[Enclosed]:
         """The formulas of `series` in twice the working precision, whole turns taken off the angle."""
         speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
         angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
         turns = np.rint(angle.high / TURN.high)
         cosine, sine = (angle - Enclosed.of(turns) * TURN).cosine_sine()
-        values = (
+        return [
             Enclosed.of(self.offset) + swing * sine,
             swing * speed * cosine,
             -(swing * speed * speed * sine),
-        )
-        return [_rounded_once(self, value, instants, d) for d, value in enumerate(values)]
+        ]
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
         """The values at the ends, or the crest or the trough where the angle may pass one.
@@ -259,7 +275,7 @@ class Sine:
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Rounded):
     """The cubic spline through (times, values), not-a-knot at its ends.
 
     Its value, rate and acceleration are continuous; its third derivative jumps at the times. What it means
@@ -281,10 +297,9 @@ class Table:
         """None: the computed spline is the law."""
         return np.zeros_like(instants)
 
-    def enclosed(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array) -> list[Enclosed]:
         """The computed spline, which is the law."""
-        values = (self._spline(instants, nu=derivative) for derivative in range(3))
-        return [Enclosed.of(value, 0.0, 0.0, UNIT_ROUNDOFF * np.abs(value)) for value in values]
+        return [Enclosed.of(self._spline(instants, nu=derivative)) for derivative in range(3)]
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
         """The cubic about the middle, each term at its largest.
@@ -328,6 +343,51 @@ class Table:
     def still(self) -> bool:
         """Of one value, which is what the spline then gives everywhere."""
         return len(set(self.values)) == 1 and not self._spline.c[:-1].any()
+
+
+@dataclass(frozen=True)
+class Sum(Rounded):
+    """f(t) = sum_i terms[i](t)."""
+
+    terms: tuple[TimeFunction, ...]
+
+    def series(self, instants: ArrayLike, order: int) -> Array:
+        """The sum of the series."""
+        return np.asarray(sum(term.series(instants, order) for term in self.terms))
+
+    def rounding(self, instants: Array, derivative: int = 0) -> Array:
+        """That of the terms; each is rounded once before the sums, and takes part in one sum for each."""
+        factor = factorial(derivative)
+        sizes = (factor * np.abs(term.series(instants, derivative)[..., derivative]) for term in self.terms)
+        sums = (len(self.terms) + 1) * UNIT_ROUNDOFF * sum(sizes)
+        return np.asarray(sums + sum(term.rounding(instants, derivative) for term in self.terms))
+
+    def exact(self, instants: Array) -> list[Enclosed]:
+        """The sum in twice the working precision."""
+        first, *others = (term.exact(instants) for term in self.terms)
+        for other in others:
+            first = [one + another for one, another in zip(first, other, strict=True)]
+        return first
+
+    def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
+        """The sums of the least and of the largest values.
+
+        Where the terms go against each other they come nearer with the span's length, not with its square.
+        """
+        lows, highs = zip(*(term.values_over(first, last) for term in self.terms), strict=True)
+        low, high = sum(lows), sum(highs)
+        sizes = sum(np.maximum(np.abs(a), np.abs(b)) for a, b in zip(lows, highs, strict=True))
+        # A value and these sums are rounded alike.
+        edge = 2.0 * (len(self.terms) + 1) * UNIT_ROUNDOFF * sizes
+        return np.asarray(low - edge), np.asarray(high + edge)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        return tuple(sorted({instant for term in self.terms for instant in term.breaks}))
+
+    @property
+    def still(self) -> bool:
+        return all(term.still for term in self.terms)
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +16,7 @@ TABLE = "table"
 
 def beside(inputs: Any, folder: Path) -> Any:
     """A scene's inputs with the paths of their tables counted from a folder."""
-    if not isinstance(inputs, Mapping):
-        return inputs
-    return {
-        name: {TABLE: str(folder / law[TABLE])} if _of_a_file(law) else beside(law, folder)
-        for name, law in inputs.items()
-    }
+    return _with_files(inputs, lambda path: str(folder / path))
 
 
 def read_in(inputs: Any) -> Any:
@@ -30,9 +25,16 @@ def read_in(inputs: Any) -> Any:
     Raises:
         SceneError: a file cannot be read, or is not two columns of numbers.
     """
-    if not isinstance(inputs, Mapping):
-        return inputs
-    return {name: {TABLE: _table_of(law[TABLE])} if _of_a_file(law) else law for name, law in inputs.items()}
+    return _with_files(inputs, _table_of)
+
+
+def _with_files(part: Any, change: Callable[[str], Any]) -> Any:
+    """Inputs, laws or terms with something else for the path of each table."""
+    if _of_a_file(part):
+        return {TABLE: change(part[TABLE])}
+    if isinstance(part, Mapping):
+        return {name: _with_files(each, change) for name, each in part.items()}
+    return [_with_files(each, change) for each in part] if isinstance(part, list | tuple) else part
 
 
 def _of_a_file(law: Any) -> bool:

@@ -81,6 +81,8 @@ def _law(factor: float, law: Any) -> Any:
     of_time = {"sine": ("angular_frequency", "phase"), "table": ("times",)}
 
     def parts(kind: str, value: Any) -> Any:
+        if kind == "sum" and isinstance(value, list | tuple):
+            return [_law(factor, term) for term in value]
         if isinstance(value, Mapping):
             return {n: v if n in of_time.get(kind, ()) else _times(factor, v) for n, v in value.items()}
         return value if kind in of_time else _times(factor, value)

@@ -9,8 +9,6 @@ import json
 import os
 from collections.abc import Callable, Collection, Mapping
 from functools import cached_property, lru_cache
-from itertools import pairwise
-from math import isfinite
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
 
@@ -22,6 +20,7 @@ from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.faults import TableFault
 from pointcoord.mechanism.file import (
@@ -37,6 +36,7 @@ from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.csv_table import beside, read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts
+from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, says_drawn, sweeps, swept, with_drawn
 from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
@@ -49,19 +49,15 @@ from pointcoord.scene.scene_part import (
     Vector,
     Whole,
 )
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+from pointcoord.time_functions import TimeFunction
 from pointcoord.toml_text import parsed, read_file, read_stream
 from pointcoord.wording import meant, shown
 
 # The built-in ones. (importlib.resources takes as long to import as a fifth of numpy.)
 SCENES = Path(__file__).parents[1] / "scenes"
 
-LAWS = ("constant", "polynomial", "sine", "table")
-SWEEP = "sweep"
 # The instants of a scene that sweeps and says nothing of time; s.
 PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
-"""The kinds of an input over time."""
-
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
 FARTHEST = 1e15
@@ -347,6 +343,19 @@ class MechanismPart(Part):
             self.closure, self.driven, self.points, {"up": self.up, "right": self.right}, self.wheel_radius
         )
 
+    def drawn_inputs(self, driven: Collection[str]) -> dict[str, float]:
+        """The values at which inputs are drawn, if these are driven; rad or mm.
+
+        Raises:
+            MechanismError: the hardpoints make no mechanism that these drive.
+        """
+        directions = {"up": self.up, "right": self.right}
+        known = [name for name in self.structure.inputs if name in driven]
+        topology = self.file.topology(self.closure, known, self.points, directions, self.wheel_radius)
+        mechanism = build_mechanism(topology, dict(self.points), directions)
+        coordinates = mechanism.drawn[mechanism.map.unknowns :]
+        return {name: float(value) + 0.0 for name, value in mechanism.input_values(coordinates).items()}
+
     @cached_property
     def freedoms(self) -> int:
         """How many inputs hold the mechanism.
@@ -395,64 +404,6 @@ class MechanismPart(Part):
     def outboard(self) -> NDArray[np.float64]:
         """Unit vector away from the car's middle."""
         return np.array(self.right) * (-1.0 if self.side == "left" else 1.0)
-
-
-class SinePart(Part):
-    """offset + amplitude sin(angular_frequency t + phase)."""
-
-    amplitude: Number
-    angular_frequency: Number
-    phase: Number = 0.0
-    offset: Number = 0.0
-
-
-class TablePart(Part):
-    """A cubic spline through values at increasing times."""
-
-    times: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
-    values: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
-
-    def agree(self) -> None:
-        if len(self.times) != len(self.values):
-            raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
-        if not all(earlier < later for earlier, later in pairwise(self.times)):
-            raise ValueError("times do not increase; allowed: strictly increasing times")
-        if not Table(self.times, self.values).finite:
-            raise ValueError(
-                "the spline through the table is not finite; allowed: smaller values, or times further apart"
-            )
-
-
-class InputPart(Part):
-    """One input over time: exactly one of constant, polynomial (from t^0 up), sine or table.
-
-    A sweep is written as a polynomial before it is one.
-    """
-
-    constant: Number | None = None
-    polynomial: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=1)] | None = None
-    sine: SinePart | None = None
-    table: TablePart | None = None
-
-    def agree(self) -> None:
-        given = [name for name in LAWS if getattr(self, name) is not None]
-        if len(given) != 1:
-            raise ValueError(
-                f"{' and '.join(given) or 'nothing'} given; "
-                f"allowed: exactly one of {', '.join((*LAWS, SWEEP))}"
-            )
-
-    @property
-    def function(self) -> TimeFunction:
-        """The input as a function of time."""
-        if self.constant is not None:
-            return Polynomial((self.constant,))
-        if self.polynomial is not None:
-            return Polynomial(self.polynomial)
-        if self.sine is not None:
-            return Sine(self.sine.amplitude, self.sine.angular_frequency, self.sine.phase, self.sine.offset)
-        assert self.table is not None  # the validator has seen that one is given
-        return Table(self.table.times, self.table.values)
 
 
 class TimePart(Part):
@@ -505,10 +456,12 @@ class Scene(Part):
             content = in_mm(content, _lengths(content.get("mechanism")))
         inputs = content["inputs"]
         if isinstance(inputs, Mapping):
-            swept = [name for name, law in inputs.items() if isinstance(law, Mapping) and SWEEP in law]
-            if swept:
+            if any(map(says_drawn, inputs.values())):
+                values = _drawn_values(content.get("mechanism"), inputs)
+                inputs = {name: with_drawn(law, values.get(name, 0.0)) for name, law in inputs.items()}
+            if any(map(sweeps, inputs.values())):
                 content["time"] = content.get("time", PLAIN_TIME)
-                inputs = {**inputs, **{name: _swept(name, inputs[name], content["time"]) for name in swept}}
+            inputs = {n: swept(law, content.get("time"), ("inputs", n)) for n, law in inputs.items()}
         content["inputs"] = inputs
         return content
 
@@ -571,10 +524,9 @@ class Scene(Part):
         self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():
-            table = law.table
-            if table is not None and not (
-                table.times[0] <= self.time.start and self.time.stop <= table.times[-1]
-            ):
+            for table in law.tables:
+                if table.times[0] <= self.time.start and self.time.stop <= table.times[-1]:
+                    continue
                 raise ValueError(
                     f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s; "
                     f"allowed: all of time, {self.time.start} to {self.time.stop} s"
@@ -688,6 +640,14 @@ class Scene(Part):
         return cls.from_mapping(parsed(read_stream(stream, source), source), source)
 
 
+def _drawn_values(mechanism: object, driven: Collection[str]) -> Mapping[str, float]:
+    """The values at which inputs are drawn; none of what is no mechanism, which is told when it is read."""
+    try:
+        return MechanismPart.checked(mechanism, "scene").drawn_inputs(driven)
+    except (SceneError, MechanismError):
+        return {}
+
+
 def _lengths(mechanism: object) -> tuple[str, ...]:
     """The inputs that are lengths; none of what is no mechanism, which is told when it is read."""
     if not isinstance(mechanism, Mapping):
@@ -702,37 +662,6 @@ def _lengths(mechanism: object) -> tuple[str, ...]:
     structure = file.structures.get(closure) if file is not None and isinstance(closure, str) else None
     inputs = {} if structure is None else structure.inputs
     return tuple(name for name, one in inputs.items() if one.unit == "mm")
-
-
-def _swept(name: str, law: Mapping[str, Any], time: Any) -> dict[str, list[float]]:
-    """From the first number of a sweep at the start to the second at the stop, evenly.
-
-    Raises:
-        TableFault: it is no pair of numbers, or has no time to go through.
-    """
-    place, ends = ("inputs", name, SWEEP), law[SWEEP]
-    if len(law) > 1:
-        others = " and ".join(key for key in law if key != SWEEP)
-        raise TableFault(place, f"stands beside {others}", "one law alone")
-    if not (_numbers(ends) and len(ends) == 2):
-        raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
-    span = [_given_number(time, key) for key in ("start", "stop")]
-    if None in span or span[0] == span[1]:
-        raise TableFault(place, "has no time to go through", "time from a start to a later stop, or no time")
-    (first, last), (start, stop) = (float(end) for end in ends), span
-    slope = (last - first) / (stop - start)
-    return {"polynomial": [first - slope * start, slope]}
-
-
-def _numbers(value: object) -> bool:
-    return isinstance(value, list | tuple) and all(
-        isinstance(each, int | float) and not isinstance(each, bool) and isfinite(each) for each in value
-    )
-
-
-def _given_number(time: Any, key: str) -> Any:
-    value = time.get(key) if isinstance(time, Mapping) else getattr(time, key, None)
-    return value if _numbers([value]) else None
 
 
 def _is_no_part(table: Mapping[str, Any]) -> bool:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction, cosine_and_sine
+from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction, cosine_and_sine
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
@@ -223,6 +223,27 @@ def test_over_a_span_a_law_stays_where_it_says_and_hardly_less(law: TimeFunction
     assert (low <= at_once).all()
     assert (at_once <= high).all()
     assert (high - low <= 1e-12).all()
+
+
+def test_a_sum_has_the_series_of_its_terms_and_stays_where_it_says() -> None:
+    wave, table = Sine(0.3, 7.0, 0.2, 1.5), Table((0.0, 0.4, 0.7, 1.0), (0.0, 1.0, 3.0, 2.0))
+    law = Sum((Polynomial((1.0, -2.0)), wave, table))
+    instants = np.linspace(0.0, 1.0, 33)
+    line = np.zeros((33, 4))
+    line[:, 0], line[:, 1] = 1.0 - 2.0 * instants, -2.0
+    # Two sums of three terms.
+    together = line + wave.series(instants, 3) + table.series(instants, 3)
+    assert (np.abs(law.series(instants, 3) - together) <= 2 * EPS * (np.abs(together) + 60.0)).all()
+    assert law.breaks == table.breaks
+    assert not law.still
+    assert Sum((Polynomial((1.0,)), Polynomial((2.0,)))).still
+    low, high = law.values_over(instants[:-1], instants[1:])
+    inside = instants[:-1, None] + np.linspace(0.0, 1.0, 65) / 32.0
+    values = law.series(inside, 0)[..., 0]
+    assert (values >= low[:, None]).all()
+    assert (values <= high[:, None]).all()
+    # Each term moves by its largest slope in 1/32 s: 2, 0.3 * 7 and at most 20.
+    assert (high - low <= (2.0 + 2.1 + 20.0) / 32.0).all()
 
 
 def test_over_more_than_a_turn_a_sine_reaches_both_its_crests_as_they_are_rounded() -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
-from pointcoord.scene.scene_file import InputPart
+from pointcoord.scene.input_part import InputPart
 from validate.comparison.compare import SMALLEST, Comparison, Outcome
 from validate.formulations.protocol import Accuracy, Solution
 from validate.formulations.registry import formulation

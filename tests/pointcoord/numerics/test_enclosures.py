@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pointcoord.numerics.enclosure import Enclosed, anchored, angle, cross, dot, quotient, root
-from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
+from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
 
 U = 2.0**-53
 NUMBERS = st.floats(-1e3, 1e3, allow_subnormal=False).filter(lambda x: x == 0.0 or abs(x) > 1e-3)
@@ -208,6 +208,7 @@ def test_cosine_and_sine_are_right_to_twice_the_working_precision() -> None:
         Sine(0.37, 5.3, 1.1, 1.6),
         Sine(30.0, 1e4, 0.3),
         Table((0.0, 0.2, 0.5, 1.0), (1.0, 1.2, 0.9, 1.1)),
+        Sum((Polynomial((0.8, 0.25)), Sine(0.37, 5.3, 1.1), Polynomial((-0.8, 1e-9)))),
     ],
 )
 def test_a_law_is_its_own_value_rounded_once_whatever_its_series_gives(law: TimeFunction) -> None:
@@ -233,6 +234,12 @@ def exact_law(law: TimeFunction, t: float, derivative: int) -> mpmath.mpf | Frac
             angle = w * t + mpmath.mpf(law.phase)
             values = (law.offset + a * mpmath.sin(angle), a * w * mpmath.cos(angle))
             return (*values, -a * w * w * mpmath.sin(angle))[derivative]
+    if isinstance(law, Sum):
+        with mpmath.workdps(60):
+            terms = [exact_law(term, t, derivative) for term in law.terms]
+            return sum(
+                x if isinstance(x, mpmath.mpf) else mpmath.mpf(x.numerator) / x.denominator for x in terms
+            )
     factor = (1.0, 1.0, 2.0)[derivative]
     return Fraction(float(law.series(np.array([t]), 2)[0, derivative] * factor))
 

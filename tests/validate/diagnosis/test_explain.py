@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, sweep
 from pointcoord.method import AUTO
-from pointcoord.scene.scene_file import InputPart
+from pointcoord.scene.input_part import InputPart
 from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain, explain_outcome

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pointcoord.scene.scene_file import InputPart, SinePart
+from pointcoord.scene.input_part import InputPart, SinePart
 from validate.formulations.input_rates import rates
 
 EPS = float(np.finfo(float).eps)
@@ -76,3 +76,19 @@ def test_sines_are_rounded_once(wave: SinePart, instants: list[float]) -> None:
             sine, cosine = mpmath.sin(w * t + p), mpmath.cos(w * t + p)
             exact = [wave.offset + a * sine, a * w * cosine, -a * w * w * sine]
             assert row == [float(x) for x in exact]
+
+
+def test_sums_are_rounded_once_although_their_terms_cancel() -> None:
+    wave = SinePart(amplitude=1e3, angular_frequency=3.0, phase=0.5)
+    law = InputPart(sum=(InputPart(sine=wave), InputPart(constant=-1e3), InputPart(polynomial=(0.0, 1e-9))))
+    instants = np.linspace(0.35, 0.36, 40)  # about a crest: 3 t + 0.5 is pi / 2 at 0.357
+    found = rates(law, instants)
+    with mpmath.workdps(60):
+        for row, t in zip(found.tolist(), instants.tolist(), strict=True):
+            angle, slow = mpmath.mpf(3) * t + mpmath.mpf("0.5"), mpmath.mpf(1e-9)
+            swing = 1000 * mpmath.sin(angle)
+            assert row == [
+                float(swing - 1000 + slow * t),
+                float(3000 * mpmath.cos(angle) + slow),
+                float(-9 * swing),
+            ]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, simulate
 from pointcoord.drawing_stands import drawn_inputs
-from pointcoord.scene.scene_file import InputPart
+from pointcoord.scene.input_part import InputPart
 from validate.diagnosis.evidence import Evidence
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import fitted, meant

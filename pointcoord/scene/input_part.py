@@ -1,0 +1,161 @@
+"""An input over time: its law, as a scene writes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+from math import isfinite
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from pointcoord.mechanism.faults import TableFault
+from pointcoord.scene.scene_part import AS_LIST, Number, Part, Place
+from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
+from pointcoord.wording import shown
+
+SUM, SWEEP = "sum", "sweep"
+LAWS = ("constant", "polynomial", "sine", "table", SUM)
+"""The kinds of an input over time; a sweep is written as a polynomial before it is one."""
+DRAWN = "drawn"
+# Of a law that is a table, which of its keys are values of the input.
+VALUES = {"sine": "offset", "table": "values"}
+
+
+class SinePart(Part):
+    """offset + amplitude sin(angular_frequency t + phase)."""
+
+    amplitude: Number
+    angular_frequency: Number
+    phase: Number = 0.0
+    offset: Number = 0.0
+
+
+class TablePart(Part):
+    """A cubic spline through values at increasing times."""
+
+    times: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
+    values: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
+
+    def agree(self) -> None:
+        if len(self.times) != len(self.values):
+            raise ValueError(f"{len(self.times)} times and {len(self.values)} values; allowed: as many")
+        if not all(earlier < later for earlier, later in pairwise(self.times)):
+            raise ValueError("times do not increase; allowed: strictly increasing times")
+        if not Table(self.times, self.values).finite:
+            raise ValueError(
+                "the spline through the table is not finite; allowed: smaller values, or times further apart"
+            )
+
+
+class InputPart(Part):
+    """One input over time: exactly one of constant, polynomial (from t^0 up), sine, table, or sum of such.
+
+    A sweep is written as a polynomial before it is one.
+    """
+
+    constant: Number | None = None
+    polynomial: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=1)] | None = None
+    sine: SinePart | None = None
+    table: TablePart | None = None
+    sum: Annotated[tuple[InputPart, ...], AS_LIST, Field(min_length=1)] | None = None
+
+    def agree(self) -> None:
+        given = [name for name in LAWS if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"{' and '.join(given) or 'nothing'} given; "
+                f"allowed: exactly one of {', '.join((*LAWS, SWEEP))}"
+            )
+
+    @property
+    def function(self) -> TimeFunction:
+        """The input as a function of time."""
+        if self.constant is not None:
+            return Polynomial((self.constant,))
+        if self.polynomial is not None:
+            return Polynomial(self.polynomial)
+        if self.sine is not None:
+            return Sine(self.sine.amplitude, self.sine.angular_frequency, self.sine.phase, self.sine.offset)
+        if self.table is not None:
+            return Table(self.table.times, self.table.values)
+        assert self.sum is not None  # the validator has seen that one is given
+        return Sum(tuple(term.function for term in self.sum))
+
+    @property
+    def tables(self) -> tuple[TablePart, ...]:
+        """The tables that it is made of."""
+        of_terms = (table for term in self.sum or () for table in term.tables)
+        return (*of_terms, *(() if self.table is None else (self.table,)))
+
+
+def sweeps(law: Any) -> bool:
+    """Whether a law as plain data, or a term of it, is a sweep."""
+    return isinstance(law, Mapping) and (SWEEP in law or any(map(sweeps, _terms(law))))
+
+
+def swept(law: Any, time: Any, place: Place) -> Any:
+    """A law as plain data with polynomials for its sweeps: from the first number at the start to the second
+    at the stop, evenly.
+
+    Args:
+        time: of the scene, as plain data. place: of the law in the scene.
+    Raises:
+        TableFault: a sweep is no pair of numbers, or has no time to go through.
+    """
+    if not sweeps(law):
+        return law
+    if SWEEP not in law:
+        terms = enumerate(_terms(law))
+        return {**law, SUM: [swept(term, time, (*place, SUM, i)) for i, term in terms]}
+    place, ends = (*place, SWEEP), law[SWEEP]
+    if len(law) > 1:
+        others = " and ".join(key for key in law if key != SWEEP)
+        raise TableFault(place, f"stands beside {others}", "one law alone")
+    if not (_numbers(ends) and len(ends) == 2):
+        raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
+    span = [_given_number(time, key) for key in ("start", "stop")]
+    if None in span or span[0] == span[1]:
+        raise TableFault(place, "has no time to go through", "time from a start to a later stop, or no time")
+    (first, last), (start, stop) = (float(end) for end in ends), span
+    slope = (last - first) / (stop - start)
+    return {"polynomial": [first - slope * start, slope]}
+
+
+def says_drawn(law: Any) -> bool:
+    """Whether a law as plain data has the drawn value of its input for one of its values."""
+    return bool(with_drawn(law, 0.0) != law)
+
+
+def with_drawn(law: Any, value: float) -> Any:
+    """A law as plain data with a number where it says "drawn": the value at which the input is drawn."""
+    if not isinstance(law, Mapping):
+        return law
+    return {kind: _with_drawn(kind, part, value) for kind, part in law.items()}
+
+
+def _with_drawn(kind: str, part: Any, value: float) -> Any:
+    if isinstance(part, str):
+        return value if part == DRAWN else part
+    if isinstance(part, list | tuple):
+        return [with_drawn(each, value) if kind == SUM else _with_drawn(kind, each, value) for each in part]
+    if isinstance(part, Mapping) and kind in VALUES:
+        key = VALUES[kind]
+        return {**part, key: _with_drawn(key, part[key], value)} if key in part else part
+    return part
+
+
+def _terms(law: Mapping[str, Any]) -> tuple[Any, ...]:
+    terms = law.get(SUM)
+    return tuple(terms) if isinstance(terms, list | tuple) else ()
+
+
+def _numbers(value: object) -> bool:
+    return isinstance(value, list | tuple) and all(
+        isinstance(each, int | float) and not isinstance(each, bool) and isfinite(each) for each in value
+    )
+
+
+def _given_number(time: Any, key: str) -> Any:
+    value = time.get(key) if isinstance(time, Mapping) else getattr(time, key, None)
+    return value if _numbers([value]) else None
