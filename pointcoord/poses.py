@@ -14,19 +14,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import AssemblyError, InputOutOfRange, PointcoordError, UnknownName
 from pointcoord.linkage.chassis import SPREAD, ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.freedoms import locked
 from pointcoord.numerics.rounding import EPS
-from pointcoord.numerics.vectors import lengths
 from pointcoord.patches.domain import Domain, widened
 from pointcoord.patches.flood import Limits, flood_from_drawing
 from pointcoord.patches.lookup import Marked
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import HALVINGS, MOST
 from pointcoord.results.closing import closing
-from pointcoord.results.read_only import ReadOnly
+from pointcoord.results.readout import Laws, Readout
+from pointcoord.results.samples import Channel, Named
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene, require_the_drawn_car, scene_mechanism
 from pointcoord.solve.assembly import assembled, close_drawing
@@ -42,18 +44,19 @@ FEW, WORTH = 200, 2
 PATHS = 256
 
 
-@dataclass(frozen=True)
-class SolvedPoses(ReadOnly):
+@dataclass(frozen=True, repr=False)
+class SolvedPoses(Named):
     """Poses for inputs of shape (...).
 
     Attributes:
-        position: of every point, (..., 3), mm; NaN where there is no pose.
+        numbers: by quantity and name; of points (..., 3), mm, of the car (...). Positions of every point, and
+            the scene's effects as far as they are made of places; NaN where there is no pose.
         bound: how far any coordinate of a point that is solved for may be from the exact assembly, (...), mm;
             infinite where there is no pose. carried_bound: the same of points that ride on a body.
         failures: by place in the flattened inputs, why there is no pose.
     """
 
-    position: Mapping[str, Array]
+    numbers: Mapping[str, Channel]
     bound: Array
     carried_bound: Array
     failures: Mapping[int, PointcoordError]
@@ -70,8 +73,33 @@ class SolvedPoses(ReadOnly):
         return f"<SolvedPoses: {int(self.solved.sum())} within {largest:.2g} mm{failed}>"
 
 
+@dataclass(frozen=True)
+class Unrelated:
+    """Poses of one car in the chassis' frame.
+
+    Attributes:
+        places: of the points that move, (N, points, 3), mm from the mechanism's origin; NaN where there is
+            no pose.
+        bound: proven distance of every coordinate of a solved point to the exact assembly, once the origin
+            is added, (N,), mm, for what the inputs and the drawing mean, infinite where there is none.
+            carried_bound: the same of points that ride on a body.
+        failures: by number, what stopped a pose.
+        y: the coordinates, (N, size), those of the closed drawing where there is no pose; None where a map
+            gave places alone.
+    """
+
+    places: Array
+    bound: Array
+    carried_bound: Array
+    failures: Mapping[int, PointcoordError]
+    y: Array | None
+
+
 def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float | None = None) -> SolvedPoses:
     """Solve a scene's suspension at any inputs, whatever the scene's own laws and instants.
+
+    Inputs that broadcast to two dimensions are a grid, such as travel by rack. Beside positions there are the
+    scene's effects as far as they are made of places, gradients among them.
 
     Every pose is on the branch of the drawing, by proof. For poses in the order of a motion `simulate` is
     quicker, and for very many of one car `kinematic_map`.
@@ -111,42 +139,36 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     wanted = scene.tolerance if tolerance is None else tolerance
     if not (np.isfinite(wanted) and wanted > 0.0):
         raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
-    places, bound, carried_bound, failures = solve_unrelated(mechanism, driving, wanted)
-    unit, moving = float(mechanism.unit), moving_points(topology)
-    local = {
-        name: np.broadcast_to(mechanism.drawing.vectors[name] * unit, (len(bound), 3))
-        for name in topology.chassis
-    }
-    local |= {name: places[:, i] for i, name in enumerate(moving)}
-    added, rounded, spread = _moved(mechanism, flat, local)
-    lost = ~np.isfinite(bound)
-    position = {}
-    for name in topology.points:
-        there = local[name] + added
-        there[lost] = np.nan
-        position[name] = there.reshape(*shape, 3)
+    plan = plan_effects(name for name in scene.effects if EFFECTS[name].derivative == 0)
+    found = solve_unrelated(mechanism, driving, wanted, coordinates=bool(plan.ways))
+    chassis = ChassisMotion.of(mechanism, {})
+    readout = Readout(mechanism, plan, chassis, scene.mechanism.axes)
+    rows = readout.room(len(found.bound))
+    places = readout.places(rows)
+    for i, name in enumerate(moving_points(topology)):
+        places[0, name][...] = found.places[:, i].T
+    farthest = np.max([np.sqrt((place**2).sum(axis=-2)) for place in places.values()], axis=0)
+    laws = {name: [value] for name, value in flat.items() if name in chassis.directions}
+    readout.complete(laws, readout.by_derivative(places), rows, found.y)
+    rows[:, ~np.isfinite(found.bound)] = np.nan
+    rounded, spread = _rounded(chassis, laws, farthest)
     return SolvedPoses(
-        position,
-        (spread * bound + rounded).reshape(shape),
-        (spread * carried_bound + rounded).reshape(shape),
-        dict(sorted(failures.items())),
+        readout.named(np.zeros(len(found.bound)), rows).shaped(shape).numbers,
+        (spread * found.bound + rounded).reshape(shape),
+        (spread * found.carried_bound + rounded).reshape(shape),
+        dict(sorted(found.failures.items())),
     )
 
 
 def solve_unrelated(
-    mechanism: Mechanism, inputs: Mapping[str, Array], tolerance: float
-) -> tuple[Array, Array, Array, dict[int, PointcoordError]]:
+    mechanism: Mechanism, inputs: Mapping[str, Array], tolerance: float, *, coordinates: bool = False
+) -> Unrelated:
     """The poses of one car at any inputs, on the branch of its drawing, in the chassis' frame.
 
     Args:
         inputs: value of each input that drives the linkage, each (N,), rad or mm.
         tolerance: bound that a pose should keep, mm; rounding may leave more.
-    Returns:
-        Places of the points that move, (N, points, 3), mm from the mechanism's origin; NaN where there is no
-        pose. Proven distance of every coordinate of a solved point to the exact assembly, once the origin is
-        added, (N,), mm, for what the inputs and the drawing mean, infinite where there is none; the same of
-        points that ride on a body; and by number what stopped a pose.
-
+        coordinates: whether all coordinates are asked for, which a map does not give.
     Raises:
         AssemblyError: the drawing cannot be closed.
         InputOutOfRange, UnknownName: as `Mechanism.known_series`.
@@ -155,14 +177,15 @@ def solve_unrelated(
     count = len(next(iter(inputs.values())))
     rows = np.full((3 * len(moving_points(mechanism.topology)), count), np.nan)
     bounds = np.full((2, count), np.inf)
+    y = np.tile(closed.y, (count, 1)) if coordinates else None
     rest = np.arange(count)
     # Where some rows are left out of the equations they are looked at pose by pose.
-    if count >= FEW and not mechanism.topology.left_out:
+    if count >= FEW and not coordinates and not mechanism.topology.left_out:
         rest = rest[~_by_patches(mechanism, closed, inputs, tolerance, rows, bounds)]
     failures: dict[int, PointcoordError] = {}
     for low in range(0, len(rest), PATHS):
-        failures |= _by_paths(mechanism, closed, inputs, rest[low : low + PATHS], rows, bounds)
-    return rows.T.reshape(count, -1, 3), bounds[0], bounds[1], failures
+        failures |= _by_paths(mechanism, closed, inputs, rest[low : low + PATHS], rows, bounds, y)
+    return Unrelated(rows.T.reshape(count, -1, 3), bounds[0], bounds[1], failures, y)
 
 
 def _by_patches(
@@ -203,7 +226,13 @@ def _by_patches(
 
 
 def _by_paths(
-    mechanism: Mechanism, closed: Path, inputs: Mapping[str, Array], some: Numbers, rows: Array, bounds: Array
+    mechanism: Mechanism,
+    closed: Path,
+    inputs: Mapping[str, Array],
+    some: Numbers,
+    rows: Array,
+    bounds: Array,
+    y: Array | None,
 ) -> dict[int, PointcoordError]:
     """Put poses into their places that paths of their own lead to; what stops the others, by number."""
     topology, unit = mechanism.topology, float(mechanism.unit)
@@ -217,33 +246,26 @@ def _by_paths(
     own, places = some[done], mechanism.places(pose.y[done])
     rows[:, own] = unit * np.concatenate([places[name] for name in moving_points(topology)], axis=-1).T
     bounds[0, own] = pose.bound[done]
+    if y is not None:
+        y[own] = pose.y[done]
     # Products of the weights and of edges below the mechanism's size round some ten times.
     bounds[1, own] = max(1.0, mechanism.carried_gain) * (pose.bound[done] + 16.0 * EPS * unit)
     return {int(some[place]): error for place, error in stopped.items()}
 
 
-def _moved(
-    mechanism: Mechanism, inputs: Mapping[str, Array], local: dict[str, Array]
-) -> tuple[Array, Array, float]:
-    """Turn points with the chassis, in place; what is then to be added to them.
+def _rounded(chassis: ChassisMotion, laws: Laws, farthest: Array) -> tuple[Array, float]:
+    """What turning points with the chassis and adding to them rounds, (N,), mm; and how many times as far
+    turning makes a coordinate be off.
 
     Args:
-        inputs: values of every input, each (N,). local: points, each (N, 3), mm from the mechanism's origin.
-    Returns:
-        What is added, (N, 3) or (3,), mm; what turning and adding rounds, (N,), mm; and how many times as far
-        turning makes a coordinate be off.
+        farthest: distance of the farthest point from the mechanism's origin, (N,), mm.
     """
-    chassis = ChassisMotion.of(mechanism, {})
-    moving = {name: value for name, value in inputs.items() if name in chassis.directions}
-    shift = sum(chassis.shifts({name: [value] for name, value in moving.items()}), np.zeros(3))
+    shift = sum(chassis.shifts(laws), np.zeros(3))
     rounded = 2.0 * EPS * np.abs(shift).max(axis=-1)
-    centres = [chassis.centres[name] for name in moving if name in chassis.centres]
+    centres = [chassis.centres[name] for name in laws if name in chassis.centres]
     if not centres:
-        return mechanism.origin + shift, rounded, 1.0
-    (turned,) = chassis.turned_by({name: [value] for name, value in moving.items()}, [local])
-    local |= turned
-    farthest = np.max([lengths(place) for place in local.values()], axis=0)
+        return rounded, 1.0
     # A turn takes some 40 roundings of an arm from its centre, which is no longer than this; what it leaves
     # is turned on by those after it.
     arm = farthest + 2.0 * sum(float(np.linalg.norm(centre)) for centre in centres)
-    return mechanism.origin + shift, rounded + 64.0 * EPS * len(centres) * arm, SPREAD
+    return rounded + 64.0 * EPS * len(centres) * arm, SPREAD

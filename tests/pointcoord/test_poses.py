@@ -104,6 +104,37 @@ def test_a_pose_that_cannot_be_says_why_and_has_no_number() -> None:
     assert np.isfinite(found.position["wheel_centre"][:, 0]).all()
 
 
+def test_a_grid_has_the_numbers_of_a_motion_along_each_of_its_lines() -> None:
+    effects = [
+        "velocity",
+        "wheel_angles",
+        "toe",
+        "wheel_travel",
+        "toe_by_travel",
+        "toe_by_rack",
+        "roll_centre",
+    ]
+    base = Scene.load("wheel-travel")
+    travels, racks = np.linspace(-50.0, 50.0, 6), [-90.0, 0.0, 1e3, 45.0]
+    grid = solve_poses(
+        base.model_copy(update={"effects": effects}), {"wheel_travel": travels[:, None], "rack": racks}
+    )
+    # A rack that far out is reached by no tie rod: the other lines are there, and each cell of it says why.
+    assert set(grid.failures) == set(range(2, 24, 4))
+    assert not grid.velocity
+    for column in (0, 1, 3):
+        inputs = {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": racks[column]}}
+        time = {"start": 0.0, "stop": 1.0, "samples": 6}
+        motion = simulate(base.model_copy(update={"effects": effects, "inputs": inputs, "time": time}))
+        bounds = motion.proof(rates=True).proven
+        for quantity in ("wheel", "dimension", "angle_gradient"):
+            for name, number in motion.numbers[quantity].items():
+                found = grid.numbers[quantity][name]
+                assert np.isnan(found[:, 2]).all()
+                # Both come from poses that are within 1e-9 mm of the exact one, here within rounding.
+                assert np.abs(found[:, column] - number).max() <= 2.0 * bounds[quantity][name].max(), name
+
+
 def test_heave_moves_every_point_alike() -> None:
     scene = Scene.load("bounce")
     still = solve_poses(scene, {"arm_angle": 1.6, "rack": 3.0})

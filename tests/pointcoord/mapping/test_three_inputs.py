@@ -95,9 +95,9 @@ def test_unrelated_poses_of_three_inputs_are_the_closed_form_within_their_bounds
     mechanism = tripod()
     pushes = np.random.default_rng(3).uniform(-15.0, 15.0, (2000, 3))
     inputs = {name: pushes[:, i] for i, name in enumerate(mechanism.topology.required_inputs)}
-    places, bound, _, failures = solve_unrelated(mechanism, inputs, 1e-9)
-    assert not failures
-    tip = mechanism.origin + places[:, moving_points(TRIPOD).index("tip")]
+    found = solve_unrelated(mechanism, inputs, 1e-9)
+    assert not found.failures
+    tip = mechanism.origin + found.places[:, moving_points(TRIPOD).index("tip")]
     # The closed form rounds some 50 times in sizes of 300 mm.
-    assert (np.abs(tip - tip_at(pushes)).max(axis=-1) <= bound + 50 * 2.0**-53 * 300.0).all()
-    assert bound.max() <= 1e-9
+    assert (np.abs(tip - tip_at(pushes)).max(axis=-1) <= found.bound + 50 * 2.0**-53 * 300.0).all()
+    assert found.bound.max() <= 1e-9
