@@ -126,13 +126,16 @@ def test_a_grid_has_the_numbers_of_a_motion_along_each_of_its_lines() -> None:
         inputs = {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": racks[column]}}
         time = {"start": 0.0, "stop": 1.0, "samples": 6}
         motion = simulate(base.model_copy(update={"effects": effects, "inputs": inputs, "time": time}))
-        bounds = motion.proof(rates=True).proven
+        proof = motion.proof(rates=True)
+        # A number is off by what its pose is off times its sensitivity: what is proven of the motion's, and
+        # that times as much as the grid's pose is less exact.
+        ratio = 1.0 + grid.carried_bound[:, column].max() / proof.pose_bound.min()
         for quantity in ("wheel", "dimension", "angle_gradient"):
             for name, number in motion.numbers[quantity].items():
                 found = grid.numbers[quantity][name]
                 assert np.isnan(found[:, 2]).all()
-                # Both come from poses that are within 1e-9 mm of the exact one, here within rounding.
-                assert np.abs(found[:, column] - number).max() <= 2.0 * bounds[quantity][name].max(), name
+                off = np.abs(found[:, column] - number).max()
+                assert off <= ratio * proof.proven[quantity][name].max(), name
 
 
 def test_heave_moves_every_point_alike() -> None:
