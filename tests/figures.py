@@ -2,7 +2,7 @@
 
     python tests/figures.py NAME [NAME ...]
 
-Names: agreement, hard, random, bounds, cost, growth, speed, struts, tables.
+Names: agreement, hard, assemblies, random, bounds, cost, growth, speed, struts, tables.
 
 A figure stands in its page between two comments, `<!-- figure NAME -->` and `<!-- end -->`; what is between
 them is replaced, and nothing else is. Long ones (see `FIGURES`) take as long as their command.
@@ -109,6 +109,7 @@ FIGURES = {
         "pointcoord study hard --workers 2 --records {folder}/hard",
         _from(r"[\d,]+ cases, "),
     ),
+    "assemblies": Figure("validate/hard/README.md", "pointcoord hard --assemblies", _from(r"scene ")),
     "random": Figure(
         "validate/studies/README.md",
         "pointcoord study random --count 2000 --workers 2 --records {folder}/random",

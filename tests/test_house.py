@@ -62,6 +62,7 @@ ROOMS = {
         "published",
         "output",
         "ci",
+        "assemblies",
         "hard",
         "testing",
         "cost",

@@ -15,7 +15,9 @@ DESCRIPTION = """\
 Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
 in extreme sizes and rates. Every answer is compared with a reference that is solved in 60
 digits and proven: it must be right within its error bound, or refused with a reason.
-`pointcoord study hard` does the same by several processes or machines, and keeps records."""
+`pointcoord study hard` does the same by several processes or machines, and keeps records.
+With --assemblies the arguments are scenes: all assemblies of their knuckles are counted, complex
+ones too, with the inputs held as drawn, and certified one by one."""
 
 
 def add(commands: Commands) -> None:
@@ -25,6 +27,7 @@ def add(commands: Commands) -> None:
     )
     parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
     parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
+    parser.add_argument("--assemblies", action="store_true", help="count the assemblies of scenes instead")
     add_json(parser, "every trial, or the list,")
     parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
     share(parser, "--report", "--quiet")
@@ -33,6 +36,8 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Try the cases; each is said, and written as JSON, as soon as it is done."""
+    if options.assemblies:
+        return count(options, console)
     # The reference needs packages that the solvers do without.
     from validate.hard import catalogue
     from validate.hard import report as hard_report
@@ -82,4 +87,26 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
             document = head.document(hard_report.results_data(results), ending.status, complete=True)
             ending.status = page.write(Run(head, hard=HardCases.of(document)), console).status
+    return ending.status
+
+
+def count(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Count assemblies; status 3 where two runs do not agree on a scene, or miss the drawing's."""
+    from validate.assemblies import scenes
+
+    refuse(options, ("--list", "--times", "--report"), "is about cases; leave it out with --assemblies")
+    require_results({"--json": options.json}, (), options, console)
+    journal = Journal(options.json, Head.of("assemblies", options.command), console)
+    found: list[scenes.SceneCount] = []
+    names = options.cases or scenes.SHIPPED
+    with (
+        journal.closing(lambda: scenes.data(found), lambda: found, lambda: f"{len(found)} counts") as ending,
+        progress(console, "scenes", total=len(names), lines=False) as working,
+    ):
+        for done, name in enumerate(names, start=1):
+            found.extend(scenes.counts(name))
+            working(f"scenes, {name} done", done)
+        console.show(scenes.parts(found))
+        if not all(one.found for one in found):
+            ending.status = ExitStatus.NO_VERDICT
     return ending.status

@@ -1,0 +1,155 @@
+r"""All isolated solutions of n quadratic forms in n + 1 homogeneous unknowns, by continuation.
+
+The forms x^T Q_r x are reached from c_r ((l_r . x)^2 - (l_0 . x)^2), which have 2^n known solutions, along
+
+    (1 - t) c_r ((l_r . x)^2 - (l_0 . x)^2) + t x^T Q_r x = 0,      t from 0 to 1.
+
+With random lines l and factors c every isolated solution is the end of a path, with probability one
+(Sommese, Wampler, *The Numerical Solution of Systems of Polynomials*, 2005, ch. 8); where solutions form
+curves, the other paths end on these. All paths are followed side by side: Runge's and Kutta's step of order 4
+along the tangent, then Newton's, at right angles to x; a path whose first Newton step is long takes a shorter
+one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+FIRST = 0.01
+# Of a unit vector: a longer first Newton step might lead to another path; a last one is at rounding level.
+NEAR, ARRIVED = 1e-4, 1e-11
+NEWTON, LAST = 3, 5
+# So near to the end a regular solution is a step of Newton's away; a shorter step is that of a path that ends
+# on a curve of solutions.
+END, SHORTEST = 1.0 - 1e-8, 1e-13
+CLOSE = 1e-3
+SINGULAR = 1e9  # condition number at which an end is not told from one on a curve
+MOST = 5000
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """The ends of all paths.
+
+    Attributes:
+        paths: how many there were.
+        ends: regular ones, unit vectors, (ends, n + 1).
+        singular: paths that ended at a solution that is singular or not isolated.
+    """
+
+    paths: int
+    ends: Complex
+    singular: int
+
+
+def solve_quadratic(forms: Array, seed: int = 0) -> Tracked:
+    """Follow all paths to the solutions of n quadratic forms, (n, n + 1, n + 1).
+
+    Args:
+        seed: of the random lines and factors.
+    """
+    random = np.random.default_rng(seed)
+    count = len(forms)
+    lines, x = _start(count, random)
+    squares = lines[:, :, None] * lines[:, None, :]
+    factors = np.exp(2j * np.pi * random.uniform(size=(count, 1, 1)))
+    paths = _Paths(forms.astype(complex), factors * (squares[1:] - squares[0]))
+    t, step, good = np.zeros(len(x)), np.full(len(x), FIRST), np.zeros(len(x), dtype=int)
+    active = np.arange(len(x))
+    for _ in range(MOST):
+        if not len(active):
+            break
+        length = np.minimum(step[active], END - t[active])
+        ahead, there = paths.ahead(x[active], t[active], length)
+        moved, stuck = active[there], active[~there]
+        x[moved], t[moved] = ahead[there], t[moved] + length[there]
+        good[moved] += 1
+        step[stuck] *= 0.5
+        good[stuck] = 0
+        grown = moved[good[moved] >= 2]
+        step[grown] *= 2.0
+        good[grown] = 0
+        active = active[(t[active] < END) & (step[active] > SHORTEST)]
+    arrived = paths.ends(x[t >= END])
+    return Tracked(len(x), arrived, len(x) - len(arrived))
+
+
+def _start(count: int, random: np.random.Generator) -> tuple[Complex, Complex]:
+    """Orthonormal lines l, (n + 1, n + 1), and the solutions l_r . x = +-l_0 . x of unit length."""
+    shape = (count + 1, count + 1)
+    lines, _ = np.linalg.qr(random.normal(size=shape) + 1j * random.normal(size=shape))
+    signs = 1.0 - 2.0 * ((np.arange(2**count)[:, None] >> np.arange(count)) & 1)
+    values = np.concatenate([np.ones((2**count, 1)), signs], axis=1) / np.sqrt(count + 1.0)
+    return lines, values @ lines.conj()
+
+
+@dataclass(frozen=True)
+class _Paths:
+    """The forms at both ends, (n, n + 1, n + 1) each."""
+
+    goal: Complex
+    start: Complex
+
+    def at(self, x: Complex, t: Array) -> tuple[Complex, Complex, Complex]:
+        """Values, (P, n), derivatives by x, (P, n, n + 1), and by t, (P, n), of points (P, n + 1)."""
+        goal, start = (np.einsum("rij,pj->pri", forms, x) for forms in (self.goal, self.start))
+        part = t[:, None, None]
+        row = part * goal + (1.0 - part) * start
+        value, change = (np.einsum("pri,pi->pr", rows, x) for rows in (row, goal - start))
+        return value, 2.0 * row, change
+
+    def ahead(self, x: Complex, t: Array, step: Array) -> tuple[Complex, NDArray[np.bool_]]:
+        """Unit vectors a step further, and which of them have arrived there."""
+        along = step[:, None]
+        with np.errstate(all="ignore"):
+            first = self._tangent(x, t, x)
+            second = self._tangent(x + 0.5 * along * first, t + 0.5 * step, x)
+            third = self._tangent(x + 0.5 * along * second, t + 0.5 * step, x)
+            fourth = self._tangent(x + along * third, t + step, x)
+            y = x + along * (first + 2.0 * second + 2.0 * third + fourth) / 6.0
+            y, sizes = self._newton(y, t + step, x, NEWTON)
+            there = (sizes[0] < NEAR) & (sizes[-1] < ARRIVED)
+            return y / np.linalg.norm(y, axis=1, keepdims=True), there
+
+    def ends(self, x: Complex) -> Complex:
+        """The regular solutions at t = 1 that Newton's method leads to from near it."""
+        one = np.ones(len(x))
+        with np.errstate(all="ignore"):
+            y, sizes = self._newton(x, one, x, LAST)
+            _, rows, _ = self.at(y, one)
+            condition = np.linalg.cond(_bordered(rows, x))
+            regular = (sizes[0] < CLOSE) & (condition < SINGULAR)
+            return np.asarray((y / np.linalg.norm(y, axis=1, keepdims=True))[regular])
+
+    def _newton(self, y: Complex, t: Array, normal: Complex, steps: int) -> tuple[Complex, list[Array]]:
+        sizes = []
+        for _ in range(steps):
+            value, rows, _ = self.at(y, t)
+            change = _solved(rows, normal, -value)
+            y = y + change
+            sizes.append(np.linalg.norm(change, axis=1) / np.linalg.norm(y, axis=1))
+        return y, sizes
+
+    def _tangent(self, x: Complex, t: Array, normal: Complex) -> Complex:
+        _, rows, change = self.at(x, t)
+        return _solved(rows, normal, -change)
+
+
+def _bordered(rows: Complex, normal: Complex) -> Complex:
+    return np.concatenate([rows, normal.conj()[:, None, :]], axis=1)
+
+
+def _solved(rows: Complex, normal: Complex, values: Complex) -> Complex:
+    """The d at right angles to a vector with rows d = values; no number where that is singular."""
+    matrix = _bordered(rows, normal)
+    right = np.concatenate([values, np.zeros((len(values), 1))], axis=1)
+    usable = np.isfinite(matrix).all(axis=(1, 2)) & (np.linalg.det(matrix) != 0.0)
+    matrix[~usable] = np.eye(matrix.shape[-1])
+    right[~usable] = np.nan
+    return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
