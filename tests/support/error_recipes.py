@@ -25,6 +25,7 @@ from pointcoord.effects.rigid import body_rates
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
+from validate.assemblies.legs import forms
 from validate.ci.baseline import read_baseline
 from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
@@ -501,6 +502,10 @@ RECIPES: dict[str, Recipe] = {
     "validate.errors.UsageError: a hard case": Recipe(
         lambda *_: chosen(["arm-higest"]),
         ("no hard case is called 'arm-higest'", "near names: ", "--list"),
+    ),
+    "validate.assemblies.legs.NotOnLegsError": Recipe(
+        lambda *_: forms({"roles": {}}, {}),
+        ("names no knuckle", "whose role is not given"),
     ),
     "validate.reference.errors.NoReferenceError": Recipe(
         lambda *_: solve_car(

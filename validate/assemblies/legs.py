@@ -36,7 +36,7 @@ def forms(mechanism: Mapping[str, Any], places: Mapping[str, Array]) -> Array:
     """
     knuckle = mechanism["roles"].get("knuckle")
     if knuckle is None:
-        raise NotOnLegsError("the mechanism names no knuckle")
+        raise NotOnLegsError("the mechanism names no knuckle, whose role is not given")
     body = mechanism["bodies"][knuckle]
     # About the middle of the knuckle, in its size, numbers are of order one.
     middle = np.mean([places[name] for name in body], axis=0)
