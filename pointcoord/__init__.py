@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from pointcoord.scene.scene_file import Scene, built_in_scenes
     from pointcoord.simulation import simulate
     from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
+    from pointcoord.sweeping.sensitivity import Sensitivity, sensitivity
     from pointcoord.sweeping.sweep import sweep, sweep_blocks
     from pointcoord.sweeping.swept import Sweep
 
@@ -63,6 +64,7 @@ __all__ = [
     "Samples",
     "Scene",
     "SceneError",
+    "Sensitivity",
     "SingularConfiguration",
     "SolvedPoses",
     "Standing",
@@ -75,6 +77,7 @@ __all__ = [
     "designs_of_scenes",
     "grid_of",
     "kinematic_map",
+    "sensitivity",
     "simulate",
     "solve_poses",
     "standing",
@@ -89,6 +92,7 @@ _MODULES = {
     "Motion": "results.motion",
     "Samples": "results.samples",
     "Scene": "scene.scene_file",
+    "Sensitivity": "sweeping.sensitivity",
     "SolvedPoses": "poses",
     "Standing": "drawing_stands",
     "Sweep": "sweeping.swept",
@@ -97,6 +101,7 @@ _MODULES = {
     "designs_of_scenes": "sweeping.designs",
     "grid_of": "sweeping.designs",
     "kinematic_map": "mapping.kinematic_map",
+    "sensitivity": "sweeping.sensitivity",
     "simulate": "simulation",
     "solve_poses": "poses",
     "standing": "drawing_stands",

@@ -1,0 +1,87 @@
+"""Derivatives by hardpoints: laws that hold of any car, and another model's differences."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene, SweepError, UnknownName, sensitivity
+from validate.formulations.registry import formulation
+
+Array = NDArray[np.float64]
+
+TIME = {"start": 0.0, "stop": 0.4, "samples": 3}
+CARS = ("double-wishbone", "off-axis-strut", "five-link", "pushrod")
+
+
+def car(name: str, *effects: str) -> Scene:
+    return Scene.load(name).model_copy(update={"time": TIME, "effects": effects or ("wheel_angles", "toe")})
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_moved_as_a_whole_a_car_changes_no_angle(name: str) -> None:
+    """The derivatives by one axis of all points add up to that of the whole car."""
+    found = sensitivity(car(name, "camber", "toe"))
+    assert not found.failures
+    for number, derivatives in found.derivatives.items():
+        for axis in "xyz":
+            ours = [i for i, one in enumerate(found.coordinates) if one.endswith(f".{axis}")]
+            # An angle is rounded to some 1e-15, twice over steps of half a millimetre, for each point.
+            left = np.abs(derivatives[ours].sum(axis=0)).max()
+            assert left <= len(ours) * (2e-14 + 0.1 * found.doubts[number].max()), (number, axis)
+
+
+def test_scaled_about_the_origin_a_car_changes_no_angle_where_its_inputs_are_angles() -> None:
+    """Of x . df/dx over all coordinates: the rack stands still, and the arm's angle is no length."""
+    held = {"arm_angle": {"constant": 1.45}, "rack": {"constant": 0.0}}
+    scene = car("double-wishbone").model_copy(update={"inputs": held})
+    found = sensitivity(scene)
+    places = np.array(
+        [scene.mechanism.points[n.rpartition(".")[0]]["xyz".index(n[-1])] for n in found.coordinates]
+    )
+    for number, derivatives in found.derivatives.items():
+        room = np.abs(places) @ (2e-14 + 0.1 * found.doubts[number])
+        assert (np.abs(places @ derivatives) <= room).all(), number
+
+
+@pytest.mark.parametrize("coordinate", ["upper_ball_joint.y", "tie_rod_outer.z", "wheel_axis_inner.x"])
+def test_another_model_of_the_moved_cars_gives_the_same(coordinate: str) -> None:
+    scene = car("double-wishbone")
+    found = sensitivity(scene, coordinates=[coordinate])
+    point, _, axis = coordinate.rpartition(".")
+    step, values = 0.02, []
+    for sign in (1.0, -1.0):
+        place = list(scene.mechanism.points[point])
+        place["xyz".index(axis)] += sign * step
+        points = {**scene.mechanism.points, point: place}
+        moved = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+        values.append(formulation("absolute").solve(moved).numbers["wheel"])
+    for number, derivatives in found.derivatives.items():
+        middle = (values[0][number] - values[1][number]) / (2.0 * step)
+        # A central difference leaves out f''' h^2 / 6, of angles that change with lengths of 60 mm and more.
+        assert np.abs(derivatives[0] - middle).max() <= step**2 / 60.0**3 + 1e-12, number
+    largest = {number: found.largest(number)[0] for number in found.derivatives}
+    assert max(np.abs(list(largest.values()))) > 1e-4
+
+
+def test_spreads_are_what_independent_coordinates_and_the_worst_of_them_make() -> None:
+    found = sensitivity(car("double-wishbone"), ["camber"])
+    sizes = np.abs(found.derivatives["camber"])
+    deviation, worst = found.spread("camber", 0.5)
+    assert deviation == pytest.approx(0.5 * np.linalg.norm(sizes, axis=0).max(), rel=1e-14)
+    assert worst == pytest.approx(0.5 * sizes.sum(axis=0).max(), rel=1e-14)
+    assert deviation < worst
+
+
+def test_a_rack_that_goes_along_has_no_coordinates_unless_they_are_asked_for() -> None:
+    scene = car("double-wishbone")
+    assert not [name for name in sensitivity(scene).coordinates if name.startswith("rack_centre")]
+    assert sensitivity(scene, coordinates=["rack_centre.z"]).coordinates == ("rack_centre.z",)
+
+
+def test_what_is_not_there_is_refused_by_name() -> None:
+    with pytest.raises(UnknownName, match="cambr"):
+        sensitivity(car("double-wishbone"), ["cambr"])
+    with pytest.raises(UnknownName, match="uper_ball_joint"):
+        sensitivity(car("double-wishbone"), coordinates=["uper_ball_joint"])
+    with pytest.raises(SweepError, match="give no number of the car"):
+        sensitivity(car("double-wishbone", "velocity"))
