@@ -40,6 +40,7 @@ from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.slopes import ByInput
 from pointcoord.numerics.double_double import PAIRS, two_sum
 from pointcoord.numerics.enclosed_rows import differences, twice_polar
 from pointcoord.numerics.enclosure import Enclosed, anchored, cross
@@ -75,7 +76,7 @@ class EnclosedPoses:
     in_chassis: Points
     added: Sequence[Enclosed]
     powers: Sequence[Array]
-    slopes: Mapping[str, tuple[Points, Points]] = field(default_factory=dict)
+    slopes: Mapping[ByInput, tuple[Points, Points]] = field(default_factory=dict)
 
     def reported(self, name: str, derivative: int) -> Enclosed:
         """What is reported of a point, or of its time derivative, (N, 3), mm per s^d."""

@@ -17,7 +17,8 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import input_slopes
+from pointcoord.linkage.slopes import ByInput, input_slopes
+from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.vectors import LAST, NEXT
@@ -42,9 +43,8 @@ LONGEST = 400
 class Bounded(Protocol):
     """Something that reports numbers and knows how far they are off."""
 
-    @property
-    def way(self) -> str:
-        """Along which way it takes derivatives by an input; empty if it takes none."""
+    def ways(self, topology: Topology) -> tuple[ByInput, ...]:
+        """Along which ways it takes derivatives by an input."""
         ...
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> Numbers:
@@ -207,7 +207,7 @@ def _with_rates(
     unsolved = together(reported.solved.unsolved(times)).max(axis=1)
     coordinates = enclosed_coordinates(mechanism, poses, computed, unsolved, cut)
     exact = _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
-    ways = dict.fromkeys(effect.way for effect in reported.effects if effect.way)
+    ways = dict.fromkeys(way for effect in reported.effects for way in effect.ways(mechanism.topology))
     slopes = {way: _slopes(mechanism, poses, y, laws, reported.chassis, unsolved, way) for way in ways}
     return poses, replace(exact, slopes=slopes)
 
@@ -219,16 +219,17 @@ def _slopes(
     laws: Laws,
     chassis: ChassisMotion,
     unsolved: Array,
-    way: str,
+    way: ByInput,
 ) -> tuple[Points, Points]:
     """The derivatives of places by the input of a way: as rates where it alone moves, by 1 a unit of time."""
-    (name, *_) = (*mechanism.topology.driven_along(way), "")
     known = {}
     for place, drive in _drives(mechanism).items():
         value = laws[drive.input][0]
-        rate, still = (value.like(np.full(value.middle.shape, float(r))) for r in (drive.input == name, 0.0))
+        rate, still = (
+            value.like(np.full(value.middle.shape, float(r))) for r in (drive.input == way.input, 0.0)
+        )
         known[place] = drive.enclosed((value, rate, still), mechanism.drawing)[1]
-    computed = poses.groups.together(input_slopes(mechanism, y, name))
+    computed = poses.groups.together(input_slopes(mechanism, y, way.input))
     slopes = with_known(computed, mechanism.map.unknowns, known)
     coordinates = enclosed_coordinates(mechanism, poses, [slopes], unsolved, ())
     places = enclosed_points(mechanism, coordinates)

@@ -5,6 +5,8 @@ With y = [u, w] and the known coordinates w(q) of an input q, C(y) = 0 gives C_u
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +16,13 @@ from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import implicit_rate
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ByInput:
+    """The way that a mechanism goes by one input, rad or mm; nowhere by none."""
+
+    input: str
 
 
 def input_slopes(mechanism: Mechanism, y: Array, name: str) -> Array:

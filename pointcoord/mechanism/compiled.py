@@ -243,9 +243,11 @@ class _Compiler:
                 constraints += rows
                 drives += own
         constraints += self._chassis_lines()
-        roles = structure.roles
-        knuckle = roles.get("knuckle", "")
-        body = self.triangles.get(knuckle) if isinstance(knuckle, str) else None
+        knuckles = {
+            role: str(body) for role, body in structure.roles.items() if role.rpartition(".")[2] == "knuckle"
+        }
+        roles = {role: (who,) if isinstance(who, str) else who for role, who in structure.roles.items()}
+        roles |= {role: self.triangles[body] for role, body in knuckles.items()}
         along = {name: one["along"] for name, one in structure.inputs.items() if one.kind == "moves"}
         turns = {
             name: (one["along"], one["about"])
@@ -272,26 +274,18 @@ class _Compiler:
             name=structure.name,
             chassis=tuple(chassis),
             moving=moving,
-            bodies={str(knuckle): body} if body else {},
+            bodies={body: self.triangles[body] for body in knuckles.values()},
             carried=carried,
             directions=tuple(directions),
             constraints=tuple(constraints),
             drives=tuple(drives),
-            knuckle=str(knuckle),
-            steering_axis=self._pair("steering_axis"),
-            damper=self._pair("damper"),
-            wheel_axis=self._pair("wheel_axis"),
-            inboard=str(roles.get("inboard", "")),
-            front_and_rear=self._pair("front_and_rear"),
+            roles=roles,
+            sides=structure.sides,
             stand_ins=structure.stand_ins,
             chassis_motion=along,
             chassis_turns=turns,
             puts_in_place=puts_in_place,
         )
-
-    def _pair(self, role: str) -> tuple[str, ...]:
-        who = self.structure.roles.get(role, ())
-        return () if isinstance(who, str) else who
 
     @property
     def travels(self) -> dict[str, str]:

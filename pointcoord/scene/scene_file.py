@@ -517,7 +517,9 @@ class Scene(Part):
     def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
         for name in effects:
             if name not in EFFECTS:
-                givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
+                givers = [
+                    effect.name for effect in EFFECTS.values() if name.rpartition(".")[2] in effect.own_names
+                ]
                 hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
                 allowed = [name for name, effect in EFFECTS.items() if not effect.base]
                 raise ValueError(
