@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.linkage.slopes import ByInput
+from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -175,7 +175,7 @@ class CarNumbers(Effect):
         """That of the numbers."""
         return self.numbers[0].way
 
-    def ways(self, topology: Topology) -> tuple[ByInput, ...]:
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
         """That of each wheel."""
         return tuple(wheel.way(self.way) for wheel in self._wheels(topology) if self.way)
 
@@ -214,16 +214,14 @@ class CarNumbers(Effect):
         unit = float(poses.mechanism.unit)
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [
-                self._moving(enclosed_corner(poses, wheel), poses.slopes, _no_slope) for wheel in wheels
-            ]
+            corners = [self._moving(enclosed_corner(poses, wheel), poses.slopes, still) for wheel in wheels]
             for number in self.numbers:
                 quantity, name = number.quantity.name, prefix + number.name
                 found[quantity][name] = number.errors(corners, numbers[quantity][name], unit)
         return found
 
     def _moving(
-        self, corner: Corner[Any], slopes: Mapping[ByInput, Any], zero: Callable[[Any], Any]
+        self, corner: Corner[Any], slopes: Mapping[Way, Any], zero: Callable[[Any], Any]
     ) -> Corner[Any]:
         """A corner with the derivatives along its wheel's way, if the numbers take any."""
         return corner.moving(slopes[corner.seen.of.way(self.way)], zero) if self.way else corner
@@ -305,5 +303,6 @@ def enclosed_corner(poses: EnclosedPoses, wheel: Wheel) -> Corner[Enclosed]:
     return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin, car)
 
 
-def _no_slope(part: Enclosed) -> Enclosed:
+def still(part: Enclosed) -> Enclosed:
+    """The slope of what has no derivative."""
     return Enclosed.of(np.zeros_like(part.middle))

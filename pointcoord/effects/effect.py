@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import ByInput
+from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ class Poses:
         added: by time derivative, what reporting adds to every point: the user's origin and what the chassis
             does, (..., N, 3), mm per s^d; None where that is zero.
         slopes: by way, the derivatives of positions along it, after the turns of the chassis and before,
-            (N, 3), mm per rad or mm; of the ways that effects take.
+            (N, 3), mm per rad, mm or unit; of the ways that effects take.
     """
 
     mechanism: Mechanism
@@ -73,7 +73,7 @@ class Poses:
     states: Sequence[Mapping[str, Array]]
     in_chassis: Mapping[str, Array]
     added: Sequence[Array | None]
-    slopes: Mapping[ByInput, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
+    slopes: Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -115,10 +115,10 @@ class Effect(ABC):
 
     @property
     def way(self) -> str:
-        """By what inputs it takes the derivatives of positions, of each wheel; empty if it takes none."""
+        """Along what it takes derivatives of positions, of each wheel; empty if it takes none."""
         return ""
 
-    def ways(self, topology: Topology) -> tuple[ByInput, ...]:
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
         """The ways along which it takes them, of every wheel."""
         return ()
 

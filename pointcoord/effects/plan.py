@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.errors import UnknownName
-from pointcoord.linkage.slopes import ByInput
+from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 
 
@@ -40,11 +40,11 @@ class Plan:
         return max(effect.derivative for effect in self.computed)
 
     @property
-    def by_inputs(self) -> bool:
-        """Whether derivatives of positions by an input are solved for."""
+    def along_ways(self) -> bool:
+        """Whether derivatives of positions along ways are solved for."""
         return any(effect.way for effect in self.computed)
 
-    def ways(self, topology: Topology) -> tuple[ByInput, ...]:
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
         """The ways along which they are."""
         return tuple(dict.fromkeys(way for effect in self.computed for way in effect.ways(topology)))
 

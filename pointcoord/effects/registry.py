@@ -17,6 +17,7 @@ from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.instant_centres import INSTANT_CENTRES
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
+from pointcoord.effects.loads import LOADS
 from pointcoord.effects.position import POSITION
 from pointcoord.effects.roll_centre import ROLL_CENTRE
 from pointcoord.effects.steer_angle import STEER_ANGLE
@@ -44,6 +45,7 @@ EFFECTS: Mapping[str, Effect] = {
         ANTI_FEATURES,
         AXLE,
         ACKERMANN,
+        LOADS,
     )
 }
 """What a scene may list, by name."""

@@ -32,6 +32,8 @@ class CarAxes:
         wheel_radius: mm; None where the scene has none.
         car: what the scene says of the whole car, by name: lengths in mm, shares, and of its axle -1 at the
             front and +1 at the rear.
+        loads: by part, or by an empty name, the force, N, and the moment, N mm, on the wheel at its contact
+            point, along the user's axes, each (3,).
     """
 
     up: Array
@@ -39,6 +41,7 @@ class CarAxes:
     outboard: Array
     wheel_radius: float | None = None
     car: Mapping[str, float] = field(default_factory=dict)
+    loads: Mapping[str, tuple[Array, Array]] = field(default_factory=dict)
 
     def on(self, side: str) -> CarAxes:
         """Those of a wheel on a side of the car; those of this wheel where it is not said."""

@@ -41,6 +41,9 @@ class Topology:
             its two ends; inboard, a point of the chassis that lies nearer the car's middle than the wheel
             centre; knuckle, the points that stand for the body that carries the wheel.
         sides: the side of the car that each part is on, left or right; empty without parts.
+        rods: the two ends of each rod.
+        joints: points that are a ball joint of two bodies and no more, with the points of the body whose
+            force on the other one is asked for; none where that is the chassis.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
         chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
@@ -59,6 +62,8 @@ class Topology:
     drives: tuple[Drive, ...]
     roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     sides: Mapping[str, str] = field(default_factory=dict)
+    rods: Mapping[str, Piece] = field(default_factory=dict)
+    joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)

@@ -281,11 +281,35 @@ class _Compiler:
             drives=tuple(drives),
             roles=roles,
             sides=structure.sides,
+            rods=structure.rods,
+            joints=self._ball_joints(set(knuckles.values())),
             stand_ins=structure.stand_ins,
             chassis_motion=along,
             chassis_turns=turns,
             puts_in_place=puts_in_place,
         )
+
+    def _ball_joints(self, knuckles: Collection[str]) -> dict[str, tuple[str, ...]]:
+        """Points that hold two bodies at each other and nothing else, with those of the body that holds.
+
+        What is held is the knuckle, or the moving body that comes first in the file. Where a rod, a slide or
+        an input takes hold of the point too, nothing says of which of the two halves.
+        """
+        structure = self.structure
+        others = {end for ends in structure.rods.values() for end in ends}
+        others |= {point for slide in structure.slides.values() for point in slide.named}
+        for name in self.driven:
+            one = structure.inputs[name]
+            others |= {*one.named("point")} if one.kind in ("height", "contact", "distance") else set()
+        found = {}
+        for point in structure.points:
+            bodies = structure.bodies_of(point)
+            if len(bodies) != 2 or len(structure.shared(*bodies)) != 1 or point in others:
+                continue
+            held = next((b for b in bodies if b in knuckles), next(b for b in bodies if b != CHASSIS))
+            (holding,) = (b for b in bodies if b != held)
+            found[point] = () if holding == CHASSIS else structure.bodies[holding]
+        return found
 
     @property
     def travels(self) -> dict[str, str]:

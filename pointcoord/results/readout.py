@@ -15,12 +15,12 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import ByInput, input_slopes, point_slopes
+from pointcoord.linkage.slopes import GAP, Way, point_slopes, way_slopes
 from pointcoord.results.samples import Channel, Samples
 from pointcoord.results.table import State, Table, triples, vectors
 
 Array = NDArray[np.float64]
-Slopes = Mapping[ByInput, tuple[Mapping[str, Array], Mapping[str, Array]]]
+Slopes = Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]]
 Laws = Mapping[str, Sequence[Array]]
 """Of inputs that move the chassis the values and their time derivatives, each (N,), mm or rad."""
 States = Sequence[Mapping[str, Array]]
@@ -173,12 +173,14 @@ class Readout:
                         self.table.put(rows, quantity, name, array)
 
     def slopes(self, laws: Laws, y: Array) -> Slopes:
-        """By way, the derivatives of positions by its input, after the turns of the chassis and before."""
-        found = {}
+        """By way, the derivatives of positions along it, after the turns of the chassis and before."""
+        found: dict[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = {}
+        ways = self.plan.ways(self.mechanism.topology)
         held = {name: [law[0], np.zeros_like(law[0])] for name, law in laws.items()}
         places = {name: place * self.mechanism.unit for name, place in self.mechanism.places(y).items()}
-        for way in self.plan.ways(self.mechanism.topology):
-            slopes = point_slopes(self.mechanism, y, input_slopes(self.mechanism, y, way.input))
+        places[GAP] = np.zeros((len(y), 3))
+        for way, slope in zip(ways, way_slopes(self.mechanism, y, ways), strict=True):
+            slopes = point_slopes(self.mechanism, y, slope, way)
             found[way] = self.chassis.turned_by(held, [places, slopes])[1], slopes
         return found
 

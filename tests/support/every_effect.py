@@ -3,8 +3,12 @@
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
 
-OF_A_WHEEL = tuple(name for name, effect in EFFECTS.items() if not getattr(effect, "of_axle", False))
-"""The effects that a mechanism without parts may have."""
+OF_A_WHEEL = tuple(
+    name
+    for name, effect in EFFECTS.items()
+    if (effect.lines or effect.derivative) and not getattr(effect, "of_axle", False)
+)
+"""The effects that a mechanism without parts and loads may have."""
 
 
 def every_effect(name: str) -> Scene:

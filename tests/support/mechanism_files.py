@@ -70,6 +70,7 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
         "side": part.get("side", "left"),
         "wheel_radius": part.get("wheel_radius"),
         "car": dict(part.get("car", {})),
+        "loads": {},
     }
 
 

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from effects_by_hand import BY_HAND, DIGITS, Car, Vector, by_hand, cross, plus
+from every_effect import OF_A_WHEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf, workdps
@@ -39,8 +40,8 @@ DATA = {
     "drive_share": 0.91,
 }
 TIME = 2.0**-3  # s, a unit of time other than a second
-# Those of a wheel; what two wheels make is in test_axles.
-EVERY = {e.name: e for e in (*ALWAYS, *EFFECTS.values()) if not (isinstance(e, CarNumbers) and e.of_axle)}
+# What two wheels make is in test_axles, and what loads do in test_loads.
+EVERY = {effect.name: effect for effect in (*ALWAYS, *(EFFECTS[name] for name in OF_A_WHEEL))}
 each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
 cars = st.sampled_from(["off-axis-strut", "pushrod"])

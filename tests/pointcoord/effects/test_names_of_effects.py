@@ -36,7 +36,12 @@ NAMES = {
     *EFFECTS,
     *(quantity.name for effect in EFFECTS.values() for quantity in effect.quantities),
     *(name for effect in EFFECTS.values() for name in effect.own_names),
-} - {*PAIR_ROLES, "travel", "axle"}  # what a mechanism calls its parts, effects of them may be called too
+} - {
+    *PAIR_ROLES,
+    "travel",
+    "axle",
+    "loads",
+}  # what a mechanism calls its parts, effects of them may be called too
 
 
 def named(text: str) -> Iterator[str]:
