@@ -531,8 +531,9 @@ def _missing_numbers(solved: SolvedScene, samples: Samples) -> tuple[str, ...]:
     notes, count = [], len(samples.times)
     for effect in solved.readout.plan.computed:
         why = f": {effect.no_number}" if effect.no_number else ""
-        for channel in (samples.numbers[quantity] for quantity in effect.gives_numbers):
-            for name in effect.names or channel:
+        for quantity, names in effect.gives_numbers(solved.readout.mechanism.topology).items():
+            channel = samples.numbers[quantity]
+            for name in channel if names is None else names:
                 known = np.isfinite(channel[name])
                 if not known.all():
                     bad = count - np.count_nonzero(known.reshape(count, -1).all(axis=-1))

@@ -40,6 +40,7 @@ from pointcoord.bounds.certified_poses import CertifiedPoses
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.slopes import Way
 from pointcoord.numerics.double_double import PAIRS, two_sum
 from pointcoord.numerics.enclosed_rows import differences, twice_polar
 from pointcoord.numerics.enclosure import Enclosed, anchored, cross
@@ -65,8 +66,8 @@ class EnclosedPoses:
         in_chassis: places before these turns.
         added: by time derivative, what reporting a point adds to it, (N, 3), mm and s.
         powers: of the unit of time, s^d for d = 0, 1, 2, each (N,).
-        slopes: by way, the derivatives of places by its input, after the turns of the chassis and before, in
-            units per rad or mm; of the ways that effects take.
+        slopes: by way, the derivatives of places along it, after the turns of the chassis and before, in
+            units per rad, mm or unit; of the ways that effects take.
     """
 
     mechanism: Mechanism
@@ -75,7 +76,7 @@ class EnclosedPoses:
     in_chassis: Points
     added: Sequence[Enclosed]
     powers: Sequence[Array]
-    slopes: Mapping[str, tuple[Points, Points]] = field(default_factory=dict)
+    slopes: Mapping[Way, tuple[Points, Points]] = field(default_factory=dict)
 
     def reported(self, name: str, derivative: int) -> Enclosed:
         """What is reported of a point, or of its time derivative, (N, 3), mm per s^d."""
@@ -89,6 +90,7 @@ def enclosed_coordinates(
     rates: Sequence[Enclosed],
     unsolved: Array,
     cut: Sequence[Array],
+    opened: tuple[Array, Array] | None = None,
 ) -> list[Enclosed]:
     """The exact coordinates y* and as many of their derivatives as were solved for, each (G, m, size).
 
@@ -97,6 +99,7 @@ def enclosed_coordinates(
             unit of time^d.
         unsolved: how far from its assembly a pose of each group was left on purpose, (G,).
         cut: by derivative, what its series leaves out on purpose, (G, size); empty if there is none.
+        opened: rates at which some rows read coordinates to move beside, (size,), and 1 for these rows.
     """
     system, n = mechanism.map, mechanism.map.unknowns
     certificate, magnitude, pose = poses.certificate, np.abs(poses.factors.preconditioner), poses.pose
@@ -113,6 +116,9 @@ def enclosed_coordinates(
     for derivative, computed in enumerate(rates, 1):
         edges.append(differences(system, result[-1]))
         rest = twice_polar(system, edges[0], differences(system, computed))
+        if opened is not None:
+            beside = twice_polar(system, edges[0], differences(system, Enclosed.of(opened[0])))
+            rest = rest + beside.scaled(opened[1])
         if derivative == 2:
             rest = rest + twice_polar(system, edges[1], edges[1])
         result.append(_corrected(computed, rest, poses, spoilt))

@@ -17,7 +17,8 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import input_slopes
+from pointcoord.linkage.slopes import GAP, ByGap, ByInput, Way, shifted, way_slopes
+from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.vectors import LAST, NEXT
@@ -42,9 +43,8 @@ LONGEST = 400
 class Bounded(Protocol):
     """Something that reports numbers and knows how far they are off."""
 
-    @property
-    def way(self) -> str:
-        """Along which way it takes derivatives by an input; empty if it takes none."""
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
+        """Along which ways it takes derivatives of places."""
         ...
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> Numbers:
@@ -207,31 +207,43 @@ def _with_rates(
     unsolved = together(reported.solved.unsolved(times)).max(axis=1)
     coordinates = enclosed_coordinates(mechanism, poses, computed, unsolved, cut)
     exact = _enclosed(mechanism, reported, coordinates, laws, [p[:, None] for p in powers])
-    ways = dict.fromkeys(effect.way for effect in reported.effects if effect.way)
-    slopes = {way: _slopes(mechanism, poses, y, laws, reported.chassis, unsolved, way) for way in ways}
+    every = (way for effect in reported.effects for way in effect.ways(mechanism.topology))
+    ways = tuple(dict.fromkeys(every))
+    slopes = {
+        way: _slopes(mechanism, poses, slope, laws, reported.chassis, unsolved, way)
+        for way, slope in zip(ways, way_slopes(mechanism, y, ways), strict=True)
+    }
     return poses, replace(exact, slopes=slopes)
 
 
 def _slopes(
     mechanism: Mechanism,
     poses: CertifiedPoses,
-    y: Array,
+    slopes: Array,
     laws: Laws,
     chassis: ChassisMotion,
     unsolved: Array,
-    way: str,
+    way: Way,
 ) -> tuple[Points, Points]:
-    """The derivatives of places by the input of a way: as rates where it alone moves, by 1 a unit of time."""
-    (name, *_) = (*mechanism.topology.driven_along(way), "")
-    known = {}
-    for place, drive in _drives(mechanism).items():
+    """The derivatives of places along a way: as rates where it alone moves, by 1 a unit of time.
+
+    Args:
+        slopes: the computed ones of y, (N, size).
+    """
+    known, driven = {}, way.input if isinstance(way, ByInput) else ""
+    for place, drive in _drives(mechanism).items() if driven else ():
         value = laws[drive.input][0]
-        rate, still = (value.like(np.full(value.middle.shape, float(r))) for r in (drive.input == name, 0.0))
+        rate, still = (
+            value.like(np.full(value.middle.shape, float(r))) for r in (drive.input == driven, 0.0)
+        )
         known[place] = drive.enclosed((value, rate, still), mechanism.drawing)[1]
-    computed = poses.groups.together(input_slopes(mechanism, y, name))
-    slopes = with_known(computed, mechanism.map.unknowns, known)
-    coordinates = enclosed_coordinates(mechanism, poses, [slopes], unsolved, ())
+    rates = [with_known(poses.groups.together(slopes), mechanism.map.unknowns, known)]
+    opened = shifted(mechanism.topology, way) if isinstance(way, ByGap) else None
+    coordinates = enclosed_coordinates(mechanism, poses, rates, unsolved, (), opened)
     places = enclosed_points(mechanism, coordinates)
+    if isinstance(way, ByGap):
+        for points, gap in zip(places, (np.zeros(3), np.eye(3)[way.axis]), strict=True):
+            points[GAP] = Enclosed.of(np.broadcast_to(gap, (len(slopes), 3))).together(poses.groups.together)
     values = {n: laws[n][0] for n in chassis.turning}
     held = {n: [value, value.like(np.zeros(value.middle.shape))] for n, value in values.items()}
     return chassis.turned_exactly(held, places, float(mechanism.unit))[1], places[1]

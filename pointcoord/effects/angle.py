@@ -7,7 +7,7 @@ as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import S, angle
-from pointcoord.effects.corner import Corner, View
+from pointcoord.effects.corner import Corner, View, Wheel
 from pointcoord.effects.effect import Doubt, Point, Quantity
 from pointcoord.errors import UnknownName
 from pointcoord.linkage.car_axes import CarAxes, Direction
@@ -62,11 +62,11 @@ class Angle:
     @property
     def lengthwise(self) -> bool:
         """Whether it is measured from the front or the rear."""
-        return not {"forward", "rearward"}.isdisjoint((self.sine, self.cosine))
+        return not {"forward", "rearward", "to_the_left"}.isdisjoint((self.sine, self.cosine))
 
-    def ends(self, topology: Topology) -> tuple[str, str]:
+    def ends(self, wheel: Wheel | Topology) -> tuple[str, str]:
         """The two points that the line runs through."""
-        ends = topology.role(self.line)
+        ends = wheel.role(self.line)
         if not ends:
             raise UnknownName("role", self.line, ())
         start, end = ends
@@ -74,11 +74,11 @@ class Angle:
 
     def formula(self, corner: Corner[S]) -> S:
         """atan2(line . sine, line . cosine)."""
-        return angle(*self._parts(corner.seen))
+        return angle(*self.parts(corner.seen))
 
-    def _parts(self, view: View[S]) -> tuple[S, S]:
-        start, end = self.ends(view.topology)
-        line = view.points[end] - view.points[start]
+    def parts(self, view: View[S]) -> tuple[S, S]:
+        """What it is the angle of: line . sine and line . cosine."""
+        line = view.line(*self.ends(view.of))
         return view.along(line, self.sine), view.along(line, self.cosine)
 
     def value(self, start: Array, end: Array, axes: CarAxes) -> Array:
@@ -86,14 +86,15 @@ class Angle:
         line = end - start
         return angle(axes.component(line, self.sine), axes.component(line, self.cosine))
 
-    def errors(self, corner: Corner[Enclosed], found: Array, unit: float) -> Array:
+    def errors(self, corners: Sequence[Corner[Enclosed]], found: Array, unit: float) -> Array:
         """From the exact components of the line along the two directions, a whole turn apart or not."""
-        return angle_error(*self._parts(corner.seen), found)
+        (corner,) = corners
+        return angle_error(*self.parts(corner.seen), found)
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+    def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
         """A line has no direction where the point that stands in for one of its own lies on the other."""
-        start, end = self.ends(topology)
-        own = _missing(topology, start)
+        start, end = self.ends(wheel)
+        own = _missing(wheel.topology, start)
         if not (own and drawn[start] == drawn[end]):
             return ""
         return (
@@ -102,7 +103,7 @@ class Angle:
         )
 
     def doubt(
-        self, topology: Topology, drawn: Mapping[str, Array], axes: CarAxes, told: NDArray[np.bool_]
+        self, wheel: Wheel, drawn: Mapping[str, Array], axes: CarAxes, told: NDArray[np.bool_]
     ) -> Doubt:
         """That it is steeper in drawings than in any car.
 
@@ -110,8 +111,8 @@ class Angle:
             drawn: the points, each (..., 3), mm.
             told: the drawings in which its line was already found to be misdrawn.
         """
-        start, end = self.ends(topology)
-        limit = self.steepest_by_default if _missing(topology, start) else self.steepest
+        start, end = self.ends(wheel)
+        limit = self.steepest_by_default if _missing(wheel.topology, start) else self.steepest
         degrees = np.degrees(self.value(drawn[start], drawn[end], axes))
 
         def words(member: tuple[int, ...]) -> str:

@@ -30,7 +30,7 @@ def anti_brake(corner: Corner[Dual[Any]]) -> Any:
 def anti_drive(corner: Corner[Dual[Any]]) -> Any:
     """By that of the wheel centre."""
     view = corner.seen
-    return _carried(corner, "drive_share", view.points[view.topology.wheel_centre].slope)
+    return _carried(corner, "drive_share", view.points[view.of.centre].slope)
 
 
 def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:

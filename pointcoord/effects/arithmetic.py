@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics import enclosure, vectors
 from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 P = TypeVar("P", Array, Enclosed)
@@ -94,6 +95,26 @@ def ratio(x: S, y: S) -> S:
         return enclosure.quotient(x, y)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(x / y)
+
+
+def arctangent(x: P) -> P:
+    """atan(x), rad."""
+    return enclosure.angle(x, Enclosed.of(1.0)) if isinstance(x, Enclosed) else np.asarray(np.arctan(x))
+
+
+def positive(x: P) -> NDArray[np.bool_]:
+    """Where a number is above 0."""
+    return np.asarray((x.middle if isinstance(x, Enclosed) else x) > 0.0)
+
+
+def chosen(where: NDArray[np.bool_], one: P, other: P) -> P:
+    """One number where something holds, and another elsewhere."""
+    if not isinstance(one, Enclosed):
+        return np.asarray(np.where(where, one, other))
+    # Each has radii of its own then, and both middles are rounded.
+    apart = [Enclosed.of(x.middle, 0.0, *(x.radius + 2.0 * UNIT_ROUNDOFF * x.size)) for x in (one, other)]
+    parts = zip(*(part.parts for part in apart), strict=True)
+    return Enclosed(*(np.where(where, *both) for both in parts))
 
 
 def angle(sine: S, cosine: S) -> S:

@@ -9,16 +9,17 @@ travel of a slide steer; the other one moves the wheel up and down. The other in
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.corner import Corner, View
+from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
 
@@ -62,19 +63,19 @@ class CarNumber(Protocol):
     @property
     def way(self) -> str: ...
 
-    def formula(self, corner: Corner[Any], /) -> Any:
+    def formula(self, *corners: Any) -> Any:
         """The number, in whichever arithmetic the points are; lengths in their unit."""
         ...
 
-    def errors(self, corner: Corner[Any], found: Array, unit: float) -> Array:
+    def errors(self, corners: Sequence[Corner[Any]], found: Array, unit: float) -> Array:
         """Proven and expected error of a value that was found, (2, N).
 
         Args:
-            unit: of the corner's lengths, a power of two, mm.
+            unit: of the corners' lengths, a power of two, mm.
         """
         ...
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+    def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
         """Why a drawing that has its roles does not have it, in words; empty if it does."""
         ...
 
@@ -86,7 +87,7 @@ class Number:
     Attributes:
         name: in results and files. words: for people.
         sign: where it is positive, in words; empty of what is never negative.
-        formula: what it is; lengths in the unit of the points.
+        formula: what it is of a corner, or of the left and the right one; lengths in the unit of the points.
         roles: of the mechanism, whose points it is made of. needs_radius: whether of the wheel's radius too.
         quantity: the kind of number that it is.
         data: what it is made of beside, of what the scene says of the car.
@@ -97,7 +98,7 @@ class Number:
     name: str
     words: str
     sign: str
-    formula: Callable[[Corner[Any]], Any]
+    formula: Callable[..., Any]
     roles: tuple[str, ...] = ("wheel_axis",)
     needs_radius: bool = True
     quantity: Quantity = DIMENSION
@@ -105,50 +106,78 @@ class Number:
     way: str = ""
     power: int = 1
 
-    def errors(self, corner: Corner[Any], found: Array, unit: float) -> Array:
+    def errors(self, corners: Sequence[Corner[Any]], found: Array, unit: float) -> Array:
         """From where it exactly is."""
-        exact: Enclosed = self.formula(corner)
+        exact: Enclosed = self.formula(*corners)
         return exact.scaled(unit**self.power).errors(found)
 
-    def refusal(self, topology: Topology, drawn: Mapping[str, Point]) -> str:
+    def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
         """None."""
         return ""
 
 
 @dataclass(frozen=True)
 class CarNumbers(Effect):
-    """Some numbers of the car, of one quantity and along one way if any.
+    """Some numbers of the car, along one way if any: of each wheel, or of the two of an axle together.
 
     Attributes:
         numbers: what they are.
         base: the effect whose numbers' gradients they are; empty if they are none.
         nowhere: where else than where the wheel does not travel there is no number, in words.
+        of_axle: whether their formulas take two wheels, the left one and the right one.
     """
 
     numbers: tuple[CarNumber, ...]
     base: str = ""
     nowhere: str = ""
+    of_axle: bool = False
 
     @classmethod
-    def of(cls, name: str, gives: str, *numbers: CarNumber, base: str = "", nowhere: str = "") -> CarNumbers:
+    def of(
+        cls,
+        name: str,
+        gives: str,
+        *numbers: CarNumber,
+        base: str = "",
+        nowhere: str = "",
+        of_axle: bool = False,
+    ) -> CarNumbers:
         """The effect that gives some numbers."""
         signs = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
-        return cls(name, gives, signs, 0, (numbers[0].quantity,), numbers, base, nowhere)
+        quantities = tuple({number.quantity.name: number.quantity for number in numbers}.values())
+        return cls(name, gives, signs, 0, quantities, numbers, base, nowhere, of_axle)
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def own_names(self) -> tuple[str, ...]:
         """The names of the numbers."""
         return tuple(number.name for number in self.numbers)
 
+    def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
+        """The names of the numbers, with the prefix of each wheel's part."""
+        prefixes = [prefix for prefix, _ in self._subjects(topology)]
+        return {
+            quantity.name: tuple(
+                prefix + number.name
+                for number in self.numbers
+                for prefix in prefixes
+                if number.quantity is quantity
+            )
+            for quantity in self.quantities
+        }
+
     @property
     def lines(self) -> tuple[str, ...]:
-        """The axes that they are seen on."""
+        """The roles that they are made of."""
         return tuple(dict.fromkeys(role for number in self.numbers for role in number.roles))
 
     @property
     def way(self) -> str:
         """That of the numbers."""
         return self.numbers[0].way
+
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
+        """That of each wheel."""
+        return tuple(wheel.way(self.way) for wheel in self._wheels(topology) if self.way)
 
     @property
     def no_number(self) -> str:
@@ -158,63 +187,93 @@ class CarNumbers(Effect):
 
     def needs(self, topology: Topology) -> Collection[str]:
         """The points of their roles."""
-        return {point for role in self.lines for point in topology.role(role)}
+        return {p for wheel in self._wheels(topology) for role in self.lines for p in wheel.role(role)}
+
+    def _subjects(self, topology: Topology) -> list[tuple[str, tuple[Wheel, ...]]]:
+        """The wheels that a formula takes at once, with the prefix of what it gives."""
+        wheels = wheels_of(topology, self.lines)
+        if not self.of_axle:
+            return [(wheel.prefix, (wheel,)) for wheel in wheels]
+        pair = sorted((wheel for wheel in wheels if wheel.part), key=lambda wheel: wheel.side)
+        return [("", tuple(pair))] if [wheel.side for wheel in pair] == ["left", "right"] else []
+
+    def _wheels(self, topology: Topology) -> list[Wheel]:
+        return [wheel for _, wheels in self._subjects(topology) for wheel in wheels]
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Each number, (..., N)."""
-        corner: Corner[Any] = corner_of(poses)
-        if self.way:
-            corner = corner.moving(poses.slopes[self.way], np.zeros_like)
-        return {self.quantities[0].name: {number.name: number.formula(corner) for number in self.numbers}}
+        found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
+        for prefix, wheels in self._subjects(poses.mechanism.topology):
+            corners = [self._moving(corner_of(poses, wheel), poses.slopes, np.zeros_like) for wheel in wheels]
+            for number in self.numbers:
+                found[number.quantity.name][prefix + number.name] = number.formula(*corners)
+        return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Of each number by itself."""
-        corner: Corner[Any] = enclosed_corner(poses)
-        if self.way:
-            corner = corner.moving(poses.slopes[self.way], _no_slope)
-        unit, quantity = float(poses.mechanism.unit), self.quantities[0].name
-        found = numbers[quantity]
-        return {quantity: {n.name: n.errors(corner, found[n.name], unit) for n in self.numbers}}
+        unit = float(poses.mechanism.unit)
+        found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
+        for prefix, wheels in self._subjects(poses.mechanism.topology):
+            corners = [self._moving(enclosed_corner(poses, wheel), poses.slopes, still) for wheel in wheels]
+            for number in self.numbers:
+                quantity, name = number.quantity.name, prefix + number.name
+                found[quantity][name] = number.errors(corners, numbers[quantity][name], unit)
+        return found
+
+    def _moving(
+        self, corner: Corner[Any], slopes: Mapping[Way, Any], zero: Callable[[Any], Any]
+    ) -> Corner[Any]:
+        """A corner with the derivatives along its wheel's way, if the numbers take any."""
+        return corner.moving(slopes[corner.seen.of.way(self.way)], zero) if self.way else corner
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
-        for role in self.lines:
-            if not topology.role(role):
-                return no_role(self.name, role, topology)
+        or_leave_out = f"or leave {self.name!r} out"
+        wheels = self._wheels(topology)
+        if not wheels and self.of_axle:
+            return (
+                f"{self.name!r} needs two parts on opposite sides of the car with the roles "
+                f"{' and '.join(self.lines)}, and the mechanism {topology.name!r} does not have them; "
+                f"take one of an axle, {or_leave_out}"
+            )
+        if not wheels:
+            return no_role(self.name, next(r for r in self.lines if not wheels_of(topology, [r])), topology)
         if axes.wheel_radius is None and any(number.needs_radius for number in self.numbers):
             return (
                 f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
-                f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
+                f"give it in mm under [mechanism], such as wheel_radius = 300.0, {or_leave_out}"
             )
         data = dict.fromkeys(name for number in self.numbers for name in number.data)
         if missing := [name for name in data if name not in axes.car]:
             lines = ", ".join(f"{name} = {SUCH_AS[name]}" for name in missing)
             return (
                 f"{self.name!r} needs of the car what the scene does not say: {', '.join(missing)}; give it "
-                f"under [mechanism.car], such as {lines}, or leave {self.name!r} out"
+                f"under [mechanism.car], such as {lines}, {or_leave_out}"
             )
-        for number in self.numbers:
-            problem = number.refusal(topology, drawn)
-            if problem:
-                return f"{problem}, or leave {self.name!r} out"
-        driven = topology.driven_along(self.way) if self.way else ("",)
-        if len(driven) == 1:
-            return ""
-        return (
-            f"{self.name!r} needs exactly one driven input that {KINDS[self.way]}, and there is "
-            f"{', '.join(driven) or 'none'}; drive the mechanism by one, such as wheel travel and rack, or "
-            f"leave {self.name!r} out"
-        )
+        for wheel in wheels:
+            for number in self.numbers:
+                problem = number.refusal(wheel, drawn)
+                if problem:
+                    return f"{problem}, {or_leave_out}"
+            driven = wheel.driven(self.way) if self.way else ("",)
+            if len(driven) != 1:
+                of = f" of the {wheel.part} wheel" if wheel.part else ""
+                return (
+                    f"{self.name!r} needs exactly one driven input{of} that {KINDS[self.way]}, and there is "
+                    f"{', '.join(driven) or 'none'}; drive the mechanism by one, such as wheel travel and "
+                    f"rack, {or_leave_out}"
+                )
+        return ""
 
 
-def corner_of(poses: Poses) -> Corner[Array]:
-    """The wheel of poses, mm."""
-    axes, mechanism = poses.axes, poses.mechanism
+def corner_of(poses: Poses, wheel: Wheel) -> Corner[Array]:
+    """A wheel of poses, mm."""
+    axes, mechanism = poses.axes.on(wheel.side), poses.mechanism
     radius = np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius)
     shape = next(iter(poses.states[0].values())).ndim
 
     def view(points: Mapping[str, Array]) -> View[Array]:
-        return View(mechanism.topology, points, axes.component, axes.up, axes.outboard, radius)
+        return View(wheel, points, axes.component, axes.up, axes.outboard, radius)
 
     drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
     car = {name: np.array(number) for name, number in axes.car.items()}
@@ -227,22 +286,23 @@ def _beside(place: Array, dimensions: int) -> Array:
     return place.reshape(*place.shape[:-1], *(1,) * more, 3)
 
 
-def enclosed_corner(poses: EnclosedPoses) -> Corner[Enclosed]:
-    """The wheel of poses where it exactly is, in units."""
-    axes, mechanism = poses.axes, poses.mechanism
+def enclosed_corner(poses: EnclosedPoses, wheel: Wheel) -> Corner[Enclosed]:
+    """A wheel of poses where it exactly is, in units."""
+    axes, mechanism = poses.axes.on(wheel.side), poses.mechanism
+    unit = float(mechanism.unit)
     up, outboard = Enclosed.of(axes.up), Enclosed.of(axes.outboard)
-    radius = Enclosed.of(np.nan if axes.wheel_radius is None else axes.wheel_radius / float(mechanism.unit))
+    radius = Enclosed.of(np.nan if axes.wheel_radius is None else axes.wheel_radius / unit)
 
     def view(points: Mapping[str, Enclosed]) -> View[Enclosed]:
-        return View(mechanism.topology, points, axes.enclosed, up, outboard, radius)
+        return View(wheel, points, axes.enclosed, up, outboard, radius)
 
     vectors = mechanism.drawing.vectors
     drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
-    origin = Enclosed.of(mechanism.origin / float(mechanism.unit))
-    unit = float(mechanism.unit)
+    origin = Enclosed.of(mechanism.origin / unit)
     car = {n: Enclosed.of(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
     return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin, car)
 
 
-def _no_slope(part: Enclosed) -> Enclosed:
+def still(part: Enclosed) -> Enclosed:
+    """The slope of what has no derivative."""
     return Enclosed.of(np.zeros_like(part.middle))

@@ -1,14 +1,60 @@
-"""One wheel of a car as effects see it: its lines, and its contact point."""
+"""One wheel of a car as effects see it: its roles, its lines, and its contact point."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic
 
 from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root, times
 from pointcoord.linkage.car_axes import Direction
+from pointcoord.linkage.slopes import ByInput
 from pointcoord.linkage.topology import Topology
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """One wheel of a mechanism: of all of it, or of a part, whose names begin with the part's and a dot.
+
+    Attributes:
+        part: its name; empty for the whole mechanism.
+    """
+
+    topology: Topology
+    part: str = ""
+
+    @property
+    def prefix(self) -> str:
+        """What its names begin with."""
+        return f"{self.part}." if self.part else ""
+
+    @property
+    def side(self) -> str:
+        """The side of the car that the part is on; empty for the whole mechanism, whose scene says it."""
+        return self.topology.sides.get(self.part, "")
+
+    @property
+    def centre(self) -> str:
+        """The wheel centre."""
+        return self.role("wheel_axis")[1]
+
+    def role(self, name: str) -> tuple[str, ...]:
+        """The points of a role; empty without such a role."""
+        return self.topology.role(self.prefix + name)
+
+    def driven(self, way: str) -> tuple[str, ...]:
+        """The driven inputs that move it along a way."""
+        return self.topology.driven_along(way, self.part)
+
+    def way(self, way: str) -> ByInput:
+        """The way by the one input of these; by none where the part that is solved for has none."""
+        return ByInput("".join(self.driven(way)[:1]))
+
+
+def wheels_of(topology: Topology, roles: Iterable[str]) -> tuple[Wheel, ...]:
+    """The wheels of a mechanism that have all of some roles."""
+    wheels = (Wheel(topology, part) for part in ("", *topology.sides))
+    return tuple(wheel for wheel in wheels if all(map(wheel.role, roles)))
 
 
 @dataclass(frozen=True)
@@ -16,19 +62,23 @@ class View(Generic[S]):
     """The points of a wheel, seen along the car's directions.
 
     Attributes:
-        topology: whose roles name the points.
+        of: the wheel, whose roles name the points.
         points: places, as vectors.
         along: the component of a vector along a direction.
         up, outboard: these directions, as vectors.
         radius: of the wheel.
     """
 
-    topology: Topology
+    of: Wheel
     points: Mapping[str, S]
     along: Callable[[S, Direction], S]
     up: S
     outboard: S
     radius: S
+
+    def role(self, name: str) -> S:
+        """The vector from the first point of a role to its second."""
+        return self.line(*self.of.role(name)[:2])
 
     def line(self, start: str, end: str) -> S:
         """The vector from one point to another."""
@@ -37,8 +87,11 @@ class View(Generic[S]):
     @property
     def spin(self) -> S:
         """The wheel's spin axis a, from its inner point to the wheel centre."""
-        inner, centre = self.topology.wheel_axis
-        return self.line(inner, centre)
+        return self.role("wheel_axis")
+
+    def contact_place(self) -> S:
+        """Where the contact point is."""
+        return self.points[self.of.centre] + self.contact()
 
     def contact(self) -> S:
         """From the wheel centre to the lowest point of a thin disc about the spin axis.
@@ -97,7 +150,7 @@ class Corner(Generic[S]):
                 return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
 
             up, outboard, radius = (still(part) for part in (view.up, view.outboard, view.radius))
-            return View(view.topology, points, along, up, outboard, radius)
+            return View(view.of, points, along, up, outboard, radius)
 
         def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
             return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
@@ -109,5 +162,5 @@ class Corner(Generic[S]):
 
 
 def _moved(view: View[S], drawn: View[S]) -> S:
-    centre = view.topology.wheel_centre
+    centre = view.of.centre
     return view.points[centre] - drawn.points[centre]

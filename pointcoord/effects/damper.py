@@ -9,7 +9,7 @@ from pointcoord.effects.corner import Corner
 
 def damper_length(corner: Corner[S]) -> S:
     """The distance of the damper's two ends."""
-    line = corner.seen.line(*corner.seen.topology.damper)
+    line = corner.seen.role("damper")
     return root(dot(line, line))
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
@@ -63,8 +64,8 @@ class Poses:
         in_chassis: the positions before these turns; the same where nothing turns.
         added: by time derivative, what reporting adds to every point: the user's origin and what the chassis
             does, (..., N, 3), mm per s^d; None where that is zero.
-        slopes: by way, the derivatives of positions by its input, after the turns of the chassis and before,
-            (N, 3), mm per rad or mm; of the ways that effects take.
+        slopes: by way, the derivatives of positions along it, after the turns of the chassis and before,
+            (N, 3), mm per rad, mm or unit; of the ways that effects take.
     """
 
     mechanism: Mechanism
@@ -72,7 +73,7 @@ class Poses:
     states: Sequence[Mapping[str, Array]]
     in_chassis: Mapping[str, Array]
     added: Sequence[Array | None]
-    slopes: Mapping[str, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
+    slopes: Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -94,14 +95,18 @@ class Effect(ABC):
     quantities: tuple[Quantity, ...]
 
     @property
-    def names(self) -> tuple[str, ...] | None:
-        """What it gives of each quantity, by name; None for every point or every body."""
-        return None
+    def own_names(self) -> tuple[str, ...]:
+        """The names of what it gives of the car, of one wheel; empty of points and bodies."""
+        return ()
 
-    @property
-    def gives_numbers(self) -> Mapping[str, tuple[str, ...] | None]:
-        """By quantity, the names that it gives; None for every point or every body."""
-        return {quantity.name: self.names for quantity in self.quantities}
+    def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...] | None]:
+        """By quantity, the names that it gives of a mechanism; None for every point or every body."""
+        return {quantity.name: self.own_names or None for quantity in self.quantities}
+
+    def names(self, topology: Topology) -> tuple[str, ...]:
+        """The names of what it gives of the car, of every wheel."""
+        numbers = self.gives_numbers(topology)
+        return tuple(n for q in self.quantities if q.of == "car" for n in numbers[q.name] or ())
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -110,8 +115,12 @@ class Effect(ABC):
 
     @property
     def way(self) -> str:
-        """Along which way it takes the derivative of positions by an input; empty if it takes none."""
+        """Along what it takes derivatives of positions, of each wheel; empty if it takes none."""
         return ""
+
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
+        """The ways along which it takes them, of every wheel."""
+        return ()
 
     @property
     def base(self) -> str:

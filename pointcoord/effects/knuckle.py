@@ -15,20 +15,19 @@ from pointcoord.linkage.car_axes import Direction
 
 def contact_place(corner: Corner[Dual[Any]]) -> Any:
     """Where the contact point is."""
-    view = corner.seen
-    return view.points[view.topology.wheel_centre].value + view.contact().value
+    return corner.seen.contact_place().value
 
 
 def velocity_at(corner: Corner[Dual[Any]], place: Any) -> Any:
     """The derivative of the point of the knuckle that is at a place."""
-    base = corner.seen.points[corner.seen.topology.role("knuckle")[0]]
+    base = corner.seen.points[corner.seen.of.role("knuckle")[0]]
     return base.slope + turning_of(corner, place - base.value)
 
 
 def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
     """The derivative of a vector that is fixed in the knuckle."""
     view = corner.seen
-    base, first, second = (view.points[name] for name in view.topology.role("knuckle")[:3])
+    base, first, second = (view.points[name] for name in view.of.role("knuckle")[:3])
     e1, e2 = first - base, second - base
     normal = cross(e1, e2)
     n = normal.value

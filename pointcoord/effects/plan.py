@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.errors import UnknownName
+from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 
 
@@ -39,9 +40,13 @@ class Plan:
         return max(effect.derivative for effect in self.computed)
 
     @property
-    def ways(self) -> tuple[str, ...]:
-        """The ways along which derivatives of positions by an input are solved for."""
-        return tuple(dict.fromkeys(effect.way for effect in self.computed if effect.way))
+    def along_ways(self) -> bool:
+        """Whether derivatives of positions along ways are solved for."""
+        return any(effect.way for effect in self.computed)
+
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
+        """The ways along which they are."""
+        return tuple(dict.fromkeys(way for effect in self.computed for way in effect.ways(topology)))
 
     def reported(self, topology: Topology) -> tuple[str, ...]:
         """The points whose states are reported, in the topology's order."""

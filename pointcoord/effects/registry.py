@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pointcoord.effects.acceleration import ACCELERATION
+from pointcoord.effects.ackermann import ACKERMANN
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.anti_features import ANTI_FEATURES
+from pointcoord.effects.axle import AXLE
 from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
 from pointcoord.effects.caster import CASTER
@@ -15,8 +17,10 @@ from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.instant_centres import INSTANT_CENTRES
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
+from pointcoord.effects.loads import LOADS
 from pointcoord.effects.position import POSITION
 from pointcoord.effects.roll_centre import ROLL_CENTRE
+from pointcoord.effects.steer_angle import STEER_ANGLE
 from pointcoord.effects.steering_axis import STEERING_AXIS
 from pointcoord.effects.toe import TOE
 from pointcoord.effects.velocity import VELOCITY
@@ -26,7 +30,7 @@ from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 ALWAYS: tuple[Effect, ...] = (POSITION,)
 """What every motion reports."""
 
-_ANGLES_AND_DIMENSIONS = (CAMBER, WHEEL_ANGLES, TOE, CASTER, WHEEL_TRAVEL, STEERING_AXIS, DAMPER)
+_ANGLES_AND_DIMENSIONS = (CAMBER, WHEEL_ANGLES, TOE, STEER_ANGLE, CASTER, WHEEL_TRAVEL, STEERING_AXIS, DAMPER)
 
 EFFECTS: Mapping[str, Effect] = {
     effect.name: effect
@@ -39,6 +43,9 @@ EFFECTS: Mapping[str, Effect] = {
         ROLL_CENTRE,
         INSTANT_CENTRES,
         ANTI_FEATURES,
+        AXLE,
+        ACKERMANN,
+        LOADS,
     )
 }
 """What a scene may list, by name."""
@@ -49,7 +56,19 @@ NUMBERS_OF_THE_CAR: Mapping[str, CarNumber] = {
     if isinstance(effect, CarNumbers)
     for number in effect.numbers
 }
-"""Numbers of a car, by their names."""
+"""Numbers of a car, by their names; of a part's wheel these have its name and a dot before them."""
+
+
+def number_called(name: str) -> CarNumber | None:
+    """The number of the car that has a name, which may be a part's; None if there is none."""
+    return NUMBERS_OF_THE_CAR.get(name.rpartition(".")[2])
+
+
+def words_of(name: str) -> str:
+    """A number of the car for people, with the part that it is of; its name if there is none."""
+    number, part = number_called(name), name.rpartition(".")[0]
+    return f"{part} {number.words}".strip() if number else name
+
 
 READ_FIRST = (
     "travel",
@@ -58,11 +77,18 @@ READ_FIRST = (
     "toe",
     "toe_by_travel",
     "toe_by_rack",
+    "steer_angle",
+    "ackermann",
+    "ackermann_error",
+    "turning_radius",
     "caster",
     "kingpin",
     "half_track_change",
     "recession",
     "roll_centre_height",
+    "track",
+    "axle_roll_centre_height",
+    "axle_roll_centre_offset",
     "front_view_swing_arm",
     "side_view_swing_arm",
     "anti_brake",

@@ -18,13 +18,14 @@ ROLES = ("steering_axis", "wheel_axis")
 def _axis_at(corner: Corner[S], height: S) -> S:
     """From the wheel centre to the axis at a height above its lower point."""
     view = corner.seen
-    axis = view.line(*view.topology.steering_axis)
+    axis = view.role("steering_axis")
     return _lower(corner) + times(ratio(height, view.along(axis, "up")), axis)
 
 
 def _lower(corner: Corner[S]) -> S:
     """From the wheel centre to the axis' lower point."""
-    return corner.seen.line(corner.seen.topology.wheel_centre, corner.seen.topology.steering_axis[0])
+    wheel = corner.seen.of
+    return corner.seen.line(wheel.centre, wheel.role("steering_axis")[0])
 
 
 def _at_ground(corner: Corner[S]) -> S:

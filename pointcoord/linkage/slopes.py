@@ -1,39 +1,125 @@
-"""How the points of poses move by one input, the others and the chassis held: the implicit function theorem.
+r"""How poses move along a way, what else is known being held: the implicit function theorem.
 
-With y = [u, w] and the known coordinates w(q) of an input q, C(y) = 0 gives C_u u_q = -C_w w_q.
+With y = [u, w] and the known coordinates w(q), C(y) = 0 gives C_u u_q = -C_w w_q. A way is by an input, by a
+length that a constraint keeps, or by a gap: one half of a ball joint, the point as some of the rows read it,
+moves from the other. Of these rows R a gap adds the derivative by the point, C_u u_q = -R C_p.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.linkage.carried_points import carried_series
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import implicit_rate
 
 Array = NDArray[np.float64]
 
-
-def input_slopes(mechanism: Mechanism, y: Array, name: str) -> Array:
-    """dy/dq at poses y, (N, size), in units per rad or mm; zero of an input that moves nothing here."""
-    unknowns, inputs = mechanism.map.unknowns, mechanism.topology.required_inputs
-    if name not in inputs:
-        return np.zeros_like(y)
-    values = mechanism.input_values(y[:, unknowns:])
-    series = {
-        one: np.stack([value, np.full_like(value, one == name)], axis=-1) for one, value in values.items()
-    }
-    known = mechanism.known_series(series)[:, 1]
-    return implicit_rate(mechanism.map, factorise(mechanism.map.jacobian(y)), y, known, 0.0)
+GAP = "gap"
+"""What the gap itself is called among the points that move along one."""
 
 
-def point_slopes(mechanism: Mechanism, y: Array, slopes: Array) -> dict[str, Array]:
-    """The derivative of every point, (N, 3), mm per rad or mm, from those of the coordinates."""
+@dataclass(frozen=True)
+class ByInput:
+    """By one input, rad or mm; by nothing where it is none of the part that is solved for."""
+
+    input: str
+
+
+@dataclass(frozen=True)
+class ByLength:
+    """By the length of a rod, at any rate."""
+
+    rod: str
+
+
+@dataclass(frozen=True)
+class ByGap:
+    """By the gap of a ball joint, of one unit along an axis: of the half that is not the reported body's.
+
+    A half of the chassis stays, and the other one moves by as much the other way.
+    """
+
+    point: str
+    axis: int
+
+
+Way = ByInput | ByLength | ByGap
+
+
+def way_slopes(mechanism: Mechanism, y: Array, ways: Sequence[Way]) -> list[Array]:
+    """dy/dq along each way at poses y, (N, size), units per rad, mm or unit; zero of what moves nothing."""
+    if not ways:
+        return []
+    factors, found = factorise(mechanism.map.jacobian(y)), []
+    for way in ways:
+        known, (moved, rows) = _known_slopes(mechanism, y, way), shifted(mechanism.topology, way)
+        opened = 2.0 * mechanism.map.polar(y, np.broadcast_to(moved, y.shape)) * rows
+        found.append(implicit_rate(mechanism.map, factors, y, known, opened))
+    return found
+
+
+def _known_slopes(mechanism: Mechanism, y: Array, way: Way) -> Array:
+    """The known coordinates' part of dy/dq, (N, known)."""
+    topology, unknowns = mechanism.topology, mechanism.map.unknowns
+    if isinstance(way, ByInput):
+        if way.input not in topology.required_inputs:
+            return np.zeros_like(y[:, unknowns:])
+        values = mechanism.input_values(y[:, unknowns:])
+        series = {
+            one: np.stack([value, np.full_like(value, one == way.input)], axis=-1)
+            for one, value in values.items()
+        }
+        return mechanism.known_series(series)[:, 1]
+    known = np.zeros_like(y[:, unknowns:])
+    if isinstance(way, ByLength):
+        known[:, length_coordinate(topology, way.rod) - unknowns] = 1.0
+    elif way.point in topology.chassis:
+        known[:, topology.layout.vector(way.point)[way.axis] - unknowns] = 1.0
+    return known
+
+
+def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
+    """Of a gap between moving bodies the coordinates that move, (size,), and 1 for the rows that read so."""
+    layout, system = topology.layout, topology.map
+    moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
+    if isinstance(way, ByGap) and way.point not in topology.chassis:
+        moved[layout.vector(way.point)[way.axis]] = 1.0
+        there = {*topology.moving, *topology.chassis} - {way.point}
+        others = {i for name in topology.joints[way.point] if name in there for i in layout.vector(name)}
+        for numbers in topology.rows_of:
+            read = {i for row in numbers for i in system.reads[row]}
+            if not read.isdisjoint(layout.vector(way.point)) and not read.isdisjoint(others):
+                rows[list(numbers)] = 1.0
+    return moved, rows
+
+
+def length_coordinate(topology: Topology, rod: str) -> int:
+    """The known coordinate that a rod's constraint reads alone: its length in whichever measure."""
+    layout, system, ends = topology.layout, topology.map, {*topology.rods[rod]}
+    first = layout.one + 1 + 3 * (len(layout.chassis) + len(layout.directions))
+    lengths = {i for i in range(first, layout.size) if i not in topology.driven}
+    for constraint, rows in zip(topology.constraints, topology.rows_of, strict=True):
+        own = {i for row in rows for i in system.reads[row]} & lengths
+        if len(own) == 1 and ends in map(set, constraint.segments):
+            return own.pop()
+    raise AssertionError(f"{rod} is in no row")  # every rod is
+
+
+def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dict[str, Array]:
+    """The derivative of every point, (N, 3), mm per rad, mm or unit, from those of the coordinates."""
     layout, topology = mechanism.layout, mechanism.topology
     series = np.stack([y, slopes], axis=-2)
     found = {name: series[..., list(layout.vector(name))] for name in (*topology.chassis, *topology.moving)}
     for name, carriers in topology.carried.items():
         found[name] = carried_series(mechanism.carrier_weights[name], *(found[c] for c in carriers))
-    return {name: each[..., 1, :] * mechanism.unit for name, each in found.items()}
+    moved = {name: each[..., 1, :] * mechanism.unit for name, each in found.items()}
+    if isinstance(way, ByGap):
+        moved[GAP] = np.broadcast_to(np.eye(3)[way.axis] * mechanism.unit, (len(y), 3))
+    return moved

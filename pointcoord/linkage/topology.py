@@ -34,12 +34,16 @@ class Topology:
         directions: unit vectors that the chassis carries.
         constraints: links, slides, rack, driven heights.
         drives: the inputs that drive a coordinate.
-        knuckle: the body that carries the wheel. What follows is empty where a mechanism has no such part.
-        steering_axis: two points of the axis about which the wheel is steered, from the lower one up.
-        wheel_axis: two points of the knuckle on the wheel's spin axis, from the inner one out.
-        front_and_rear: two points of the chassis, of which the first lies ahead of the second.
-        damper: its two ends.
-        inboard: a point of the chassis that lies nearer the car's middle than the wheel centre.
+        roles: the points of each role that the mechanism has, of a part's with the part's name and a dot
+            before it: steering_axis, two points of the axis about which the wheel is steered, from the lower
+            one up; wheel_axis, two points of the knuckle on the wheel's spin axis, from the inner one out;
+            front_and_rear, two points of the chassis, of which the first lies ahead of the second; damper,
+            its two ends; inboard, a point of the chassis that lies nearer the car's middle than the wheel
+            centre; knuckle, the points that stand for the body that carries the wheel.
+        sides: the side of the car that each part is on, left or right; empty without parts.
+        rods: the two ends of each rod.
+        joints: points that are a ball joint of two bodies and no more, with the points of the body whose
+            force on the other one is asked for; none where that is the chassis.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
         chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
@@ -56,12 +60,10 @@ class Topology:
     directions: tuple[str, ...]
     constraints: tuple[Constraint, ...]
     drives: tuple[Drive, ...]
-    knuckle: str = ""
-    steering_axis: tuple[str, ...] = ()
-    wheel_axis: tuple[str, ...] = ()
-    damper: tuple[str, ...] = ()
-    inboard: str = ""
-    front_and_rear: tuple[str, ...] = ()
+    roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    sides: Mapping[str, str] = field(default_factory=dict)
+    rods: Mapping[str, Piece] = field(default_factory=dict)
+    joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)
@@ -88,21 +90,47 @@ class Topology:
         return taken | dict(points)
 
     def role(self, name: str) -> tuple[str, ...]:
-        """The points of wheel_axis, steering_axis, damper or knuckle; empty without such a role."""
-        if name == "knuckle":
-            return self.bodies.get(self.knuckle, ())
-        roles = {"wheel_axis": self.wheel_axis, "steering_axis": self.steering_axis, "damper": self.damper}
-        return roles[name]
+        """The points of a role; empty without such a role."""
+        return self.roles.get(name, ())
+
+    @property
+    def wheel_axis(self) -> tuple[str, ...]:
+        """That role, of a mechanism without parts."""
+        return self.role("wheel_axis")
+
+    @property
+    def steering_axis(self) -> tuple[str, ...]:
+        """That role, of a mechanism without parts."""
+        return self.role("steering_axis")
+
+    @property
+    def front_and_rear(self) -> tuple[str, ...]:
+        """That role, of a mechanism without parts."""
+        return self.role("front_and_rear")
+
+    @property
+    def inboard(self) -> str:
+        """That role, of a mechanism without parts."""
+        return "".join(self.role("inboard"))
 
     @property
     def wheel_centre(self) -> str:
         """The outer point of the wheel's axis; empty without one."""
         return self.wheel_axis[1] if self.wheel_axis else ""
 
-    def driven_along(self, way: str) -> tuple[str, ...]:
-        """The driven inputs that are the travel of a slide, `by_rack`, or those that are not, `by_travel`."""
+    def driven_along(self, way: str, part: str = "") -> tuple[str, ...]:
+        """The driven inputs that are the travel of a slide, `by_rack`, or those that are not, `by_travel`.
+
+        Args:
+            part: whose wheel they move; those of another part are left out.
+        """
         steering = {drive.input for drive in self.drives if drive.pushes}
-        return tuple(name for name in self.required_inputs if (name in steering) == (way == "by_rack"))
+        others = tuple(f"{other}." for other in self.sides if other != part)
+        return tuple(
+            name
+            for name in self.required_inputs
+            if (name in steering) == (way == "by_rack") and not name.startswith(others)
+        )
 
     @cached_property
     def required_inputs(self) -> tuple[str, ...]:

@@ -205,6 +205,7 @@ class MechanismFile:
             raise fault_of(error) from None
         title = str(given.get("title") or name)
         parts = {f"{part}.": _part(part, table) for part, table in others.parts.items()}
+        sides = {part: str(table.side) for part, table in others.parts.items()}
         closures = {AS_DRAWN: {}, **others.closures}
         for own in parts.values():
             closures |= {closure: {} for closure in own.closures if closure not in closures}
@@ -212,7 +213,7 @@ class MechanismFile:
         for closure, changes in closures.items():
             changed = {table: {**given.get(table, {}), **entries} for table, entries in changes.items()}
             try:
-                structures[closure] = _closed({**given, **changed}, parts, title, closure)
+                structures[closure] = _closed({**given, **changed}, parts, sides, title, closure)
             except TableFault as fault:
                 if closure == AS_DRAWN or not fault.place:
                     raise
@@ -231,12 +232,16 @@ def _part(part: str, table: _Part) -> MechanismFile:
 
 
 def _closed(
-    tables: Mapping[str, Any], parts: Mapping[str, MechanismFile], name: str, closure: str
+    tables: Mapping[str, Any],
+    parts: Mapping[str, MechanismFile],
+    sides: dict[str, str],
+    name: str,
+    closure: str,
 ) -> Structure:
     """The tables joined with those of the parts, closed alike where they can be, and checked."""
     if "bodies" not in tables and not parts:
         raise TableFault(("bodies",), "this table is missing", "bodies with their points")
-    whole = Structure(name, {CHASSIS: ()}) if parts else Structure(name)
+    whole = Structure(name, {CHASSIS: ()}, sides=sides) if parts else Structure(name)
     for prefix, part in parts.items():
         own = part.structures[closure if closure in part.structures else AS_DRAWN]
         whole = whole.joined(own.prefixed(prefix))

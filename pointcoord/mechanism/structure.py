@@ -276,6 +276,7 @@ class Structure:
         rods: the two ends of each. slides, inputs: by name.
         roles: a name or two of each role that the mechanism has.
         stand_ins: points that a drawing may leave out, each with the one that then stands in for it.
+        sides: the side of the car that each part is on, left or right.
     """
 
     name: str = ""
@@ -285,6 +286,7 @@ class Structure:
     inputs: dict[Name, Annotated[Input, BeforeValidator(_input)]] = field(default_factory=dict)
     roles: Annotated[dict[Name, Any], AfterValidator(_roles)] = field(default_factory=dict)
     stand_ins: dict[Name, Name] = field(default_factory=dict)
+    sides: dict[str, str] = field(default_factory=dict)
 
     @cached_property
     def points(self) -> tuple[str, ...]:
@@ -386,11 +388,12 @@ class Structure:
         return ((body, points) for body, points in self.bodies.items() if body != CHASSIS)
 
     def plain(self, driven: Collection[str]) -> dict[str, Any]:
-        """Bodies, rods, slides, driven inputs and roles as plain data."""
+        """Bodies, rods, slides, driven inputs, roles and the sides of parts as plain data."""
         inputs = {name: one.table for name, one in self.inputs.items() if name in driven}
         slides = {name: vars(slide) for name, slide in self.slides.items()}
         tables = {"bodies": self.bodies, "rods": self.rods, "slides": slides, "inputs": inputs}
-        return {"name": self.name, **_with_lists(tables), "roles": _with_lists(self.roles)}
+        others = {"roles": _with_lists(self.roles), "sides": dict(self.sides)}
+        return {"name": self.name, **_with_lists(tables), **others}
 
 
 def _with_lists(value: Any) -> Any:

@@ -404,7 +404,8 @@ class CloseInstants:
         for low in range(0, len(points), BLOCK):
             here, block = points[low : low + BLOCK], values[:, low : low + BLOCK]
             states, laws = self.solved.states(here, block), readout.laws(here)
-            slopes = readout.slopes(laws, self.solved.coordinates(here, 0)[0]) if readout.plan.ways else {}
+            along_ways = readout.plan.along_ways
+            slopes = readout.slopes(laws, self.solved.coordinates(here, 0)[0]) if along_ways else {}
             readout.compute(states, states[0], readout.added(laws), block, slopes)
         return values[: readout.table.first_still]
 

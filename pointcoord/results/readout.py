@@ -15,12 +15,12 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import input_slopes, point_slopes
+from pointcoord.linkage.slopes import GAP, Way, point_slopes, way_slopes
 from pointcoord.results.samples import Channel, Samples
 from pointcoord.results.table import State, Table, triples, vectors
 
 Array = NDArray[np.float64]
-Slopes = Mapping[str, tuple[Mapping[str, Array], Mapping[str, Array]]]
+Slopes = Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]]
 Laws = Mapping[str, Sequence[Array]]
 """Of inputs that move the chassis the values and their time derivatives, each (N,), mm or rad."""
 States = Sequence[Mapping[str, Array]]
@@ -115,11 +115,12 @@ class Readout:
     @cached_property
     def _missing(self) -> dict[str, tuple[dict[str, tuple[str, ...] | None], tuple[str, ...]]]:
         """By quantity the effects that would give more of it, and points that are not reported."""
-        plan, others = self.plan, [EFFECTS[name] for name in self.plan.left_out]
+        plan, topology = self.plan, self.mechanism.topology
+        others = [(EFFECTS[name], EFFECTS[name].gives_numbers(topology)) for name in plan.left_out]
         reported = {q.name for e in plan.computed if e.reports_states for q in e.quantities}
         return {
             name: (
-                {e.name: e.names for e in others if any(q.name == name for q in e.quantities)},
+                {e.name: gives[name] for e, gives in others if name in gives},
                 plan.unreported if name in reported else (),
             )
             for name in QUANTITIES
@@ -172,13 +173,14 @@ class Readout:
                         self.table.put(rows, quantity, name, array)
 
     def slopes(self, laws: Laws, y: Array) -> Slopes:
-        """By way, the derivatives of positions by its input, after the turns of the chassis and before."""
-        found = {}
+        """By way, the derivatives of positions along it, after the turns of the chassis and before."""
+        found: dict[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = {}
+        ways = self.plan.ways(self.mechanism.topology)
         held = {name: [law[0], np.zeros_like(law[0])] for name, law in laws.items()}
         places = {name: place * self.mechanism.unit for name, place in self.mechanism.places(y).items()}
-        for way in self.plan.ways:
-            (name, *_) = (*self.mechanism.topology.driven_along(way), "")
-            slopes = point_slopes(self.mechanism, y, input_slopes(self.mechanism, y, name))
+        places[GAP] = np.zeros((len(y), 3))
+        for way, slope in zip(ways, way_slopes(self.mechanism, y, ways), strict=True):
+            slopes = point_slopes(self.mechanism, y, slope, way)
             found[way] = self.chassis.turned_by(held, [places, slopes])[1], slopes
         return found
 

@@ -195,7 +195,7 @@ class SolvedScene(ABC):
         """Fill a table at instants that do not decrease."""
         for low in range(0, len(times), BLOCK):
             here, block = times[low : low + BLOCK], rows[..., low : low + BLOCK]
-            y = self.coordinates(here, 0)[0] if self.readout.plan.ways else None
+            y = self.coordinates(here, 0)[0] if self.readout.plan.along_ways else None
             self.readout.complete(self.readout.laws(here), self.states(here, block), block, y)
 
     def proof(self, samples: Samples, *, rates: bool = False, certain: bool = False) -> Proof:

@@ -73,10 +73,11 @@ class Table:
         places: dict[str, dict[str, slice]] = {q.name: {} for e in plan.computed for q in e.quantities}
         computed = tuple(effect for effect in plan.computed if not effect.reports_states)
         for effect in computed:
+            gives = effect.gives_numbers(topology)
             for quantity in effect.quantities:
                 every = points if quantity.of == "point" else tuple(topology.bodies)
-                rows = 1 if quantity.of == "car" else 3
-                those = every if effect.names is None else effect.names
+                rows, names = 1 if quantity.of == "car" else 3, gives[quantity.name]
+                those = every if names is None else names
                 # A number that two effects give is there once.
                 for name in (name for name in those if name not in places[quantity.name]):
                     places[quantity.name][name] = slice(height, height + rows)

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.corner import Wheel, wheels_of
 from pointcoord.effects.effect import Doubt
 from pointcoord.effects.registry import ANGLES
 from pointcoord.linkage.car_axes import CarAxes
@@ -53,17 +54,22 @@ def doubts_of_drawings(topology: Topology, points: Mapping[str, Array], axes: Ca
         *_racks_outboard(topology, points, axes),
         _alone_across(topology, points, axes),
     ]
-    found: dict[str, NDArray[np.bool_]] = {}
-    if topology.wheel_axis:
-        inner, centre = topology.wheel_axis
-        found["wheel_axis"] = axes.component(points[centre] - points[inner], "outboard") <= 0.0
-        words = f"{inner} lies outboard of {centre}, so the spin axis points inboard"
-        doubts.append(Doubt(found["wheel_axis"], lambda one: words))
-    for angle in ANGLES.values():
-        if topology.role(angle.line):
-            told = found.get(angle.line, np.array(False))
-            doubts.append(angle.doubt(topology, points, axes, told))
+    for wheel in wheels_of(topology, ()):
+        doubts += _lines_misdrawn(wheel, points, axes.on(wheel.side))
     return tuple(doubts)
+
+
+def _lines_misdrawn(wheel: Wheel, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
+    """A spin axis that points inboard, and angles that no car has."""
+    inward: dict[str, NDArray[np.bool_]] = {}
+    if wheel.role("wheel_axis"):
+        inner, centre = wheel.role("wheel_axis")
+        inward["wheel_axis"] = axes.component(points[centre] - points[inner], "outboard") <= 0.0
+        words = f"{inner} lies outboard of {centre}, so the spin axis points inboard"
+        yield Doubt(inward["wheel_axis"], lambda one: words)
+    for angle in ANGLES.values():
+        if wheel.role(angle.line):
+            yield angle.doubt(wheel, points, axes, inward.get(angle.line, np.array(False)))
 
 
 def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
@@ -79,7 +85,7 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
         return (
             f"{front} is drawn {-float(ahead[one]):.4g} mm behind {rear}: by up and right the car's front "
             f"lies towards {forward.tolist()}, as in right-handed axes; are these two swapped, is right "
-            f"turned round, or are your axes left-handed? {' and '.join(lengthwise)} may have the wrong sign"
+            f"turned round, or are your axes left-handed? {', '.join(lengthwise)} may have the wrong sign"
         )
 
     yield Doubt(ahead < 0.0, words)

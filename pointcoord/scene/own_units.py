@@ -62,16 +62,29 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
     mechanism = content.get("mechanism")
     if isinstance(mechanism, Mapping):
         lengthy = {name: _times(factor, mechanism[name]) for name in OF_THE_WHEEL if name in mechanism}
-        points, car = mechanism.get("points"), mechanism.get("car")
+        points, car, loads = (mechanism.get(name) for name in ("points", "car", "loads"))
         if isinstance(points, Mapping):
             lengthy["points"] = _times(factor, points)
         if isinstance(car, Mapping):
             lengthy["car"] = {n: _times(factor, v) if n in OF_THE_CAR else v for n, v in car.items()}
+        if isinstance(loads, Mapping):
+            lengthy["loads"] = _moments(factor, loads)
         content["mechanism"] = {**mechanism, **lengthy}
     inputs = content.get("inputs")
     if isinstance(inputs, Mapping):
         content["inputs"] = {n: _law(factor, v) if n in lengths else v for n, v in inputs.items()}
     return content
+
+
+def _moments(factor: float, loads: Mapping[str, Any]) -> dict[str, Any]:
+    """Loads with their moments, not their forces, so many times as large."""
+    found = dict(loads)
+    for name, part in loads.items():
+        if isinstance(part, Mapping):
+            found[name] = _moments(factor, part)
+        elif name == "moment":
+            found[name] = _times(factor, part)
+    return found
 
 
 def _law(factor: float, law: Any) -> Any:

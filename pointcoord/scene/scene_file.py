@@ -148,6 +148,13 @@ class CarPart(Part):
         return {name: AXLES.get(value, value) for name, value in given.items()}
 
 
+class LoadPart(Part):
+    """What acts on a wheel at its contact point, along the scene's axes: a force, N, and a moment, N mm."""
+
+    force: Vector
+    moment: Vector = (0.0, 0.0, 0.0)
+
+
 class MechanismPart(Part):
     """The mechanism, its side of the car, its drawn points in mm and the car's axes.
 
@@ -174,6 +181,7 @@ class MechanismPart(Part):
     right: Vector = (0.0, 1.0, 0.0)
     wheel_radius: Positive | None = None
     car: CarPart | None = None
+    loads: dict[str, LoadPart] = Field(default_factory=dict)
     points: dict[str, Vector]
 
     _driven: tuple[str, ...] | None = PrivateAttr(None)
@@ -196,6 +204,9 @@ class MechanismPart(Part):
         elif given:
             content |= whole_tables({name: content[name] for name in given}, Path())
             MechanismFile.of({name: content[name] for name in given}, "mechanism")
+        loads = content.get("loads")
+        if isinstance(loads, Mapping) and not loads.keys().isdisjoint(LoadPart.model_fields):
+            content["loads"] = {"": loads}
         if "points" in content:
             content["points"] = _by_dotted_name(content["points"], lambda table: False)
         return content
@@ -255,6 +266,7 @@ class MechanismPart(Part):
         self._orthonormal()
         self._wheel_outboard()
         self._spin_axis()
+        self._loads_of_wheels()
 
     def _orthonormal(self) -> None:
         up, right = np.array(self.up), np.array(self.right)
@@ -279,6 +291,13 @@ class MechanismPart(Part):
                 f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, 0.0]; "
                 f"if it is a wheel of the other side, try side = {other!r}"
             )
+
+    def _loads_of_wheels(self) -> None:
+        sides = self._whole.sides
+        for part in self.loads:
+            if part not in sides and (part or sides):
+                known = f"a table for one of its parts, {', '.join(sides)}" if sides else "force and moment"
+                raise TableFault(("loads", part) if part else ("loads",), "is of no wheel", known)
 
     def _spin_axis(self) -> None:
         axis = self._whole.roles.get("wheel_axis")
@@ -322,7 +341,7 @@ class MechanismPart(Part):
             driven: names of the inputs that are driven, chassis motions among them; only these are given.
         Returns:
             Bodies, rods, slides, inputs and roles by name, every point as drawn (mm), the car's axes, its
-            side, the wheel's radius (mm, or None) and what is given of the whole car.
+            side, the wheel's radius (mm, or None), what is given of the whole car, and the loads (N, N mm).
         """
         structure = self.structure
         return {
@@ -334,6 +353,7 @@ class MechanismPart(Part):
             "side": self.side,
             "wheel_radius": self.wheel_radius,
             "car": {} if self.car is None else self.car.model_dump(exclude_none=True),
+            "loads": {part: {n: list(v) for n, v in load} for part, load in self.loads.items()},
         }
 
     @cached_property
@@ -389,7 +409,8 @@ class MechanismPart(Part):
     def axes(self) -> CarAxes:
         """The car's directions, and its wheel."""
         car = {} if self.car is None else self.car.numbers
-        return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius, car)
+        loads = {part: (np.array(load.force), np.array(load.moment)) for part, load in self.loads.items()}
+        return CarAxes(np.array(self.up), np.array(self.right), self.outboard, self.wheel_radius, car, loads)
 
     @property
     def effects(self) -> tuple[str, ...]:
@@ -470,7 +491,9 @@ class Scene(Part):
     def _known_effects(cls, effects: tuple[str, ...]) -> tuple[str, ...]:
         for name in effects:
             if name not in EFFECTS:
-                givers = [effect.name for effect in EFFECTS.values() if name in (effect.names or ())]
+                givers = [
+                    effect.name for effect in EFFECTS.values() if name.rpartition(".")[2] in effect.own_names
+                ]
                 hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
                 allowed = [name for name, effect in EFFECTS.items() if not effect.base]
                 raise ValueError(

@@ -191,7 +191,7 @@ class _Block:
             name
             for effect in course.plan.computed
             if effect.derivative == 0 and not effect.reports_states
-            for name in effect.names or ()
+            for name in effect.names(course.scene.mechanism.topology)
         ]
         drawn = {name: np.full(count, np.nan) for name in names}
         filled = np.zeros(count, dtype=bool)
@@ -426,9 +426,11 @@ class _Block:
         missing = np.asarray(~np.isfinite(rows).all(axis=-1))
         for effect in self.course.plan.computed:
             why = f": {effect.no_number}" if effect.no_number else ""
+            gives = effect.gives_numbers(self.course.scene.mechanism.topology)
             for quantity in effect.quantities:
+                names = gives[quantity.name]
                 for name, place in self.course.table.places[quantity.name].items():
-                    if effect.names is None or name in effect.names:
+                    if names is None or name in names:
                         words = f"{quantity.words} of {name} is not a number at some instants{why}"
                         where = np.asarray(missing[:, place].any(axis=-1))
                         self._note(f"{quantity.name} {name}", members, where, _the_same(words), warns=False)

@@ -144,7 +144,7 @@ class Tolerances:
         self.velocity = gain * (velocity + sense * solved)
         self.acceleration = gain * (acceleration + 2 * sense * velocity + bend * solved)
         topology, place = sample.topology, motions[0].position
-        points = [place[name] for name in topology.bodies[topology.knuckle]]
+        points = [place[name] for name in topology.role("knuckle")]
         edges = [points[i] - points[i - 1] for i in range(3)]
         lengths = [np.linalg.norm(e, axis=-1).max() for e in edges]
         height = np.linalg.norm(np.cross(edges[0], edges[1]), axis=-1).min() / max(lengths)

@@ -126,6 +126,12 @@ def _toe(car: Car) -> Numbers:
     return {"wheel": {"toe": [mp.arg(mpc(dot(spin, car.outboard), dot(spin, forward)))]}}
 
 
+def _steer_angle(car: Car) -> Numbers:
+    """Where the outward end of the spin axis goes as the wheel is turned to the left about up."""
+    spin, to_the_left = car.line(car.wheel_axis), cross(car.up, car.outboard)
+    return {"wheel": {"steer_angle": [mp.arg(mpc(dot(spin, car.outboard), dot(spin, to_the_left)))]}}
+
+
 def _caster(car: Car) -> Numbers:
     """A steering axis that leans rearward at the top goes rearward on its way up."""
     kingpin, rearward = car.line(car.steering_axis), cross(car.right, car.up)
@@ -270,6 +276,7 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "wheel_angles": _wheel_angles,
     "camber": _camber,
     "toe": _toe,
+    "steer_angle": _steer_angle,
     "caster": _caster,
     "wheel_travel": _wheel_travel,
     "steering_axis": _steering_axis,
@@ -278,7 +285,16 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "instant_centres": _instant_centres,
     "anti_features": _anti_features,
 }
-OF_THE_CAR = ("camber", "wheel_angles", "toe", "caster", "wheel_travel", "steering_axis", "damper")
+OF_THE_CAR = (
+    "camber",
+    "wheel_angles",
+    "toe",
+    "steer_angle",
+    "caster",
+    "wheel_travel",
+    "steering_axis",
+    "damper",
+)
 BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in OF_THE_CAR}
 BY_HAND |= {f"{name}_by_rack": _by_rack(name) for name in OF_THE_CAR}
 

@@ -3,6 +3,13 @@
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
 
+OF_A_WHEEL = tuple(
+    name
+    for name, effect in EFFECTS.items()
+    if (effect.lines or effect.derivative) and not getattr(effect, "of_axle", False)
+)
+"""The effects that a mechanism without parts and loads may have."""
+
 
 def every_effect(name: str) -> Scene:
     """A built-in scene with every effect of its car but derivatives by an input."""

@@ -63,12 +63,14 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
         "slides": slides,
         "inputs": renamed(inputs, lambda name: absent.get(name, name)),
         "roles": renamed(tables.get("roles", {}), lambda name: absent.get(name, name)),
+        "sides": tables.get("sides", {}),
         "points": given,
         "up": list(up),
         "right": list(right),
         "side": part.get("side", "left"),
         "wheel_radius": part.get("wheel_radius"),
         "car": dict(part.get("car", {})),
+        "loads": {},
     }
 
 
@@ -108,10 +110,15 @@ def _one_mechanism(tables: Tables, given: Plain, right: Any) -> tuple[Tables, Pl
     whole["bodies"] = {"chassis": [], **tables.get("bodies", {})}
     whole |= {"title": tables["title"], "inputs": dict(tables.get("inputs", {}))}
     points: Plain = {name: place for name, place in given.items() if "." in name}
+    whole["sides"] = {prefix: part.get("side", "left") for prefix, part in tables["parts"].items()}
     for prefix, part in tables["parts"].items():
         inner = mechanism_file(part["mechanism"])
         words = {*AXES, "chassis", "drawing"}
-        names = {key: _prefixed(inner.get(key, {}), prefix, words) for key in whole if key != "title"}
+        names = {
+            key: _prefixed(inner.get(key, {}), prefix, words)
+            for key in whole
+            if key not in ("title", "sides")
+        }
         whole["bodies"]["chassis"] += names["bodies"].pop("chassis")
         for key, entries in names.items():
             whole[key] |= entries

@@ -138,9 +138,9 @@ def scales(numbers: Numbers) -> dict[str, float]:
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
     push = hardest + fastest * (fastest / size)
-    of_the_car = {"rad": 1.0, "mm": size, "rad/mm": 1.0 / size, "mm/mm": 1.0, "%": 1.0}
+    units = {"rad": 1.0, "mm": size, "rad/mm": 1.0 / size, "mm/mm": 1.0, "%": 1.0, "N": 1.0}
     return {
-        **{q.name: of_the_car[q.unit] for q in QUANTITIES.values() if q.of == "car"},
+        **{q.name: units[q.unit] for q in QUANTITIES.values() if q.unit in units},
         "position": float(np.abs(corners).max()),
         "velocity": fastest,
         "acceleration": push,

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
-from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR, READ_FIRST
+from pointcoord.effects.car_number import CarNumber
+from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.method import METHODS, Method
 from pointcoord.wording import meant
 from validate.closed_drawing import warnings_of
@@ -185,7 +186,8 @@ def run_table(options: argparse.Namespace, console: Console) -> ExitStatus:
     target = place_of_result(options, TABLES, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     chosen = _numbers(options, scene, name)
-    givers = {n: effect for effect in reversed(scene.mechanism.effects) for n in EFFECTS[effect].names or ()}
+    topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
+    givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
     effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in chosen))))
     scene = scene.model_copy(update={"effects": effects})
 
@@ -276,25 +278,28 @@ def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: s
 
 def _numbers(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
     """The numbers of the table's columns."""
-    had = [number for effect in scene.mechanism.effects for number in EFFECTS[effect].names or ()]
-    known = [number for number in dict.fromkeys(had) if number in NUMBERS_OF_THE_CAR]
+    part = scene.mechanism
+    had = [number for effect in part.effects for number in EFFECTS[effect].names(part.topology)]
+    known = [number for number in dict.fromkeys(had) if number_called(number)]
     if not known:
         raise UsageError(
-            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles], or of "
-            "its parts only; pointcoord simulate writes what it gives"
+            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
+            "pointcoord simulate writes what it gives"
         )
     for number in options.number or ():
         if number not in known:
-            why = [scene.mechanism.refusal(e) for e in EFFECTS.values() if number in (e.names or ())]
+            own = number.rpartition(".")[2]
+            why = [reason for e in EFFECTS.values() if own in e.own_names and (reason := part.refusal(e))]
             raise UsageError(
                 f"{name}: --number {number}: {why[0]}"
                 if why
                 else f"{name}: no number of a car is called {shown(number)}"
-                f"{meant(number, NUMBERS_OF_THE_CAR)}; allowed: {', '.join(known)}"
+                f"{meant(number, known)}; allowed: {', '.join(known)}"
             )
     if options.number:
         return list(dict.fromkeys(options.number))
-    return known if options.all else [number for number in READ_FIRST if number in known]
+    first = [number for own in READ_FIRST for number in known if number.rpartition(".")[2] == own]
+    return known if options.all else first
 
 
 def _table(scene: Scene, motion: Motion, chosen: Sequence[str], rows: int, target: str | None) -> str:
@@ -307,7 +312,7 @@ def _table(scene: Scene, motion: Motion, chosen: Sequence[str], rows: int, targe
         for name in [name for name, law in laws.items() if not law.still] or list(scene.inputs)
     ]
     for number in chosen:
-        quantity = NUMBERS_OF_THE_CAR[number].quantity
+        quantity = _called(number).quantity
         columns.append((number, quantity.unit, samples.numbers[quantity.name][number]))
     columns = [
         (name, unit.replace("rad", "deg", 1), np.degrees(values) if unit.startswith("rad") else values)
@@ -319,11 +324,18 @@ def _table(scene: Scene, motion: Motion, chosen: Sequence[str], rows: int, targe
         return csv_of(head, lines)
     digits = [DIGITS[unit] for _, unit, _ in columns]
     table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
-    told = ((number, NUMBERS_OF_THE_CAR[number].sign) for number in chosen)
+    # The wheels of an axle share a line.
+    told = {number.rpartition(".")[2]: _called(number).sign for number in chosen}.items()
     signs = [f"{number}: positive {sign}" for number, sign in told if sign]
     if target is not None:
         return "\n".join([table.markdown, "", *(f"- {sign}" for sign in signs), ""])
     return "\n".join([table.text, "", *signs, ""])
+
+
+def _called(number: str) -> CarNumber:
+    found = number_called(number)
+    assert found is not None  # only such are chosen
+    return found
 
 
 def _rounded(value: float, digits: int) -> str:

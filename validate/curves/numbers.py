@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, NotComputed, Scene
 from pointcoord.effects.effect import Effect, Quantity
-from pointcoord.effects.registry import ALWAYS, EFFECTS, NUMBERS_OF_THE_CAR
+from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
 from pointcoord.wording import meant
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
@@ -137,20 +137,21 @@ def _inputs(scene: Scene) -> list[Number]:
 
 def _of_effect(effect: Effect, scene: Scene) -> Iterator[Number]:
     topology = scene.mechanism.topology
-    asked = effect in ALWAYS or effect.name in scene.effects
+    asked, gives = effect in ALWAYS or effect.name in scene.effects, effect.gives_numbers(topology)
     for quantity in effect.quantities:
-        bodies = topology.bodies if quantity.of == "body" else topology.points
-        for name in effect.names or bodies:
+        names = gives[quantity.name]
+        every = topology.bodies if quantity.of == "body" else topology.points
+        for name in every if names is None else names:
             missing = None
             if not asked:
                 missing = NotComputed(f"{quantity.words} of {name}", effect.name)
             elif effect.reports_states:
                 missing = _unreported(scene, quantity, name)
             if quantity.of == "car":
-                known = NUMBERS_OF_THE_CAR.get(name)
-                words, sign = (known.words, known.sign) if known else (name, "")
-                path = (quantity.name, name)
-                yield Number(path, words, quantity.unit, sign, path, _reader(quantity, name), missing)
+                known = number_called(name)
+                path, panel = (quantity.name, name), (quantity.name, name.rpartition(".")[2])
+                read, sign = _reader(quantity, name), known.sign if known else ""
+                yield Number(path, words_of(name), quantity.unit, sign, panel, read, missing)
             else:
                 yield from (_component(scene, quantity, name, i, missing) for i in range(3))
 

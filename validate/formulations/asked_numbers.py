@@ -13,7 +13,7 @@ def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     every = {"point": scene.reported_points, "body": tuple(topology.bodies), "car": ()}
     asked: dict[str, tuple[str, ...]] = {}
     for effect in plan_effects(scene.effects).computed:
-        for quantity, names in effect.gives_numbers.items():
+        for quantity, names in effect.gives_numbers(topology).items():
             named = every[QUANTITIES[quantity].of] if names is None else names
             asked[quantity] = tuple(dict.fromkeys((*asked.get(quantity, ()), *named)))
     return {quantity: asked[quantity] for quantity in QUANTITIES if quantity in asked}

@@ -80,7 +80,7 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
     # Angles and rates; what is made of the wheel's radius or a damper a table seldom says.
     had = [EFFECTS[e] for e in scene.mechanism.effects if EFFECTS[e].quantities != (DIMENSION,)]
     plain = [effect for effect in had if not effect.way]
-    parts = {e.name for e in plain for o in plain if {*(e.names or ())} < {*(o.names or ())} and e.names}
+    parts = {e.name for e in plain for o in plain if e.own_names and {*e.own_names} < {*o.own_names}}
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
 

@@ -352,17 +352,18 @@ def asked_scene(scene: Scene, measured: Measured) -> Scene:
     """The scene with the effects that a file's columns need, and with all points."""
     effects, available = dict.fromkeys(scene.effects), scene.mechanism.effects
     for s in measured.numbers:
-        giving = [effect.name for effect in EFFECTS.values() if _gives(effect, s.meaning)]
+        giving = [effect.name for effect in EFFECTS.values() if _gives(effect, s.meaning, scene)]
         # Where the car has none of them, one says what is missing.
         effects |= dict.fromkeys([name for name in giving if name in available] or giving)
     content = scene.model_dump(exclude_none=True, exclude={"points"})
     return Scene.from_mapping(content | {"effects": tuple(effects)}, scene.title or "scene")
 
 
-def _gives(effect: Effect, meaning: Meaning) -> bool:
+def _gives(effect: Effect, meaning: Meaning, scene: Scene) -> bool:
     """Whether a number needs an effect; a derivative needs velocities."""
-    names = effect.gives_numbers.get(meaning.quantity, ())
-    return bool(meaning.per and SPEED in effect.gives_numbers) or names is None or meaning.name in names
+    numbers = effect.gives_numbers(scene.mechanism.topology)
+    names = numbers.get(meaning.quantity, ())
+    return bool(meaning.per and SPEED in numbers) or names is None or meaning.name in names
 
 
 def spread(numbers: Mapping[str, Mapping[str, Any]], rows: Any, reached: Bools) -> Numbers:

@@ -140,8 +140,8 @@ def _view(
     for body in topology.bodies.values():
         ends = " ".join(f"{x:.1f},{y:.1f}" for x, y in (drawn[name] for name in body))
         parts.append(f'<polygon class="body" points="{ends}"/>')
-    axes = [ends for ends in (topology.steering_axis, topology.wheel_axis) if ends]
-    parts += [_line("axis", drawn[a], drawn[b]) for a, b in axes]
+    lines = (ends for role, ends in topology.roles.items() if role.rpartition(".")[2].endswith("_axis"))
+    parts += [_line("axis", drawn[a], drawn[b]) for a, b in lines]
     segments = [ends for constraint in topology.constraints for ends in constraint.segments]
     parts += [_line("member", drawn[a], drawn[b]) for a, b in segments]
     if any(np.abs(moved[name] - drawn[name]).max() > 1.0 for name in moved):

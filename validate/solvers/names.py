@@ -16,7 +16,7 @@ def known_names(topology: Topology) -> dict[str, tuple[str, ...]]:
     every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
     found: dict[str, tuple[str, ...]] = {}
     for effect in (*ALWAYS, *EFFECTS.values()):
-        for quantity, names in effect.gives_numbers.items():
+        for quantity, names in effect.gives_numbers(topology).items():
             there = every[QUANTITIES[quantity].of] if names is None else names
             found[quantity] = tuple(dict.fromkeys((*found.get(quantity, ()), *there)))
     return found

@@ -56,8 +56,8 @@ SHARED = tuple(
     dict.fromkeys(
         name
         for effect in (*ALWAYS, *EFFECTS.values())
-        for quantity, names in effect.gives_numbers.items()
-        for name in (names or () if QUANTITIES[quantity].of == "car" else (quantity,))
+        for quantity in effect.quantities
+        for name in (effect.own_names if quantity.of == "car" else (quantity.name,))
     )
 )
 COLUMNS: Mapping[str, str] = {

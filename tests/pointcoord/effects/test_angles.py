@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, simulate
+from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import ANGLES
 from pointcoord.effects.wheel_angles import WHEEL_ANGLES
 from pointcoord.linkage.car_axes import CarAxes
@@ -23,6 +24,7 @@ CAMBER, KINGPIN = ANGLES["camber"], ANGLES["kingpin"]
 LEANS = {
     "camber": (0, -1.0, RIGHTWARD),  # out at the top
     "toe": (2, 1.0, RIGHTWARD),  # in at the front
+    "steer_angle": (2, 1.0, RIGHTWARD),  # to the left
     "kingpin": (0, 1.0, UP),  # in at the top
     "caster": (1, 1.0, UP),  # back at the top
 }
@@ -41,6 +43,8 @@ def test_an_angle_is_how_far_its_line_was_leaned_on_either_side(
     mirror = np.array([1.0, side, 1.0])
     axes = CarAxes(UP, RIGHTWARD, side * RIGHTWARD)
     found = ANGLES[name].value(LOW * mirror, (LOW + 300.0 * line) * mirror, axes)
+    # In at the front is to the left for a right wheel.
+    degrees *= side if name == "steer_angle" else 1.0
     # A few roundings of coordinates up to 1000 over the length of 300.
     assert found == pytest.approx(np.radians(degrees), abs=16 * EPS * 1000 / 300)
 
@@ -78,7 +82,7 @@ def test_axes_that_are_not_right_handed_are_told_where_the_front_is() -> None:
     content["mechanism"] |= {"points": points, "right": [0.0, -1.0, 0.0]}
     left_handed = simulate(Scene.from_mapping(content))
     (note,) = (note for note in left_handed.notes if "may have the wrong sign" in note)
-    assert "toe and caster" in note
+    assert "toe, steer angle, caster" in note
     assert "towards [1.0, 0.0, 0.0]" in note
     assert left_handed.wheel["toe"] == pytest.approx(-right_handed.wheel["toe"], abs=1e-13)
 
@@ -87,7 +91,7 @@ def topology(stand_ins: dict[str, str]) -> SimpleNamespace:
     """A linkage whose wheel turns about inner - centre, steered about low - high."""
     lines = {"wheel_axis": ("inner", "centre"), "steering_axis": ("low", "high")}
     own = {"inner", "centre", "low", "high"}
-    return SimpleNamespace(**lines, role=lambda name: lines.get(name, ()), stand_ins=stand_ins, points=own)
+    return SimpleNamespace(role=lambda name: lines.get(name, ()), sides={}, stand_ins=stand_ins, points=own)
 
 
 def drawn(camber: float, kingpin: float) -> dict[str, np.ndarray]:
@@ -108,10 +112,12 @@ def test_lines_look_misdrawn_beyond_their_limits_only(stand_ins: dict[str, str],
         for by in (-0.5, 0.5):
             points = drawn(sign * (camber + by), sign * (45.0 + by))
             for angle in (CAMBER, KINGPIN):
-                assert angle.doubt(topology(stand_ins), points, right, known).where == (by > 0.0)
-                assert not angle.doubt(topology(stand_ins), points, right, ~known).where
-                assert not ANGLES["caster"].doubt(topology(stand_ins), points, right, known).where
-    wrong = [a.doubt(topology({}), drawn(89.5, 90.5), right, known).words(()) for a in (CAMBER, KINGPIN)]
+                assert angle.doubt(Wheel(topology(stand_ins)), points, right, known).where == (by > 0.0)
+                assert not angle.doubt(Wheel(topology(stand_ins)), points, right, ~known).where
+                assert not ANGLES["caster"].doubt(Wheel(topology(stand_ins)), points, right, known).where
+    wrong = [
+        a.doubt(Wheel(topology({})), drawn(89.5, 90.5), right, known).words(()) for a in (CAMBER, KINGPIN)
+    ]
     assert ["swapped" in words for words in wrong] == [False, True]
 
 

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from effects_by_hand import BY_HAND, DIGITS, Car, Vector, by_hand, cross, plus
+from every_effect import OF_A_WHEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf, workdps
@@ -23,6 +24,7 @@ from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.linkage.slopes import ByInput
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.simulation import scene_mechanism
 
@@ -38,7 +40,8 @@ DATA = {
     "drive_share": 0.91,
 }
 TIME = 2.0**-3  # s, a unit of time other than a second
-EVERY = {effect.name: effect for effect in (*ALWAYS, *EFFECTS.values())}
+# What two wheels make is in test_axles, and what loads do in test_loads.
+EVERY = {effect.name: effect for effect in (*ALWAYS, *(EFFECTS[name] for name in OF_A_WHEEL))}
 each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
 cars = st.sampled_from(["off-axis-strut", "pushrod"])
@@ -50,7 +53,7 @@ def mechanism_of(scene: str) -> Mechanism:
     """Far from the user's origin; of a car without a damper its wheel's axis stands for one."""
     mechanism = scene_mechanism(Scene.load(scene))
     topology = mechanism.topology
-    topology = replace(topology, damper=topology.damper or topology.wheel_axis)
+    topology = replace(topology, roles={"damper": topology.wheel_axis, **topology.roles})
     return replace(mechanism, topology=topology, origin=np.array([4096.0, -2048.0, 1024.0]))
 
 
@@ -70,7 +73,7 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
         omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
         # The knuckle moves as one body by an input, and every other point by itself.
         turn, other_turn = (exactly(1e-3 * v) for v in own.normal(size=(2, 3)))
-        knuckle = (*topology.bodies[topology.knuckle], *topology.wheel_axis)
+        knuckle = (*topology.role("knuckle"), *topology.wheel_axis)
         shifts, other_shifts = (
             {n: v if n in knuckle else plus(v, exactly(own.normal(size=3))) for n in topology.points}
             for v in (exactly(3.0 * axes[:, 2] + own.normal(size=3)), exactly(own.normal(size=3)))
@@ -93,7 +96,7 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             added=[exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))],
             turn=(omega, alpha),
             bodies=tuple(topology.bodies),
-            damper=topology.damper,
+            damper=topology.role("damper"),
             wheel_radius=mpf(RADIUS),
             in_chassis=in_chassis,
             moving={n: plus(shifts[n], cross(turn, p)) for n, p in places.items()},
@@ -125,7 +128,7 @@ def poses_of(car: Car, mechanism: Mechanism) -> Poses:
     in_chassis = {name: rounded(p)[None] for name, p in car.in_chassis.items()}
     added = [rounded(v)[None] for v in car.added]
     one = tuple({n: rounded(p)[None] for n, p in of.items()} for of in (car.moving, car.moving_in_chassis))
-    slopes = dict.fromkeys(("by_travel", "by_rack"), one)
+    slopes = dict.fromkeys(map(ByInput, mechanism.topology.required_inputs), one)
     return Poses(mechanism, axes_of(car), states, in_chassis, added, slopes)
 
 
@@ -151,7 +154,7 @@ def exact_poses_of(car: Car, mechanism: Mechanism, off: Sequence[float] = (0.0, 
     one = tuple(
         {n: enclosed(p, 1.0 / unit) for n, p in of.items()} for of in (car.moving, car.moving_in_chassis)
     )
-    slopes = dict.fromkeys(("by_travel", "by_rack"), one)
+    slopes = dict.fromkeys(map(ByInput, mechanism.topology.required_inputs), one)
     powers = [np.array([TIME**d]) for d in range(3)]
     return EnclosedPoses(mechanism, axes_of(car), points, in_chassis, added, powers, slopes)
 
@@ -168,7 +171,7 @@ def check(effect: Effect, car: Car, mechanism: Mechanism) -> None:
     found = effect.evaluate(poses)
     true = by_hand(effect.name, car)
     bounds = effect.errors(exact_poses_of(car, mechanism), found)
-    assert found.keys() == bounds.keys() == true.keys() == effect.gives_numbers.keys()
+    assert found.keys() == bounds.keys() == true.keys() == effect.gives_numbers(mechanism.topology).keys()
     for quantity, name, array in parts(found):
         with workdps(DIGITS):
             pairs = zip(array.ravel(), true[quantity][name], strict=True)
@@ -290,6 +293,8 @@ def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
     for quantity, part, array in parts(effect.evaluate(other)):
         of, before = QUANTITIES[quantity].of, found[quantity][part]
         expected = before if of == "car" else before @ turn.T * (sense if of == "body" else 1.0)
+        if mirrored and part.startswith("steer_angle"):
+            expected = -expected  # what is to the left is to the right in a mirror
         # Turning rounds every coordinate a few times; bodies and lines are up to a thousand times shorter.
         assert np.abs(array - expected).max() <= 1e5 * U * max(1.0, np.abs(before).max())
 
@@ -340,7 +345,7 @@ def test_an_effect_needs_the_points_that_it_names_and_no_others(name: str, seed:
     for quantity, part, array in parts(alone):
         assert np.array_equal(array, found[quantity][part])
         assert QUANTITIES[quantity] in effect.quantities
-        assert effect.names is None or part in effect.names
+        assert not effect.own_names or part in effect.own_names
 
 
 class Lossless(LeastSquares):
@@ -352,7 +357,7 @@ class Lossless(LeastSquares):
 
 def test_of_a_needle_that_turns_as_much_more_is_expected_as_its_formula_loses() -> None:
     mechanism = mechanism_of("double-wishbone")
-    body = mechanism.topology.knuckle
+    (body,) = mechanism.topology.bodies
     first, second, third, *_ = mechanism.topology.bodies[body]
     rng = np.random.default_rng(8)
     for thin, least in ((1e-7, 50.0), (1e-6, 1.5), (0.3, 1.0)):

@@ -32,7 +32,7 @@ def test_every_gradient_is_within_its_bound_of_the_reference_and_that_is_some_ro
     motion = simulate(scene)
     proof = motion.proof(rates=True)
     found = {n: (q, a) for q, channel in motion.numbers.items() for n, a in channel.items()}
-    asked = {n for effect in scene.effects for n in EFFECTS[effect].names or ()}
+    asked = {n for effect in scene.effects for n in EFFECTS[effect].own_names}
     assert len(asked) > 6
     for k, instant in enumerate(motion.times.tolist()):
         exact = reference_instant(scene, inputs_at(scene, instant)).effects

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from every_effect import OF_A_WHEEL
 
 import pointcoord
 from pointcoord.effects import registry
@@ -34,8 +35,13 @@ KINDS = {PACKAGE / "effects" / f"{name}.py" for name in ("gradients", "angle", "
 NAMES = {
     *EFFECTS,
     *(quantity.name for effect in EFFECTS.values() for quantity in effect.quantities),
-    *(name for effect in EFFECTS.values() for name in effect.names or ()),
-} - {*PAIR_ROLES, "travel"}  # what a mechanism calls its parts, effects of them may be called too
+    *(name for effect in EFFECTS.values() for name in effect.own_names),
+} - {
+    *PAIR_ROLES,
+    "travel",
+    "axle",
+    "loads",
+}  # what a mechanism calls its parts, effects of them may be called too
 
 
 def named(text: str) -> Iterator[str]:
@@ -62,9 +68,9 @@ def test_no_other_file_names_an_effect_or_what_it_gives() -> None:
         own: set[str] = set()
         if path in OWN:
             mine = EFFECTS[OWN[path]]
-            own = {mine.name, *(quantity.name for quantity in mine.quantities), *(mine.names or ())}
-            # What another gives alone it may give among others.
-            own |= {f"pointcoord.effects.{other.stem}" for other, name in OWN.items() if name in own}
+            own = {mine.name, *(quantity.name for quantity in mine.quantities), *mine.own_names}
+            # It may be made of what another gives.
+            own |= {f"pointcoord.effects.{other.stem}" for other in OWN}
         assert set(named(path.read_text(encoding="utf-8"))) <= own, path
 
 
@@ -74,5 +80,5 @@ def test_the_page_of_effects_says_what_each_is(name: str) -> None:
 
 
 def test_every_effect_of_positions_of_the_car_has_gradients_along_both_ways() -> None:
-    plain = {n for n, number in NUMBERS_OF_THE_CAR.items() if not number.way}
+    plain = {n for name in OF_A_WHEEL if not EFFECTS[name].way for n in EFFECTS[name].own_names}
     assert {n + way for n in plain for way in WAYS} <= NUMBERS_OF_THE_CAR.keys()

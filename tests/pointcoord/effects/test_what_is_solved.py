@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+from every_effect import OF_A_WHEEL
 
 import pointcoord.solve.place
 import pointcoord.solve.pointwise
@@ -29,7 +30,7 @@ SUBSETS: list[tuple[str, ...]] = [
     (),
     *((name,) for name in ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe_by_travel")),
     ("velocity", "knuckle_rates"),
-    tuple(EFFECTS),
+    OF_A_WHEEL,
 ]
 POWER_OF_TIME = {"mm/s": 1, "rad/s": 1, "mm/s^2": 2, "rad/s^2": 2}
 NEEDED = {n: max(POWER_OF_TIME.get(q.unit, 0) for q in effect.quantities) for n, effect in EFFECTS.items()}
@@ -128,18 +129,18 @@ def test_counts_are_what_was_done(
 
 def read(motion: Motion, effect: str) -> None:
     """All numbers of an effect."""
-    for quantity, names in EFFECTS[effect].gives_numbers.items():
+    for quantity, names in EFFECTS[effect].gives_numbers(motion.solved.readout.mechanism.topology).items():
         for name in names or (*motion.position, "knuckle"):
             assert np.isfinite(motion.numbers[quantity][name]).all()
 
 
-@pytest.mark.parametrize("effect", EFFECTS)
+@pytest.mark.parametrize("effect", OF_A_WHEEL)
 def test_reading_what_was_not_asked_for_names_the_effect(
     make_scene: Callable[..., Scene], effect: str
 ) -> None:
     # Nor by one that gives the same among others.
-    mine = {*(EFFECTS[effect].names or (effect,))}
-    others = tuple(n for n, e in EFFECTS.items() if n != effect and not mine <= {*(e.names or (n,))})
+    mine = {*(EFFECTS[effect].own_names or (effect,))}
+    others = tuple(n for n in OF_A_WHEEL if n != effect and not mine <= {*(EFFECTS[n].own_names or (n,))})
     motion = simulate(make_scene(samples=2, effects=others))
     with pytest.raises(NotComputed, match=f"add '{effect}' to the scene's effects") as caught:
         read(motion, effect)

@@ -16,7 +16,7 @@ SHIPPED = [mechanism_file(name).topology(c) for name in shipped() for c in mecha
 # Equations that only a drawing shows to be redundant leave a mechanism no input of its own.
 EVERY = [*(topology for topology in SHIPPED if topology.drives), TOPOLOGY]
 by_name = pytest.mark.parametrize("topology", EVERY, ids=lambda topology: topology.name)
-CORNERS = [topology for topology in EVERY if topology.knuckle]
+CORNERS = [topology for topology in EVERY if topology.role("knuckle")]
 by_corner = pytest.mark.parametrize("topology", CORNERS, ids=lambda topology: topology.name)
 
 
@@ -41,7 +41,7 @@ def test_there_are_as_many_equations_as_unknowns_and_each_unknown_is_in_one(topo
 
 @by_corner
 def test_the_parts_that_a_topology_names_are_its_own(topology: Topology) -> None:
-    body = topology.bodies[topology.knuckle]
+    body = topology.role("knuckle")
     riding = {name for name, carriers in topology.carried.items() if set(carriers) <= set(body)}
     assert set(topology.wheel_axis) <= riding | set(topology.moving)
     assert topology.wheel_axis[1:] == (topology.wheel_centre,)

@@ -36,11 +36,12 @@ TRIPOD = Topology(
         *(OnChassisLine(f"slider_{n}", f"rail_{n}", "rail", "", "up", f"travel {n}", True) for n in NUMBERS),
     ),
     drives=tuple(Travel(f"travel {n}", f"push_{n}", f"rail_{n}", f"slider_{n}", "up") for n in NUMBERS),
-    knuckle="",
-    steering_axis=("rail_1", "rail_2"),
-    wheel_axis=("slider_1", "tip"),
-    inboard="rail_1",
-    front_and_rear=("rail_1", "rail_2"),
+    roles={
+        "steering_axis": ("rail_1", "rail_2"),
+        "wheel_axis": ("slider_1", "tip"),
+        "inboard": ("rail_1",),
+        "front_and_rear": ("rail_1", "rail_2"),
+    },
 )
 
 

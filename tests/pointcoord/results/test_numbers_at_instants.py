@@ -104,11 +104,11 @@ def plain(motion: Motion, instants: np.ndarray) -> Numbers:
         if d == 0 or quantity in plan.effects:
             numbers[quantity] = {point: found[d][point] + added[d] for point in topology.points}
     for effect in plan.computed:
-        for angle in (ANGLES[name] for name in effect.names or () if name in ANGLES):
+        for angle in (ANGLES[name] for name in effect.own_names if name in ANGLES):
             start, end = (found[0][point] for point in angle.ends(topology))
             numbers.setdefault("wheel", {})[angle.name] = angle.value(start, end, readout.axes)
     if "damper" in plan.effects:
-        lower, upper = (found[0][point] for point in topology.damper)
+        lower, upper = (found[0][point] for point in topology.role("damper"))
         numbers["dimension"] = {"damper_length": np.linalg.norm(upper - lower, axis=-1)}
     if "knuckle_rates" in plan.effects:
         body = [np.stack([each[p] for p in topology.bodies["knuckle"]], axis=1) for each in found]

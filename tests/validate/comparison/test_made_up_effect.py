@@ -44,7 +44,7 @@ class Stub(Effect):
     """How far the wheel centre lies outboard of the inner point of the spin axis, mm."""
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def own_names(self) -> tuple[str, ...]:
         return ("stub_axle",)
 
     def needs(self, topology: Topology) -> Collection[str]:

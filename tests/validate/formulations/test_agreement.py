@@ -41,7 +41,7 @@ def test_formulations_agree_in_everything_that_the_built_in_scenes_ask_for(
     vectors = ("position", *(effect for effect in scene.effects if effect in ("velocity", "acceleration")))
     asked = {(quantity, point) for quantity in vectors for point in scene.mechanism.points}
     asked |= {row for effect in scene.effects for row in WHAT_IT_GIVES.get(effect, ())}
-    numbers = [NUMBERS_OF_THE_CAR[n] for e in scene.effects for n in EFFECTS[e].names or ()]
+    numbers = [NUMBERS_OF_THE_CAR[n] for e in scene.effects for n in EFFECTS[e].own_names]
     asked |= {(number.quantity.name, number.name) for number in numbers}
     assert {(row.quantity, row.name) for row in outcome.rows} == asked
 

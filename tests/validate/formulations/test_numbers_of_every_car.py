@@ -35,7 +35,7 @@ ASKED = {name: asking_for_all(name) for name in built_in_scenes()}
 
 def of_the_car(scene: Scene) -> set[str]:
     """The numbers of its car that a scene asks for."""
-    return {name for effect in scene.effects for name in EFFECTS[effect].names or ()}
+    return {name for effect in scene.effects for name in EFFECTS[effect].own_names}
 
 
 CARS = [name for name, scene in ASKED.items() if of_the_car(scene)]

@@ -1,0 +1,227 @@
+r"""What rods and ball joints carry of loads at the wheels: statics at each pose, by virtual work.
+
+A load acts on the knuckle at the contact point. If a rod were longer by dl, all else held, the contact point
+would move by dc and the knuckle turn by dt, and
+
+    N dl = F . dc + M . dt,
+
+N the rod's tension. Likewise N of the damper, which holds its corner in place of the input that moves the
+wheel: that input is free. With W_q and l_q the work and the damper's length per unit of that input, and W_s
+and l_s along another way s, what s makes with the damper held is W_s - W_q l_s / l_q. At a ball joint the
+half of the one body moves by e from that of the other, on which the force f acts: f . e = F . dc + M . dt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord.effects.arithmetic import dot, ratio, root, times
+from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of, enclosed_corner, still
+from pointcoord.effects.corner import Corner, Wheel, wheels_of
+from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.effects.knuckle import contact_place, turning_of, velocity_at
+from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.slopes import GAP, ByGap, ByLength, Way
+from pointcoord.linkage.topology import Topology
+from pointcoord.numerics.enclosure import Enclosed
+
+if TYPE_CHECKING:
+    from pointcoord.bounds.enclosed_points import EnclosedPoses
+    from pointcoord.bounds.proof import Numbers
+
+Array = NDArray[np.float64]
+
+ROD_FORCE = Quantity("rod_force", "force in the rod", "N", "car")
+JOINT_FORCE = Quantity("joint_force", "force at the ball joint", "N", "point")
+HOLDING = "damper"
+ROLES = ("wheel_axis", "knuckle")
+AXES = np.eye(3)
+
+
+@dataclass(frozen=True)
+class _Along:
+    """What happens along a way.
+
+    Attributes:
+        work: of all loads, N times the unit of length.
+        dampers: what their lengths change by.
+    """
+
+    work: Any
+    dampers: tuple[Any, ...]
+
+    def with_held(self, held: int, free: _Along) -> _Along:
+        """The same with a damper held and an input free that moves it."""
+        share = ratio(self.dampers[held], free.dampers[held])
+        pairs = zip(self.dampers, free.dampers, strict=True)
+        return _Along(self.work - share * free.work, tuple(one - share * other for one, other in pairs))
+
+
+@dataclass(frozen=True)
+class Loads(Effect):
+    """The forces that hold a mechanism under the loads of its scene."""
+
+    @property
+    def way(self) -> str:
+        """By lengths, gaps and the inputs that dampers stand for."""
+        return "lengths"
+
+    @property
+    def no_number(self) -> str:
+        """Where a damper cannot hold its wheel."""
+        return "the wheel's travel does not change the damper's length there"
+
+    def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
+        """Every rod and damper, and every ball joint."""
+        dampers = (f"{wheel.prefix}{HOLDING}" for wheel in _held(topology))
+        return {ROD_FORCE.name: (*topology.rods, *dampers), JOINT_FORCE.name: tuple(topology.joints)}
+
+    def ways(self, topology: Topology) -> tuple[Way, ...]:
+        """The inputs that are free, the lengths of rods, and three gaps of each ball joint."""
+        return (
+            *(wheel.way(BY_TRAVEL) for wheel in _held(topology)),
+            *map(ByLength, topology.rods),
+            *(ByGap(point, axis) for point in topology.joints for axis in range(3)),
+        )
+
+    def needs(self, topology: Topology) -> Collection[str]:
+        """All: whatever is held has a force."""
+        return topology.points
+
+    def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
+        """Tensions, (N,), and forces, (N, 3)."""
+        topology = poses.mechanism.topology
+
+        def corner(wheel: Wheel) -> Corner[Array]:
+            return corner_of(poses, wheel)
+
+        return _forces(topology, poses.axes, corner, poses.slopes, np.zeros_like, 1.0, np.asarray)
+
+    def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
+        """From where each exactly is."""
+        topology, unit = poses.mechanism.topology, float(poses.mechanism.unit)
+
+        def corner(wheel: Wheel) -> Corner[Enclosed]:
+            return enclosed_corner(poses, wheel)
+
+        exact = _forces(topology, poses.axes, corner, poses.slopes, still, 1.0 / unit, Enclosed.of)
+        return {q: {n: each.errors(numbers[q][n]) for n, each in of.items()} for q, of in exact.items()}
+
+    def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
+        """There are no loads, or nothing says what they act on or what holds them."""
+        if not axes.loads:
+            return (
+                f"{self.name!r} needs a load, and the scene has none; give it under [mechanism.loads], such "
+                f"as force = [0.0, 0.0, 3000.0], or leave {self.name!r} out"
+            )
+        for part in axes.loads:
+            wheel = Wheel(topology, part)
+            for role in ROLES:
+                if not wheel.role(role):
+                    return no_role(self.name, wheel.prefix + role, topology)
+        if axes.wheel_radius is None:
+            return (
+                f"{self.name!r} needs the wheel's contact point, and the mechanism has no wheel_radius; "
+                f"give it in mm under [mechanism], such as wheel_radius = 300.0, or leave {self.name!r} out"
+            )
+        if topology.left_out:
+            rows = ", ".join(topology.left_labels)
+            return (
+                f"{self.name!r} needs a mechanism that is held in one way only, and of {topology.name!r} "
+                f"these rows follow from the others: {rows}; leave {self.name!r} out"
+            )
+        for wheel in _held(topology):
+            driven = wheel.driven(BY_TRAVEL)
+            if len(driven) != 1:
+                return (
+                    f"{self.name!r} needs exactly one driven input that {KINDS[BY_TRAVEL]} for the "
+                    f"{wheel.prefix}{HOLDING} to hold instead, and there is {', '.join(driven) or 'none'}; "
+                    f"drive the mechanism by one, or leave {self.name!r} out"
+                )
+        return ""
+
+
+def _held(topology: Topology) -> tuple[Wheel, ...]:
+    """The corners that a damper holds."""
+    return wheels_of(topology, (HOLDING,))
+
+
+def _forces(
+    topology: Topology,
+    axes: CarAxes,
+    corner: Callable[[Wheel], Corner[Any]],
+    slopes: Mapping[Way, Any],
+    zero: Callable[[Any], Any],
+    unit: float,
+    constant: Callable[[Array], Any],
+) -> dict[str, dict[str, Any]]:
+    """Tensions and forces in whichever arithmetic the corners are.
+
+    Args:
+        zero: what has no derivative, as its slope. unit: mm in the unit of the corners. constant: plain
+            numbers in their arithmetic.
+    """
+    loaded = [(corner(Wheel(topology, part)), load) for part, load in axes.loads.items()]
+    damped = [(wheel, corner(wheel)) for wheel in _held(topology)]
+
+    def along(way: Way) -> _Along:
+        works = []
+        for one, (force, moment) in loaded:
+            moving = one.moving(slopes[way], zero)
+            works.append(dot(constant(force), velocity_at(moving, contact_place(moving))))
+            for i in np.flatnonzero(moment).tolist():
+                # How the knuckle turns about an axis: as the next axis goes along the one after it.
+                turn = turning_of(moving, constant(AXES[i - 2]))
+                works.append(dot(constant(moment[i] * unit * AXES[i - 1]), turn))
+        work = works[0]
+        for more in works[1:]:
+            work = work + more
+        return _Along(work, tuple(_length(one.moving(slopes[way], zero), HOLDING) for _, one in damped))
+
+    free = [along(wheel.way(BY_TRAVEL)) for wheel, _ in damped]
+    for i in range(len(free)):
+        free = [one if k == i else one.with_held(i, free[i]) for k, one in enumerate(free)]
+
+    def held(found: _Along) -> _Along:
+        for i, one in enumerate(free):
+            found = found.with_held(i, one)
+        return found
+
+    rods = {}
+    for rod, ends in topology.rods.items():
+        way = ByLength(rod)
+        moving = loaded[0][0].moving(slopes[way], zero).seen.line(*ends)
+        rods[rod] = ratio(held(along(way)).work, root(dot(moving, moving)).slope)
+    for i, (wheel, _) in enumerate(damped):
+        rods[f"{wheel.prefix}{HOLDING}"] = ratio(free[i].work, free[i].dampers[i])
+    joints = {}
+    for point in topology.joints:
+        parts = []
+        for axis in range(3):
+            opening = ByGap(point, axis)
+            gap = slopes[opening][0][GAP]
+            share = ratio(held(along(opening)).work, dot(gap, gap))
+            parts.append(times(share, gap))
+        force = parts[0] + parts[1] + parts[2]
+        joints[point] = -force if point in topology.chassis else force
+    return {ROD_FORCE.name: rods, JOINT_FORCE.name: joints}
+
+
+def _length(corner: Corner[Any], role: str) -> Any:
+    """What the distance of the two points of a role changes by."""
+    line = corner.seen.role(role)
+    return root(dot(line, line)).slope
+
+
+LOADS = Loads(
+    name="loads",
+    gives="what rods and ball joints carry of the loads at the wheels, N",
+    sign="tension of a rod or damper: positive; components along the user's axes",
+    derivative=0,
+    quantities=(ROD_FORCE, JOINT_FORCE),
+)

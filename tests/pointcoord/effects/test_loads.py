@@ -1,0 +1,340 @@
+"""Forces of rods, dampers and ball joints: closed forms, balances of bodies, laws of mirrors and turns."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import cos, mpf, sin, sqrt, workdps
+from numpy.typing import NDArray
+
+from pointcoord import MapError, Motion, Scene, SceneError, kinematic_map, simulate, sweep
+
+Array = NDArray[np.float64]
+RADIUS = 300.0
+LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
+UP = {"force": [0.0, 0.0, 3000.0]}
+
+
+def loaded(name: str, loads: Any, inputs: Mapping[str, Any] | None = None, **mechanism: Any) -> Motion:
+    """A built-in car under loads at few instants."""
+    content = Scene.load(name).model_dump(exclude_none=True)
+    content["mechanism"] |= {"wheel_radius": RADIUS, "loads": loads, **mechanism}
+    content |= {"effects": ["loads"], "inputs": inputs or content["inputs"]}
+    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 5}
+    return simulate(Scene.from_mapping(content))
+
+
+def contact_of(motion: Motion, inner: str = "wheel_axis_inner", centre: str = "wheel_centre") -> Array:
+    """Where the lowest point of the wheel is, (N, 3)."""
+    spin = motion.position[centre] - motion.position[inner]
+    spin = spin / np.linalg.norm(spin, axis=-1, keepdims=True)
+    down = spin[:, 2:] * spin - np.array([0.0, 0.0, 1.0])
+    return motion.position[centre] + RADIUS * down / np.linalg.norm(down, axis=-1, keepdims=True)
+
+
+def pull(motion: Motion, rod: str, here: str, there: str) -> Array:
+    """What a rod or a damper does to what it holds at one of its ends, (N, 3)."""
+    line = motion.position[there] - motion.position[here]
+    return np.asarray(motion.rod_force[rod][:, None] * line / np.linalg.norm(line, axis=-1, keepdims=True))
+
+
+def assert_balanced(about: Array, *forces: tuple[Array, Array | str], moment: Any = (0.0, 0.0, 0.0)) -> None:
+    """Forces (N, 3) at places, of which none turns or shifts the body."""
+    scale = max(float(np.abs(force).max()) for force, _ in forces)
+    total = sum(force for force, _ in forces)
+    turn = np.array(moment) + sum(np.cross(place - about, force) for force, place in forces)
+    # Places are right to some 1e-13 of 1 m, by which forces are off with a factor of tens.
+    assert np.abs(total).max() < 1e-10 * scale
+    assert np.abs(turn).max() < 1e-10 * scale * 1000.0
+
+
+SWING = {
+    "parts": {
+        "right": {
+            "side": "right",
+            "mechanism": {
+                "bodies": {"chassis": ["a", "b", "top"], "knuckle": ["a", "b", "inner", "centre", "low"]},
+                "inputs": {"turn": {"angle": "knuckle", "from": "drawing"}},
+                "roles": {
+                    "knuckle": "knuckle",
+                    "wheel_axis": ["inner", "centre"],
+                    "damper": ["low", "top"],
+                },
+            },
+        }
+    }
+}
+POINTS = {
+    "a": (-100.0, 150.0, 420.0),
+    "b": (100.0, 150.0, 420.0),
+    "inner": (0.0, 660.0, 300.0),
+    "centre": (0.0, 760.0, 300.0),
+    "low": (0.0, 600.0, 280.0),
+    "top": (0.0, 500.0, 700.0),
+}
+
+
+def test_a_damper_beside_a_hinge_carries_the_moment_about_it() -> None:
+    turn = [0.02, 0.1]
+    motion = simulate(
+        Scene.from_mapping(
+            {
+                "effects": ["loads"],
+                "mechanism": {**SWING, "points": POINTS, "wheel_radius": RADIUS, "loads": {"right": LOAD}},
+                "inputs": {"right.turn": {"polynomial": turn}},
+                "time": {"start": 0.0, "stop": 1.0, "samples": 5},
+            }
+        )
+    )
+    assert [*motion.rod_force] == ["right.damper"]
+    assert not motion.joint_force  # what holds beside it is a hinge
+    bound = motion.proof(rates=True).proven["rod_force"]["right.damper"]
+    with workdps(40):
+        for time, found, most in zip(
+            motion.times.tolist(), motion.rod_force["right.damper"], bound, strict=True
+        ):
+            angle = mpf(turn[0]) + mpf(turn[1]) * mpf(time)
+
+            def turned(name: str, angle: mpf = angle) -> tuple[mpf, mpf]:
+                y, z = mpf(POINTS[name][1]) - 150, mpf(POINTS[name][2]) - 420
+                return y * cos(angle) - z * sin(angle), y * sin(angle) + z * cos(angle)
+
+            y, z = turned("centre")
+            contact = (y + RADIUS * sin(angle), z - RADIUS * cos(angle))
+            low, top = turned("low"), (mpf(350), mpf(280))
+            line = (top[0] - low[0], top[1] - low[1])
+            # About the hinge: the load's moment, and the damper's arm, which pulls `low` towards `top`.
+            _, across, up = map(mpf, LOAD["force"])
+            moment = contact[0] * up - contact[1] * across + mpf(LOAD["moment"][0])
+            arm = (low[0] * line[1] - low[1] * line[0]) / sqrt(line[0] ** 2 + line[1] ** 2)
+            exact = -moment / arm
+            assert exact < 0  # a wheel that is pushed up presses it together
+            assert abs(mpf(float(found)) - exact) <= most <= 1e-11 * abs(exact)
+
+
+def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
+    motion = loaded("pushrod", LOAD)
+    at, joint = motion.position, motion.joint_force
+    assert [*joint] == ["lower_ball_joint", "upper_ball_joint"]
+    contact = contact_of(motion)
+    ball = {name: (force, at[name]) for name, force in joint.items()}
+    force = np.broadcast_to(LOAD["force"], contact.shape)
+    tie_rod = pull(motion, "tie_rod", "tie_rod_outer", "tie_rod_inner"), at["tie_rod_outer"]
+    assert_balanced(contact, (force, contact), tie_rod, *ball.values(), moment=LOAD["moment"])
+    scene = Scene.load("pushrod").mechanism.structure
+    outer, inner = scene.rods["pushrod"]
+    if outer not in scene.bodies["lower_arm"]:
+        outer, inner = inner, outer
+    hinges = {
+        "lower_arm": ("lower_arm_front", "lower_arm_rear"),
+        "upper_arm": ("upper_arm_front", "upper_arm_rear"),
+    }
+    own = {"lower_arm": [(-joint["lower_ball_joint"], at["lower_ball_joint"])]}
+    own["upper_arm"] = [(-joint["upper_ball_joint"], at["upper_ball_joint"])]
+    own["lower_arm"].append((pull(motion, "pushrod", outer, inner), at[outer]))
+    low, top = scene.roles["damper"]
+    if top not in scene.bodies["chassis"]:
+        low, top = top, low
+    (rocker,) = (body for body in scene.bodies_of(inner))
+    hinges[rocker] = tuple(p for p in scene.bodies[rocker] if p in scene.bodies["chassis"])
+    own[rocker] = [
+        (pull(motion, "pushrod", inner, outer), at[inner]),
+        (pull(motion, "damper", low, top), at[low]),
+    ]
+    for body, (first, second) in hinges.items():
+        line = at[second] - at[first]
+        turn = sum(np.cross(place - at[first], force) for force, place in own[body])
+        about = np.einsum("ni,ni->n", turn, line / np.linalg.norm(line, axis=-1, keepdims=True))
+        assert np.abs(about).max() < 1e-7, body  # N mm, of forces of 1e4 N on arms of 300 mm
+
+
+def test_a_force_that_is_off_by_a_billionth_is_no_balance() -> None:
+    motion = loaded("pushrod", LOAD)
+    contact = contact_of(motion)
+    force = np.broadcast_to(LOAD["force"], contact.shape)
+    ball = [(each, motion.position[name]) for name, each in motion.joint_force.items()]
+    tie_rod = pull(motion, "tie_rod", "tie_rod_outer", "tie_rod_inner"), motion.position["tie_rod_outer"]
+    with pytest.raises(AssertionError):
+        assert_balanced(contact, (force * (1.0 + 1e-9), contact), tie_rod, *ball, moment=LOAD["moment"])
+
+
+def test_five_rods_and_what_holds_the_wheel_up_balance_the_load() -> None:
+    """The input takes the force along up at the wheel centre; the other five components are the rods'."""
+    motion = loaded("five-link", LOAD, {"wheel_travel": {"polynomial": [-20.0, 50.0]}})
+    structure = Scene.load("five-link").mechanism.structure
+    knuckle, contact = structure.bodies["knuckle"], contact_of(motion)
+    forces = [(np.broadcast_to(LOAD["force"], contact.shape), contact)]
+    for rod, ends in structure.rods.items():
+        here, there = ends if ends[0] in knuckle else ends[::-1]
+        forces.append((pull(motion, rod, here, there), motion.position[here]))
+    up = np.zeros_like(contact)
+    up[:, 2] = -sum(force[:, 2] for force, _ in forces)
+    assert_balanced(contact, *forces, (up, motion.position["wheel_centre"]), moment=LOAD["moment"])
+
+
+ON_A_BALL = {
+    "bodies": {
+        "chassis": ["ball", "in_1", "in_2"],
+        "knuckle": ["ball", "out_1", "out_2", "inner", "centre"],
+    },
+    "rods": {"one": ["in_1", "out_1"], "two": ["out_2", "in_2"]},
+    "inputs": {"travel": {"height": "centre"}},
+    "roles": {"knuckle": "knuckle", "wheel_axis": ["inner", "centre"]},
+}
+
+
+@pytest.mark.parametrize("roll", [0.0, 0.3])
+def test_a_knuckle_on_a_ball_joint_of_the_chassis_is_in_balance(roll: float) -> None:
+    """Of a car that rolls the force is along the axes of the ground, and so is what the input holds with."""
+    tables = {
+        **ON_A_BALL,
+        "inputs": {**ON_A_BALL["inputs"], "roll": {"turns": "chassis", "about": "ball", "along": "forward"}},
+    }
+    points = {
+        "ball": (0.0, 600.0, 200.0),
+        "in_1": (-300.0, 640.0, 400.0),
+        "out_1": (10.0, 640.0, 420.0),
+        "in_2": (150.0, 300.0, 215.0),
+        "out_2": (140.0, 630.0, 210.0),
+        "inner": (0.0, 650.0, 300.0),
+        "centre": (0.0, 750.0, 310.0),
+    }
+    motion = simulate(
+        Scene.from_mapping(
+            {
+                "effects": ["loads"],
+                "mechanism": {
+                    **tables,
+                    "side": "right",
+                    "points": points,
+                    "wheel_radius": RADIUS,
+                    "loads": LOAD,
+                },
+                "inputs": {"travel": {"polynomial": [-10.0, 20.0]}, "roll": {"constant": roll}},
+                "time": {"start": 0.0, "stop": 1.0, "samples": 5},
+            }
+        )
+    )
+    contact = contact_of(motion, "inner", "centre")
+    forces = [
+        (np.broadcast_to(LOAD["force"], contact.shape), contact),
+        (motion.joint_force["ball"], motion.position["ball"]),
+        (pull(motion, "one", "out_1", "in_1"), motion.position["out_1"]),
+        (pull(motion, "two", "out_2", "in_2"), motion.position["out_2"]),
+    ]
+    # The height is that in the chassis, whose up has rolled about forward, -x.
+    up = np.array([0.0, np.sin(roll), np.cos(roll)])
+    rest = -sum(force for force, _ in forces)
+    held = (rest @ up)[:, None] * up
+    assert_balanced(contact, *forces, (held, motion.position["centre"]), moment=LOAD["moment"])
+
+
+TRAVEL = {f"{side}.wheel_travel": {"polynomial": [-15.0, 40.0]} for side in ("left", "right")}
+STRAIGHT = {**TRAVEL, "rack": {"constant": 0.0}}
+
+
+def mirrored(load: Mapping[str, Any]) -> dict[str, Any]:
+    """A force of the other side, and a moment, which turns the other way."""
+    force, moment = load["force"], load["moment"]
+    return {"force": force * np.array([1.0, -1.0, 1.0]), "moment": moment * np.array([-1.0, 1.0, -1.0])}
+
+
+def test_mirrored_loads_of_an_axle_make_mirrored_forces_and_one_wheels_load_none_of_the_others() -> None:
+    both = loaded("axle-steer", {"right": LOAD, "left": mirrored(LOAD)}, STRAIGHT)
+    alone = loaded("axle-steer", {"right": LOAD}, STRAIGHT)
+    single = loaded(
+        "double-wishbone",
+        LOAD,
+        {"wheel_travel": TRAVEL["left.wheel_travel"], "rack": {"constant": 0.0}},
+    )
+    assert "left.tie_rod" in both.rod_force
+    bounds = both.proof(rates=True).proven
+    for quantity, mirror in (("rod_force", 1.0), ("joint_force", np.array([1.0, -1.0, 1.0]))):
+        for name, right in both.numbers[quantity].items():
+            if not name.startswith("right."):
+                continue
+            other = name.replace("right.", "left.")
+            left, allowed = both.numbers[quantity][other], 2.0 * bounds[quantity][name]
+            assert (np.abs(right * mirror - left) <= allowed).all(), name
+            assert (np.abs(right - alone.numbers[quantity][name]) <= allowed).all(), name
+            assert (np.abs(alone.numbers[quantity][other]) <= allowed).all(), name
+            own = single.numbers[quantity][name.removeprefix("right.")]
+            assert own == pytest.approx(right, rel=1e-10, abs=1e-8), name
+
+
+def test_forces_are_linear_in_the_loads() -> None:
+    doubled = {name: (2.0 * np.array(vector)).tolist() for name, vector in LOAD.items()}
+    one, twice = loaded("pushrod", LOAD), loaded("pushrod", doubled)
+    for quantity in ("rod_force", "joint_force"):
+        for name, array in one.numbers[quantity].items():
+            assert np.array_equal(twice.numbers[quantity][name], 2.0 * array)
+
+
+def test_a_load_in_other_units_has_its_moment_in_these() -> None:
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    part = content["mechanism"]
+    part.pop("car", None)
+    part["loads"] = LOAD
+    plain = Scene.from_mapping({**content, "effects": ["loads"]}).mechanism
+    part["points"] = {n: [c / 1000.0 for c in place] for n, place in part["points"].items()}
+    part |= {"wheel_radius": part["wheel_radius"] / 1000.0}
+    part["loads"] = {"force": LOAD["force"], "moment": [m / 1000.0 for m in LOAD["moment"]]}
+    metres = Scene.from_mapping({**content, "effects": ["loads"], "units": "m"}).mechanism
+    assert metres.plain(())["loads"][""]["force"] == plain.plain(())["loads"][""]["force"]
+    assert metres.plain(())["loads"][""]["moment"] == pytest.approx(plain.plain(())["loads"][""]["moment"])
+
+
+@pytest.mark.parametrize(
+    "name", ["pushrod", "double-wishbone", "off-axis-strut", "five-link", "pushrod-by-damper"]
+)
+def test_every_force_is_proven_to_some_roundings(name: str) -> None:
+    motion = loaded(name, LOAD)
+    proof = motion.proof(rates=True)
+    largest = max(
+        float(np.abs(a).max()) for q in ("rod_force", "joint_force") for a in motion.numbers[q].values()
+    )
+    for quantity in ("rod_force", "joint_force"):
+        for number, array in motion.numbers[quantity].items():
+            assert np.isfinite(array).all()
+            assert (proof.proven[quantity][number] <= 1e-11 * largest).all(), number
+
+
+@pytest.mark.parametrize(
+    ("mechanism", "words"),
+    [
+        ({"loads": {}}, "under \\[mechanism.loads\\]"),
+        ({"wheel_radius": None}, "no wheel_radius"),
+        ({"loads": {"left": UP}}, "loads.left"),
+        ({"roles": {}}, "stand beside|beside type"),
+    ],
+)
+def test_what_loads_need_is_said(mechanism: Mapping[str, Any], words: str) -> None:
+    with pytest.raises(SceneError, match=words):
+        loaded("pushrod", **{"loads": UP, **mechanism})
+
+
+def test_a_mechanism_that_is_held_twice_has_no_forces() -> None:
+    content = Scene.load("bricard").model_dump(exclude_none=True)
+    structure = Scene.from_mapping(content).mechanism.structure
+    plain = structure.plain(content["inputs"])
+    body = next(body for body in structure.bodies if body != "chassis")
+    content["mechanism"] |= {
+        **{key: plain[key] for key in ("bodies", "rods", "slides", "inputs")},
+        "roles": {"knuckle": body, "wheel_axis": plain["bodies"][body][:2]},
+        "type": None,
+        "wheel_radius": RADIUS,
+        "loads": UP,
+    }
+    with pytest.raises(SceneError, match="follow from the others"):
+        Scene.from_mapping({**content, "effects": ["loads"]})
+
+
+def test_sweeps_and_maps_take_no_loads() -> None:
+    content = Scene.load("pushrod").model_dump(exclude_none=True)
+    content["mechanism"]["loads"] = UP
+    scene = Scene.from_mapping({**content, "effects": ["loads"]})
+    with pytest.raises(SceneError, match="takes no derivatives"):
+        sweep(scene, offsets={"lower_ball_joint.z": [0.0, 1.0]})
+    with pytest.raises(MapError, match="without derivatives"):
+        kinematic_map(scene, dict.fromkeys(scene.inputs, (-1.0, 1.0)))
