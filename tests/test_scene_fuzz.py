@@ -4,23 +4,17 @@
 found stays as a named case.
 """
 
-import contextlib
-import io
 import os
-import signal
 import traceback
-from collections.abc import Iterator
 from pathlib import Path
-from types import FrameType
-from typing import NamedTuple
 
 import numpy as np
 import pytest
+from guarded import Run, TooLong, run_within, wrong_words
 from mutation import mutated_scene
 from program import complaints
 
 import pointcoord
-from validate.cli import main
 
 FILES = 10_000 if os.environ.get("HYPOTHESIS_PROFILE") == "deep" else 300
 BLOCK = 25
@@ -31,38 +25,9 @@ COMPARED = 10
 LIMIT = {"simulate": 10.0, "validate": 30.0}
 
 
-class TooLong(BaseException):
-    """Nothing but the test itself may catch this."""
-
-
-class Run(NamedTuple):
-    """What a user of the program sees."""
-
-    status: int
-    out: str
-    err: str
-
-
-@contextlib.contextmanager
-def stopwatch(seconds: float) -> Iterator[None]:
-    def late(number: int, frame: FrameType | None) -> None:
-        raise TooLong(f"more than {seconds} s of processor time")
-
-    before = signal.signal(signal.SIGPROF, late)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.signal(signal.SIGPROF, before)
-
-
 def run(*arguments: str) -> Run:
-    """Run the program; warnings are errors here, so one ends it as a traceback would."""
-    out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), stopwatch(LIMIT[arguments[0]]):
-        status = main(arguments)
-    return Run(status, out.getvalue(), err.getvalue())
+    """Run the program within the time of its command."""
+    return run_within(LIMIT[arguments[0]], *arguments)
 
 
 def fault(number: int, folder: Path) -> str:
@@ -72,30 +37,20 @@ def fault(number: int, folder: Path) -> str:
     try:
         found = _wrong_motion(run("simulate", str(path), "-o", str(target)), target)
         if not found and number % COMPARED == 0:
-            found = _wrong_words(run("validate", str(path)))
+            found = wrong_words(run("validate", str(path)))
     except (Exception, TooLong):
         return traceback.format_exc()
     return found
 
 
-def _wrong_words(seen: Run) -> str:
-    if seen.status not in (0, 2, 3):
-        return f"status {seen.status}: {seen.out}"
-    if len(complaints(seen.err)) != (1 if seen.status else 0):
-        return f"status {seen.status} with {seen.err!r}"
-    # Whatever a file calls things, its names do not steer the terminal.
-    lines = seen.err.removesuffix("\n").split("\n")
-    return "" if all(map(str.isprintable, lines)) else f"steers a terminal: {seen.err!r}"
-
-
 def _wrong_motion(seen: Run, target: Path) -> str:
     if not target.exists():
         # A motion that stops on its way is kept as far as it went; one that does not begin leaves nothing.
-        return _wrong_words(seen) if seen.status else "a motion was promised and none is there"
+        return wrong_words(seen) if seen.status else "a motion was promised and none is there"
     with np.load(target) as motion:
         bad = [name for name in motion.files if not np.isfinite(motion[name]).all()]
         empty = len(motion["time [s]"]) == 0
-    return _wrong_words(seen) or ("a motion of no instants" if empty else f"not finite: {bad}" if bad else "")
+    return wrong_words(seen) or ("a motion of no instants" if empty else f"not finite: {bad}" if bad else "")
 
 
 @pytest.mark.parametrize("first", range(0, FILES, BLOCK))

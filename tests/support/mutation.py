@@ -59,6 +59,14 @@ def mutated_scene(number: int) -> bytes:
     return _with_fewer_samples(data)
 
 
+def mutated(data: bytes, number: int) -> bytes:
+    """A file with one to four changes of its text."""
+    random = Random(number)
+    for _ in range(random.choice((1, 1, 1, 2, 4))):
+        data = random.choice(TEXT_CHANGES)(random, data)
+    return data
+
+
 def _with_fewer_samples(data: bytes) -> bytes:
     try:
         samples = tomllib.loads(data.decode("utf-8"))["time"]["samples"]
