@@ -91,21 +91,25 @@ class Input:
 
 @dataclass(frozen=True)
 class Corner:
-    """What of a linkage is the wheel and the steering axis, and which way the car points.
+    """A wheel: what of a linkage carries it, and which way the car points.
 
     Attributes:
+        side: of the car, "left" or "right".
         outboard, rearward, up: directions of the car in the frame of the points, unit vectors; outboard leads
             from the car's middle to the wheel: right or minus right.
         roles: the two points each of `wheel_axis` (inner point, wheel centre), `steering_axis` (lower, upper)
             and `damper`, as far as the linkage has them.
+        knuckle: the body that carries the wheel, "" if there is none.
         wheel_radius: of the wheel, mm, if it is given.
         car: numbers of the car, as far as they are given (see `car_of`).
     """
 
+    side: str
     outboard: Vector
     rearward: Vector
     up: Vector
     roles: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    knuckle: str = ""
     wheel_radius: float | None = None
     car: Mapping[str, float] = field(default_factory=dict)
 
@@ -123,6 +127,17 @@ class Corner:
                 role,
             )
         return self.roles[role]
+
+    @property
+    def carrier(self) -> str:
+        """The knuckle; DescriptionError where there is none."""
+        if not self.knuckle:
+            raise DescriptionError(
+                "needs the role 'knuckle', and the mechanism has none: name the body that carries the wheel "
+                "in [roles], or ask for other effects",
+                "knuckle",
+            )
+        return self.knuckle
 
     @property
     def radius(self) -> float:
@@ -146,7 +161,7 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
-        corner: what of it is the wheel.
+        corners: part -> its wheel; "" for a mechanism without parts.
         aids: bodies, and points, that are there for the equations only and are not reported.
         turns: name -> Axis through the drawn place of a point, by which inputs of these names turn the whole
             car, one after the other; these directions do not turn.
@@ -157,7 +172,7 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
-    corner: Corner
+    corners: Mapping[str, Corner]
     aids: frozenset[str] = frozenset()
     turns: Mapping[str, Axis] = field(default_factory=dict)
 

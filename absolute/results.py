@@ -58,14 +58,16 @@ class Motion:
 
     Attributes:
         chassis: (N, 3, 3) displacement of the chassis and its rates, mm and s, after its turns.
-        by: what effects call the K inputs that they take derivatives by.
+        by: part, and "travel" or "rack", of the K inputs that effects take derivatives by.
+        part: whose wheel is looked at.
     """
 
     mechanism: Mechanism
     instants: Instants
     chassis: Array
     turns: tuple[Turning, ...]
-    by: tuple[str, ...] = ()
+    by: tuple[tuple[str, str], ...] = ()
+    part: str = ""
 
     def solution(self, rates: bool, conditions: bool, effects: Mapping[str, Array]) -> Solution:
         """The motion in mm, seen from the ground, with what is asked for."""
@@ -96,7 +98,7 @@ class Motion:
     @property
     def corner(self) -> Corner:
         """What of the linkage is the wheel, and which way the car points."""
-        return self.mechanism.model.corner
+        return self.mechanism.model.corners[self.part]
 
     def components(self, vector: Dual) -> Dual:
         """A vector (3, N) along outboard, rearward and up, which do not turn."""
@@ -130,12 +132,12 @@ class Motion:
         return constant(np.array(self.mechanism.model.points[point])[:, None])
 
     def riding(self, on: str, arm: Dual) -> Dual:
-        """An arm (3, N) that from now on turns with the body of a point."""
+        """An arm (3, N) that from now on turns with a body."""
         return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
 
     def spin(self, on: str) -> Array:
-        """(3, N, K) angular velocity of a point's body for unit rates of inputs, as the ground sees it."""
-        spin = self._slopes(self._holder(on)[0], 1)
+        """(3, N, K) angular velocity of a body for unit rates of inputs, as the ground sees it."""
+        spin = self._slopes(self.mechanism.drawing.bodies[on], 1)
         for turn in self.turns:
             spin = np.matvec(turn.rotation, spin)
         return spin.T

@@ -70,7 +70,7 @@ def solve(
             points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        effects: names of EFFECTS.
+        effects: names of `effect_names(model)`.
     Returns:
         Solution with one row per instant.
     Raises:
@@ -126,7 +126,7 @@ class Assembled:
     ) -> Solution:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
         model, mechanism = self.model, self._mechanism
-        asked = effects_of(effects)
+        asked = effects_of(effects, model)
         by = inputs_of(asked, model)
         driving = {name: law for name, law in inputs.items() if name not in model.turns}
         series = input_series(model.values, driving)
