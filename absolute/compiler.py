@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from absolute.car import car_of
-from absolute.description import Axis, Corner, Input, Joint, Model, Vector
+from absolute.description import Axis, Corner, Input, Joint, Load, Model, Vector
 from absolute.errors import DescriptionError
 from absolute.solution import Array
 
@@ -40,11 +40,12 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
             slides: name -> points, body, through, along, turns.
             inputs: those that are driven, name -> one of angle, travel, height, contact, distance; or
                 turns, which turn the whole car. What displaces it is no part of the linkage.
-            roles: wheel_axis, steering_axis and damper, two points each, if there are any.
+            roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
             sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
                 and a dot.
             wheel_radius: of the wheel, mm, or None where nothing needs it.
+            loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
             car: axle, wheelbase, centre_of_gravity_height, brake_share and drive_share, as far as given.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
@@ -106,6 +107,8 @@ class _Compiler:
             self.joints,
             self.inputs,
             self.corners,
+            self._loads(),
+            self._ball_joints(),
             frozenset(self.aids),
             self.turns,
         )
@@ -161,6 +164,33 @@ class _Compiler:
                 knuckle = next(iter(self._holders(own["wheel_axis"][1])), "")
             corners[part] = Corner(side, self.directions[side], rearward, up, own, knuckle, self.radius, car)
         return corners
+
+    def _loads(self) -> dict[str, Load]:
+        loads = {}
+        for part, given in self.of.get("loads", {}).items():
+            _one_of("the part of a load", self.corners, part)
+            vectors = (given["force"], given.get("moment", (0.0, 0.0, 0.0)))
+            names = (f"{what} of load {part!r}" for what in ("force", "moment"))
+            loads[part] = Load(*(vector_of(n, part, of) for n, of in zip(names, vectors, strict=True)))
+        return loads
+
+    def _ball_joints(self) -> dict[str, str]:
+        """Points of ball joints whose force is determined, and the body on which it is given: the knuckle, or
+        the first that moves."""
+        bodies = {body: names for body, names in self.bodies.items() if body not in self.aids}
+        sliding = {point for slide in self.slides.values() for point in slide["points"]}
+        knuckles = {corner.knuckle for corner in self.corners.values()}
+        reported = {}
+        for point in self.of["points"]:
+            held = [body for body in bodies if point in bodies[body]]
+            if (
+                len(held) == 2
+                and point not in sliding
+                and len(set(bodies[held[0]]) & set(bodies[held[1]])) == 1
+            ):
+                moving = [body for body in held if body != CHASSIS]
+                reported[point] = next((body for body in moving if body in knuckles), moving[0])
+        return reported
 
     def _radius(self) -> float | None:
         radius = self.of.get("wheel_radius")

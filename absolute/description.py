@@ -90,6 +90,14 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Load:
+    """What the ground does to a wheel at its contact point: N and N mm, in the frame of the points."""
+
+    force: Vector
+    moment: Vector
+
+
+@dataclass(frozen=True)
 class Corner:
     """A wheel: what of a linkage carries it, and which way the car points.
 
@@ -162,6 +170,8 @@ class Model:
         joints: name -> Joint.
         inputs: name -> Input.
         corners: part -> its wheel; "" for a mechanism without parts.
+        loads: part -> what acts on its wheel.
+        ball_joints: point that two bodies share, and no other -> the one whose force is reported.
         aids: bodies, and points, that are there for the equations only and are not reported.
         turns: name -> Axis through the drawn place of a point, by which inputs of these names turn the whole
             car, one after the other; these directions do not turn.
@@ -173,6 +183,8 @@ class Model:
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
     corners: Mapping[str, Corner]
+    loads: Mapping[str, Load] = field(default_factory=dict)
+    ball_joints: Mapping[str, str] = field(default_factory=dict)
     aids: frozenset[str] = frozenset()
     turns: Mapping[str, Axis] = field(default_factory=dict)
 
@@ -195,3 +207,22 @@ class Model:
     def reported(self) -> tuple[str, ...]:
         """Names of the points that are not aids."""
         return tuple(name for name in self.points if name not in self.aids)
+
+    def input_of(self, part: str, by: str, what: str) -> str:
+        """The one driven input of a part, or of all, that is the travel of a slide ("rack") or is not.
+
+        Raises:
+            DescriptionError: there is none, or another; `what` needs it.
+        """
+        others = tuple(f"{other}." for other in self.corners if other != part)
+        own = [value for value in self.values if not value.startswith(others)]
+        found = [value for value in own if (value in self.steering) == (by == "rack")]
+        if len(found) != 1:
+            kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
+            raise DescriptionError(
+                f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
+                f"{found} of {own}; drive other inputs, or ask for other effects",
+                what,
+                found,
+            )
+        return found[0]

@@ -80,13 +80,13 @@ def travel(motion: Motion) -> Dual:
 
 def scrub_radius(motion: Motion) -> Dual:
     """Distance of contact point and steering axis at the ground, never negative."""
-    outboard, rearward, _ = _off_axis(motion, _contact(motion))
+    outboard, rearward, _ = _off_axis(motion, contact(motion))
     return hypot(outboard, rearward)
 
 
 def mechanical_trail(motion: Motion) -> Dual:
     """Steering axis at the ground from the contact point, along the tyre's own forward."""
-    outboard, rearward, _ = _off_axis(motion, _contact(motion))
+    outboard, rearward, _ = _off_axis(motion, contact(motion))
     spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis")
     return (rearward * spin_outboard - outboard * spin_rearward) / hypot(spin_outboard, spin_rearward)
 
@@ -103,10 +103,10 @@ LENGTHS: Mapping[str, Number] = {
     "contact_travel": lambda motion: _contact_moved(replace(motion, turns=()))[UP],
     "half_track_change": lambda motion: _contact_moved(motion)[OUTBOARD],
     "recession": lambda motion: _contact_moved(motion)[REARWARD],
-    "kingpin_offset": lambda motion: _off_axis(motion, _contact(motion))[OUTBOARD],
+    "kingpin_offset": lambda motion: _off_axis(motion, contact(motion))[OUTBOARD],
     "scrub_radius": scrub_radius,
     "mechanical_trail": mechanical_trail,
-    "castor_offset": lambda motion: _off_axis(motion, _contact(motion))[REARWARD],
+    "castor_offset": lambda motion: _off_axis(motion, contact(motion))[REARWARD],
     "kingpin_offset_at_wheel": lambda motion: _off_axis(motion)[OUTBOARD],
     "hub_trail": lambda motion: -_off_axis(motion)[REARWARD],
     "damper_length": lambda motion: hypot(*motion.line(*motion.corner.ends("damper"))),
@@ -265,7 +265,7 @@ def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
     one, other = (steer_angle(of).value for of in (left, right))
     sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
     inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
-    drawn = (of.components(of.drawn(_centre(of)) + _contact(of, drawn=True)) for of in (left, right))
+    drawn = (of.components(of.drawn(_centre(of)) + contact(of, drawn=True)) for of in (left, right))
     return inner, outer, wheelbase, np.asarray(sum(place[OUTBOARD].value for place in drawn))
 
 
@@ -291,7 +291,7 @@ def _centre(motion: Motion) -> str:
     return motion.corner.ends("wheel_axis")[1]
 
 
-def _contact(motion: Motion, drawn: bool = False) -> Dual:
+def contact(motion: Motion, drawn: bool = False) -> Dual:
     """From the wheel centre to the contact point, (3, N)."""
     inner, centre = motion.corner.ends("wheel_axis")
     spin = motion.drawn(centre) - motion.drawn(inner) if drawn else motion.line(inner, centre)
@@ -303,20 +303,18 @@ def _contact(motion: Motion, drawn: bool = False) -> Dual:
 
 def _contact_moved(motion: Motion) -> Dual:
     """From the drawn contact point to the contact point, by its components, (3, N)."""
-    return motion.components(
-        motion.moved(_centre(motion)) + (_contact(motion) - _contact(motion, drawn=True))
-    )
+    return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
 
 
 def _contact_place(motion: Motion) -> Dual:
     """The contact point from the origin, by its components, (3, N)."""
     centre = _centre(motion)
-    return motion.components(motion.drawn(centre) + motion.moved(centre) + _contact(motion))
+    return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion))
 
 
 def _contact_velocity(motion: Motion) -> Array:
     """v by its components, (3, N)."""
-    velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, _contact(motion))
+    velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, contact(motion))
     return _slope(motion, motion.components(velocity), "travel")
 
 
@@ -417,27 +415,7 @@ def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str
         for part in asked.parts
         if asked.effect.by
     }
-    return {(part, by): input_of(model, part, by, what) for (part, by), what in wanted.items()}
-
-
-def input_of(model: Model, part: str, by: str, what: str) -> str:
-    """The one driven input of a part, or of all, that is the travel of a slide ("rack") or is not ("travel").
-
-    Raises:
-        DescriptionError: there is none, or another; `what` needs it.
-    """
-    others = tuple(f"{other}." for other in model.corners if other != part)
-    own = [value for value in model.values if not value.startswith(others)]
-    found = [value for value in own if (value in model.steering) == (by == "rack")]
-    if len(found) != 1:
-        kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
-        raise DescriptionError(
-            f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
-            f"{found} of {own}; drive other inputs, or ask for other effects",
-            what,
-            found,
-        )
-    return found[0]
+    return {(part, by): model.input_of(part, by, what) for (part, by), what in wanted.items()}
 
 
 def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:
