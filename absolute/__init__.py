@@ -2,7 +2,7 @@
 
 from absolute.compiler import compile
 from absolute.description import Axis, Corner, Input, Joint, Model
-from absolute.effects import EFFECTS, Effect
+from absolute.effects import AXLE_EFFECTS, EFFECTS, Effect, effect_names
 from absolute.errors import (
     AbsoluteError,
     AssemblyError,
@@ -17,6 +17,7 @@ from absolute.solution import Solution
 from absolute.solve import Assembled, ClosedDrawing, close_drawing, solve
 
 __all__ = [
+    "AXLE_EFFECTS",
     "EFFECTS",
     "AbsoluteError",
     "Assembled",
@@ -37,5 +38,6 @@ __all__ = [
     "UnreachableError",
     "close_drawing",
     "compile",
+    "effect_names",
     "solve",
 ]

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from absolute.car import car_of
-from absolute.description import Axis, Corner, Input, Joint, Model, Vector
+from absolute.description import Axis, Corner, Input, Joint, Load, Model, Vector
 from absolute.errors import DescriptionError
 from absolute.solution import Array
 
@@ -40,9 +40,12 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
             slides: name -> points, body, through, along, turns.
             inputs: those that are driven, name -> one of angle, travel, height, contact, distance; or
                 turns, which turn the whole car. What displaces it is no part of the linkage.
-            roles: wheel_axis, steering_axis and damper, two points each, if there are any.
+            roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
+            sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
+                and a dot.
             wheel_radius: of the wheel, mm, or None where nothing needs it.
+            loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
             car: axle, wheelbase, centre_of_gravity_height, brake_share and drive_share, as far as given.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
@@ -70,7 +73,8 @@ class _Compiler:
         self.turns: dict[str, Axis] = {}
         self.aids: set[str] = set()
         self.directions = self._directions()
-        self.corner = self._corner()
+        self.radius = self._radius()
+        self.corners = self._corners()
 
     def model(self) -> Model:
         """All joints, then all inputs."""
@@ -102,7 +106,9 @@ class _Compiler:
             self.bodies,
             self.joints,
             self.inputs,
-            self.corner,
+            self.corners,
+            self._loads(),
+            self._ball_joints(),
             frozenset(self.aids),
             self.turns,
         )
@@ -139,15 +145,52 @@ class _Compiler:
         opposite = {"down": -up, "left": -right, "rearward": np.cross(right, up)}
         return {name: plain(direction) for name, direction in (directions | opposite).items()}
 
-    def _corner(self) -> Corner:
-        side = self.of.get("side")
-        side = "left" if side is None else side
-        _one_of("side", SIDES, side)
-        roles = {role: tuple(ends) for role, ends in self.of.get("roles", {}).items() if role in ROLES}
-        for role, ends in roles.items():
-            _one_of(f"an end of the {role}", self.points, *ends)
-        outboard, rearward, up = (self.directions[name] for name in (side, "rearward", "up"))
-        return Corner(outboard, rearward, up, roles, self._radius(), car_of(self.of.get("car")))
+    def _corners(self) -> dict[str, Corner]:
+        """The wheel of each part, whose names have its own in front; or the only one."""
+        side, car = self.of.get("side"), car_of(self.of.get("car"))
+        sides = self.of.get("sides") or {"": "left" if side is None else side}
+        roles, rearward, up = self.of.get("roles", {}), self.directions["rearward"], self.directions["up"]
+        corners = {}
+        for part, side in sides.items():
+            _one_of(f"side of {part!r}" if part else "side", SIDES, side)
+            prefix = f"{part}." if part else ""
+            own = {role: tuple(roles[prefix + role]) for role in ROLES if prefix + role in roles}
+            for role, ends in own.items():
+                _one_of(f"an end of the {prefix}{role}", self.points, *ends)
+            knuckle = roles.get(f"{prefix}knuckle", "")
+            if knuckle:
+                _one_of(f"the {prefix}knuckle", self.bodies, knuckle)
+            elif "wheel_axis" in own:
+                knuckle = next(iter(self._holders(own["wheel_axis"][1])), "")
+            corners[part] = Corner(side, self.directions[side], rearward, up, own, knuckle, self.radius, car)
+        return corners
+
+    def _loads(self) -> dict[str, Load]:
+        loads = {}
+        for part, given in self.of.get("loads", {}).items():
+            _one_of("the part of a load", self.corners, part)
+            vectors = (given["force"], given.get("moment", (0.0, 0.0, 0.0)))
+            names = (f"{what} of load {part!r}" for what in ("force", "moment"))
+            loads[part] = Load(*(vector_of(n, part, of) for n, of in zip(names, vectors, strict=True)))
+        return loads
+
+    def _ball_joints(self) -> dict[str, str]:
+        """Points of ball joints whose force is determined, and the body on which it is given: the knuckle, or
+        the first that moves."""
+        bodies = {body: names for body, names in self.bodies.items() if body not in self.aids}
+        sliding = {point for slide in self.slides.values() for point in slide["points"]}
+        knuckles = {corner.knuckle for corner in self.corners.values()}
+        reported = {}
+        for point in self.of["points"]:
+            held = [body for body in bodies if point in bodies[body]]
+            if (
+                len(held) == 2
+                and point not in sliding
+                and len(set(bodies[held[0]]) & set(bodies[held[1]])) == 1
+            ):
+                moving = [body for body in held if body != CHASSIS]
+                reported[point] = next((body for body in moving if body in knuckles), moving[0])
+        return reported
 
     def _radius(self) -> float | None:
         radius = self.of.get("wheel_radius")
@@ -304,12 +347,12 @@ class _Compiler:
         inner, centre = given["contact"]
         _one_of(f"a point of input {name!r}", self.points, inner, centre)
         carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
-        radius = self.corner.wheel_radius
+        radius = self.radius
         if carrier is None or radius is None:
             needed = "two points of one body" if carrier is None else "a wheel_radius above 0"
             found = [inner, centre] if carrier is None else radius
             raise DescriptionError(f"input {name!r} needs {needed}, not {found!r}", name, found)
-        axis, up = self._line(inner, centre), np.array(self.corner.up)
+        axis, up = self._line(inner, centre), np.array(self.directions["up"])
         level = np.cross(axis, up)
         if not np.any(level):
             raise DescriptionError(
@@ -326,7 +369,7 @@ class _Compiler:
             "level",
             CHASSIS,
             disc,
-            Axis(self.bodies[CHASSIS][0], self.corner.up),
+            Axis(self.bodies[CHASSIS][0], self.directions["up"]),
             Axis(centre, plain(level)),
         )
         self._over_drawn(name, disc, point, "up")

@@ -90,22 +90,34 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Load:
+    """What the ground does to a wheel at its contact point: N and N mm, in the frame of the points."""
+
+    force: Vector
+    moment: Vector
+
+
+@dataclass(frozen=True)
 class Corner:
-    """What of a linkage is the wheel and the steering axis, and which way the car points.
+    """A wheel: what of a linkage carries it, and which way the car points.
 
     Attributes:
+        side: of the car, "left" or "right".
         outboard, rearward, up: directions of the car in the frame of the points, unit vectors; outboard leads
             from the car's middle to the wheel: right or minus right.
         roles: the two points each of `wheel_axis` (inner point, wheel centre), `steering_axis` (lower, upper)
             and `damper`, as far as the linkage has them.
+        knuckle: the body that carries the wheel, "" if there is none.
         wheel_radius: of the wheel, mm, if it is given.
         car: numbers of the car, as far as they are given (see `car_of`).
     """
 
+    side: str
     outboard: Vector
     rearward: Vector
     up: Vector
     roles: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    knuckle: str = ""
     wheel_radius: float | None = None
     car: Mapping[str, float] = field(default_factory=dict)
 
@@ -123,6 +135,17 @@ class Corner:
                 role,
             )
         return self.roles[role]
+
+    @property
+    def carrier(self) -> str:
+        """The knuckle; DescriptionError where there is none."""
+        if not self.knuckle:
+            raise DescriptionError(
+                "needs the role 'knuckle', and the mechanism has none: name the body that carries the wheel "
+                "in [roles], or ask for other effects",
+                "knuckle",
+            )
+        return self.knuckle
 
     @property
     def radius(self) -> float:
@@ -146,7 +169,9 @@ class Model:
         bodies: name -> names of its points; the chassis is one of them.
         joints: name -> Joint.
         inputs: name -> Input.
-        corner: what of it is the wheel.
+        corners: part -> its wheel; "" for a mechanism without parts.
+        loads: part -> what acts on its wheel.
+        ball_joints: point that two bodies share, and no other -> the one whose force is reported.
         aids: bodies, and points, that are there for the equations only and are not reported.
         turns: name -> Axis through the drawn place of a point, by which inputs of these names turn the whole
             car, one after the other; these directions do not turn.
@@ -157,7 +182,9 @@ class Model:
     bodies: Mapping[str, tuple[str, ...]]
     joints: Mapping[str, Joint]
     inputs: Mapping[str, Input]
-    corner: Corner
+    corners: Mapping[str, Corner]
+    loads: Mapping[str, Load] = field(default_factory=dict)
+    ball_joints: Mapping[str, str] = field(default_factory=dict)
     aids: frozenset[str] = frozenset()
     turns: Mapping[str, Axis] = field(default_factory=dict)
 
@@ -180,3 +207,22 @@ class Model:
     def reported(self) -> tuple[str, ...]:
         """Names of the points that are not aids."""
         return tuple(name for name in self.points if name not in self.aids)
+
+    def input_of(self, part: str, by: str, what: str) -> str:
+        """The one driven input of a part, or of all, that is the travel of a slide ("rack") or is not.
+
+        Raises:
+            DescriptionError: there is none, or another; `what` needs it.
+        """
+        others = tuple(f"{other}." for other in self.corners if other != part)
+        own = [value for value in self.values if not value.startswith(others)]
+        found = [value for value in own if (value in self.steering) == (by == "rack")]
+        if len(found) != 1:
+            kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
+            raise DescriptionError(
+                f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
+                f"{found} of {own}; drive other inputs, or ask for other effects",
+                what,
+                found,
+            )
+        return found[0]

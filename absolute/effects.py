@@ -1,20 +1,22 @@
 """Effects: numbers of the car that a solved motion has at each instant, by name.
 
-A number is written once, as a function of points. Its derivatives by inputs come of the same function (see
-`Dual`). With a from the inner point of the spin axis to the wheel centre W, and k from the lower to the upper
-point of the steering axis, the contact point of a wheel of radius r is the lowest of a thin disc,
+A number is written once, as a function of points; its derivatives by inputs come of the same function (see
+`Dual`). With n the direction from the inner point of the spin axis to the wheel centre W, and k the line from
+the lower to the upper point of the steering axis, the contact point of a wheel of radius r is the lowest of a
+thin disc,
 
-    c = W - r unit(up - (up . n) n),    n = a / |a|,
+    c = W - r unit(up - (up . n) n),
 
-and is measured against the point of the line along k that is as high.
+and is measured against the point of the line along k that is as high. Vectors are taken along outboard,
+rearward and up, which do not turn with the car.
 
-Where travel changes, c as a point of the knuckle has a velocity v, and the knuckle an angular velocity w. In
-the plane of a horizontal h and up through c, its points move about the instant centre
+As the wheel travels, c as a point of the knuckle has a velocity v, and the knuckle an angular velocity w. In
+the plane of a horizontal h and up through c, the knuckle's points move about the instant centre
 
     c - (v . up / w . a) h + (v . h / w . a) up,    a = h x up.
 
-To add a number, add its function to `ANGLES` or to `LENGTHS`; one of velocities, which has no gradients, to
-`OF_VELOCITIES`.
+To add a number of places, add it to `ANGLES` or to `LENGTHS`; one of velocities, which has no gradients, to
+`OF_VELOCITIES`; one of both wheels of an axle to `AXLE_EFFECTS`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -33,119 +35,105 @@ from absolute.vectors import EPS
 
 Number = Callable[[Motion], Dual]
 
-
-def camber(motion: Motion) -> Dual:
-    """Spin axis against outboard, seen from the front: + where the wheel leans out at its top (eq. 17)."""
-    outboard, _, up = _along(motion, "wheel_axis")
-    return arctan2(-up, outboard)
+OUTBOARD, REARWARD, UP = 0, 1, 2
+# As much of a velocity may be rounding at the largest condition number that is not refused.
+ROUNDING = EPS / SMALLEST_RCOND
 
 
-def toe(motion: Motion) -> Dual:
-    """Spin axis against outboard, seen from above: + where the wheel's front edge is turned in."""
-    outboard, rearward, _ = _along(motion, "wheel_axis")
-    return arctan2(-rearward, outboard)
+@dataclass(frozen=True)
+class Effect:
+    """A number at each instant.
+
+    Attributes:
+        unit: of the value.
+        value: (N,) of a motion looked at from a wheel; or, of an axle, from the left and the right one.
+        by: the input of each wheel that it takes derivatives by: "rack", the one that is the travel of a
+            slide, "travel", the one that is not, or "" for none.
+    """
+
+    unit: str
+    value: Callable[..., Array]
+    by: str = ""
 
 
-def kingpin(motion: Motion) -> Dual:
-    """Steering axis against up, seen from the front: + where it leans in at its top (eq. 16)."""
-    outboard, _, up = _along(motion, "steering_axis")
-    return arctan2(-outboard, up)
+def angle(role: str, rise: int, run: int, sense: float = 1.0) -> Number:
+    """atan2(sense * rise, run) of the line of a role, by its components."""
+
+    def of(motion: Motion) -> Dual:
+        line = _along(motion, role)
+        return arctan2(line[rise] if sense > 0.0 else -line[rise], line[run])
+
+    return of
 
 
-def caster(motion: Motion) -> Dual:
-    """Steering axis against up, seen from the side: + where it leans rearward at its top."""
-    _, rearward, up = _along(motion, "steering_axis")
-    return arctan2(rearward, up)
+def steer_angle(motion: Motion) -> Dual:
+    """Of the wheel plane in plan, positive to the left."""
+    toe = ANGLES["toe"](motion)
+    return toe if motion.corner.side == "right" else -toe
 
 
 def travel(motion: Motion) -> Dual:
     """How far the wheel centre has gone up in the chassis' frame."""
     still = replace(motion, turns=())
-    return still.components(still.moved(_centre(still)))[2]
-
-
-def contact_travel(motion: Motion) -> Dual:
-    """How far the contact point has gone up in the chassis' frame, of a disc that hangs along its up."""
-    return _contact_moved(replace(motion, turns=()))[2]
-
-
-def half_track_change(motion: Motion) -> Dual:
-    """How far the contact point has gone outboard."""
-    return _contact_moved(motion)[0]
-
-
-def recession(motion: Motion) -> Dual:
-    """How far the contact point has gone rearward."""
-    return _contact_moved(motion)[1]
-
-
-def kingpin_offset(motion: Motion) -> Dual:
-    """Contact point from the steering axis at the ground, outboard (ISO 8855, 7.2.6, along the car's y)."""
-    return _off_axis(motion, _contact(motion))[0]
+    return still.components(still.moved(_centre(still)))[UP]
 
 
 def scrub_radius(motion: Motion) -> Dual:
-    """Distance of contact point and steering axis at the ground (ISO 8855, 7.2.10), never negative."""
-    outboard, rearward, _ = _off_axis(motion, _contact(motion))
+    """Distance of contact point and steering axis at the ground, never negative."""
+    outboard, rearward, _ = _off_axis(motion, contact(motion))
     return hypot(outboard, rearward)
 
 
 def mechanical_trail(motion: Motion) -> Dual:
-    """Steering axis at the ground from the contact point, along the tyre's own forward (ISO 8855, 7.2.3)."""
-    outboard, rearward, _ = _off_axis(motion, _contact(motion))
+    """Steering axis at the ground from the contact point, along the tyre's own forward."""
+    outboard, rearward, _ = _off_axis(motion, contact(motion))
     spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis")
     return (rearward * spin_outboard - outboard * spin_rearward) / hypot(spin_outboard, spin_rearward)
 
 
-def castor_offset(motion: Motion) -> Dual:
-    """Steering axis at the ground from the contact point, along the car's forward."""
-    return _off_axis(motion, _contact(motion))[1]
-
-
-def kingpin_offset_at_wheel(motion: Motion) -> Dual:
-    """Wheel centre from the steering axis at its height, outboard."""
-    return _off_axis(motion)[0]
-
-
-def hub_trail(motion: Motion) -> Dual:
-    """Steering axis from the wheel centre at its height, rearward."""
-    return -_off_axis(motion)[1]
-
-
-def damper_length(motion: Motion) -> Dual:
-    """Distance of the damper's two ends."""
-    return hypot(*motion.line(*motion.corner.ends("damper")))
+ANGLES: Mapping[str, Number] = {
+    "camber": angle("wheel_axis", UP, OUTBOARD, -1.0),
+    "kingpin": angle("steering_axis", OUTBOARD, UP, -1.0),
+    "toe": angle("wheel_axis", REARWARD, OUTBOARD, -1.0),
+    "caster": angle("steering_axis", REARWARD, UP),
+    "steer_angle": steer_angle,
+}
+LENGTHS: Mapping[str, Number] = {
+    "travel": travel,
+    "contact_travel": lambda motion: _contact_moved(replace(motion, turns=()))[UP],
+    "half_track_change": lambda motion: _contact_moved(motion)[OUTBOARD],
+    "recession": lambda motion: _contact_moved(motion)[REARWARD],
+    "kingpin_offset": lambda motion: _off_axis(motion, contact(motion))[OUTBOARD],
+    "scrub_radius": scrub_radius,
+    "mechanical_trail": mechanical_trail,
+    "castor_offset": lambda motion: _off_axis(motion, contact(motion))[REARWARD],
+    "kingpin_offset_at_wheel": lambda motion: _off_axis(motion)[OUTBOARD],
+    "hub_trail": lambda motion: -_off_axis(motion)[REARWARD],
+    "damper_length": lambda motion: hypot(*motion.line(*motion.corner.ends("damper"))),
+}
 
 
 def roll_centre_height(motion: Motion) -> Array:
     """Height above the contact point at which its normal meets the car's middle plane, front view.
 
-    The normal is at a right angle to the velocity of the contact point, as one of the knuckle, where travel
-    changes; the plane goes through the origin. Not a number where that velocity is level.
+    The normal is at a right angle to the velocity of the contact point as one of the knuckle; the plane goes
+    through the origin. Not a number where that velocity is level.
     """
-    centre, (outboard, _, up) = _centre(motion), _contact_velocity(motion)
-    place = motion.components(motion.drawn(centre) + motion.moved(centre) + _contact(motion))
-    return place[0].value * _ratio(outboard, up)
+    outboard, _, up = _contact_velocity(motion)
+    return _contact_place(motion)[OUTBOARD].value * _ratio(outboard, up)
 
 
-def front_view_swing_arm(motion: Motion) -> Array:
-    """How far inboard of the contact point the instant centre is, front view. Not a number at infinity."""
-    return -_instant_centre(motion, 0)[0]
+def instant_centre(h: int, component: int, sense: float = 1.0) -> Callable[[Motion], Array]:
+    """How far the instant centre in the plane of h and up is from c, along h or up; no number at infinity."""
 
+    def of(motion: Motion) -> Array:
+        velocity, spin = _contact_velocity(motion), _slope_of_turn(motion)
+        axes = motion.corner.axes
+        turn = np.cross(axes[h], axes[UP]) @ spin
+        turn = np.where(np.abs(turn) <= ROUNDING * _speed(motion, velocity), 0.0, turn)
+        return sense * (_ratio(velocity[h], turn) if component == UP else -_ratio(velocity[UP], turn))
 
-def front_view_centre_height(motion: Motion) -> Array:
-    """How far above the contact point the instant centre is, front view. Not a number at infinity."""
-    return _instant_centre(motion, 0)[1]
-
-
-def side_view_swing_arm(motion: Motion) -> Array:
-    """How far rearward of the contact point the instant centre is, side view. Not a number at infinity."""
-    return _instant_centre(motion, 1)[0]
-
-
-def side_view_centre_height(motion: Motion) -> Array:
-    """How far above the contact point the instant centre is, side view. Not a number at infinity."""
-    return _instant_centre(motion, 1)[1]
+    return of
 
 
 def anti_brake(motion: Motion) -> Array:
@@ -166,56 +154,25 @@ def anti_drive(motion: Motion) -> Array:
     return _anti(motion, _slope(motion, velocity, "travel"), "drive_share")
 
 
-ANGLES: tuple[Number, ...] = camber, kingpin, toe, caster
-LENGTHS: tuple[Number, ...] = (
-    travel,
-    contact_travel,
-    half_track_change,
-    recession,
-    kingpin_offset,
-    scrub_radius,
-    mechanical_trail,
-    castor_offset,
-    kingpin_offset_at_wheel,
-    hub_trail,
-    damper_length,
-)
-OF_VELOCITIES: Mapping[Callable[[Motion], Array], str] = {
-    roll_centre_height: "mm",
-    front_view_swing_arm: "mm",
-    front_view_centre_height: "mm",
-    side_view_swing_arm: "mm",
-    side_view_centre_height: "mm",
-    anti_brake: "%",
-    anti_drive: "%",
+OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
+    "roll_centre_height": ("mm", roll_centre_height),
+    "front_view_swing_arm": ("mm", instant_centre(OUTBOARD, OUTBOARD, -1.0)),
+    "front_view_centre_height": ("mm", instant_centre(OUTBOARD, UP)),
+    "side_view_swing_arm": ("mm", instant_centre(REARWARD, REARWARD)),
+    "side_view_centre_height": ("mm", instant_centre(REARWARD, UP)),
+    "anti_brake": ("%", anti_brake),
+    "anti_drive": ("%", anti_drive),
 }
 
 
-@dataclass(frozen=True)
-class Effect:
-    """A number at each instant.
-
-    Attributes:
-        unit: of the value.
-        value: (N,) at the instants of a solved motion.
-        by: the input that it takes derivatives by: "rack", the one that is the travel of a slide, "travel",
-            the one that is not, or "" for none.
-    """
-
-    unit: str
-    value: Callable[[Motion], Array]
-    by: str = ""
-
-
-def _effects() -> Iterator[tuple[str, Effect]]:
+def _wheel_effects() -> Iterator[tuple[str, Effect]]:
     for unit, numbers in (("rad", ANGLES), ("mm", LENGTHS)):
-        for number in numbers:
-            name = number.__name__
+        for name, number in numbers.items():
             yield name, Effect(unit, _value(number))
             yield f"{name}_by_travel", Effect(f"{unit}/mm", _by_travel(number), "travel")
             yield f"{name}_by_rack", Effect(f"{unit}/mm", _by_rack(number), "rack")
-    for along, unit in OF_VELOCITIES.items():
-        yield along.__name__, Effect(unit, along, "travel")
+    for name, (unit, value) in OF_VELOCITIES.items():
+        yield name, Effect(unit, value, "travel")
 
 
 def _value(number: Number) -> Callable[[Motion], Array]:
@@ -232,17 +189,101 @@ def _by_rack(number: Number) -> Callable[[Motion], Array]:
     return lambda motion: _slope(motion, number(motion), "rack")
 
 
+def track(left: Motion, right: Motion) -> Array:
+    """Distance of both contact points along right."""
+    return np.asarray(_contact_place(left)[OUTBOARD].value + _contact_place(right)[OUTBOARD].value)
+
+
+def axle_roll_centre_offset(left: Motion, right: Motion) -> Array:
+    """The axle's roll centre from the middle plane, through the origin, along right."""
+    return _axle_roll_centre(left, right)[0]
+
+
+def axle_roll_centre_height(left: Motion, right: Motion) -> Array:
+    """The axle's roll centre above the line through both contact points, along up."""
+    return _axle_roll_centre(left, right)[1]
+
+
+def turning_radius(left: Motion, right: Motion) -> Array:
+    """L |cot d_l + cot d_r| / 2: of the axle's middle, of the wheels' mean turn, on a car of wheelbase L."""
+    inner, outer, wheelbase, _ = _steered(left, right)
+    return np.asarray(np.abs(_cot(inner) + _cot(outer)) * wheelbase / 2.0)
+
+
+def ackermann(left: Motion, right: Motion) -> Array:
+    """100 (d_i - d_o) / (atan(L / (R - t/2)) - atan(L / (R + t/2))), %, R the turning radius (Lotus)."""
+    inner, outer, wheelbase, width = _steered(left, right)
+    radius = turning_radius(left, right)
+    wanted = (np.arctan(_ratio(wheelbase, radius + half)) for half in (-width / 2.0, width / 2.0))
+    return np.asarray(100.0 * _ratio(inner - outer, np.subtract(*wanted)))
+
+
+def ackermann_error(left: Motion, right: Motion) -> Array:
+    """d_o - arccot(cot d_i + t / L): what the outer wheel is steered more than it would have to be."""
+    inner, outer, wheelbase, width = _steered(left, right)
+    return outer - np.arctan2(1.0, _cot(inner) + width / wheelbase)
+
+
+EFFECTS: Mapping[str, Effect] = dict(_wheel_effects())
+AXLE_EFFECTS: Mapping[str, Effect] = {
+    "track": Effect("mm", track),
+    "axle_roll_centre_height": Effect("mm", axle_roll_centre_height, "travel"),
+    "axle_roll_centre_offset": Effect("mm", axle_roll_centre_offset, "travel"),
+    "turning_radius": Effect("mm", turning_radius),
+    "ackermann": Effect("%", ackermann),
+    "ackermann_error": Effect("rad", ackermann_error),
+}
+
+
+def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
+    """Where the normals of both contact points meet in the front view, (N,) each: offset and height.
+
+    With c, d the contact points and v, w their velocities there, it is c + x with v . x = 0 and
+    w . x = w . (d - c). Not a number where the normals are parallel or a velocity is zero.
+    """
+    (c, v), (d, w) = _front_view(left), _front_view(right)
+    turn, apart = v[0] * w[1] - v[1] * w[0], d - c
+    speeds = np.hypot(*v) * np.hypot(*w)
+    turn = np.where(np.abs(turn) <= ROUNDING * speeds, 0.0, turn)
+    x = _ratio((w * apart).sum(axis=0), turn) * np.array([-v[1], v[0]])
+    return c[0] + x[0], x[1] - x[0] * apart[1] / apart[0]
+
+
+def _front_view(motion: Motion) -> tuple[Array, Array]:
+    """The contact point and its velocity with travel along right and up, (2, N) each."""
+    velocity = _contact_velocity(motion)
+    out = np.array([[1.0 if motion.corner.side == "right" else -1.0], [1.0]])
+    place, seen = (out * of[[OUTBOARD, UP]] for of in (_contact_place(motion).value, velocity))
+    still = np.hypot(*seen) <= ROUNDING * motion.mechanism.drawing.size * _speed(motion, velocity)
+    return place, np.where(still, 0.0, seen)
+
+
+def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
+    """Steer angles of the inner and of the outer wheel, not numbers where the wheels are not steered to one
+    side; the wheelbase, and the track as drawn."""
+    (wheelbase,) = needed(left.corner.car, "wheelbase")
+    one, other = (steer_angle(of).value for of in (left, right))
+    sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
+    inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
+    drawn = (of.components(of.drawn(_centre(of)) + contact(of, drawn=True)) for of in (left, right))
+    return inner, outer, wheelbase, np.asarray(sum(place[OUTBOARD].value for place in drawn))
+
+
+def _cot(angle: Array) -> Array:
+    return np.asarray(np.cos(angle) / np.sin(angle))
+
+
 def _slope(motion: Motion, number: Dual, by: str) -> Array:
-    return number.slopes[..., motion.by.index(by)]
+    return number.slopes[..., motion.by.index((motion.part, by))]
 
 
-def _ratio(rise: Array, run: Array) -> Array:
+def _ratio(rise: Array | float, run: Array) -> Array:
     """Not a number where run is zero."""
     return np.where(run == 0.0, np.nan, rise / run)
 
 
 def _along(motion: Motion, role: str) -> Dual:
-    """The line of a role along outboard, rearward and up, (3, N)."""
+    """The line of a role by its components, (3, N)."""
     return motion.components(motion.line(*motion.corner.ends(role)))
 
 
@@ -250,40 +291,42 @@ def _centre(motion: Motion) -> str:
     return motion.corner.ends("wheel_axis")[1]
 
 
-def _contact(motion: Motion, drawn: bool = False) -> Dual:
+def contact(motion: Motion, drawn: bool = False) -> Dual:
     """From the wheel centre to the contact point, (3, N)."""
     inner, centre = motion.corner.ends("wheel_axis")
     spin = motion.drawn(centre) - motion.drawn(inner) if drawn else motion.line(inner, centre)
     normal = spin / hypot(*spin)
     up = constant(np.array(motion.corner.up)[:, None])
-    down = normal * motion.components(normal)[2] - up
+    down = normal * motion.components(normal)[UP] - up
     return down * (constant(motion.corner.radius) / hypot(*down))
 
 
 def _contact_moved(motion: Motion) -> Dual:
-    """From the drawn contact point to the contact point, along outboard, rearward and up, (3, N)."""
-    return motion.components(
-        motion.moved(_centre(motion)) + (_contact(motion) - _contact(motion, drawn=True))
-    )
+    """From the drawn contact point to the contact point, by its components, (3, N)."""
+    return motion.components(motion.moved(_centre(motion)) + (contact(motion) - contact(motion, drawn=True)))
+
+
+def _contact_place(motion: Motion) -> Dual:
+    """The contact point from the origin, by its components, (3, N)."""
+    centre = _centre(motion)
+    return motion.components(motion.drawn(centre) + motion.moved(centre) + contact(motion))
 
 
 def _contact_velocity(motion: Motion) -> Array:
-    """v along outboard, rearward and up, (3, N)."""
-    centre = _centre(motion)
-    velocity = motion.moved(centre) + motion.riding(centre, _contact(motion))
+    """v by its components, (3, N)."""
+    velocity = motion.moved(_centre(motion)) + motion.riding(motion.corner.carrier, contact(motion))
     return _slope(motion, motion.components(velocity), "travel")
 
 
-def _instant_centre(motion: Motion, along: int) -> tuple[Array, Array]:
-    """From the contact point along h, which is outboard (0) or rearward (1), and up, (N,) each."""
-    velocity, spin = _contact_velocity(motion), motion.spin(_centre(motion))[..., motion.by.index("travel")]
-    axes = motion.corner.axes
-    turn = np.cross(axes[along], axes[2]) @ spin
-    # Of a velocity, so much may be rounding at the largest condition number that is not refused.
-    rounding = EPS / SMALLEST_RCOND
-    speed = np.linalg.norm(spin, axis=0) + np.linalg.norm(velocity, axis=0) / motion.mechanism.drawing.size
-    turn = np.where(np.abs(turn) <= rounding * speed, 0.0, turn)
-    return -_ratio(velocity[2], turn), _ratio(velocity[along], turn)
+def _slope_of_turn(motion: Motion) -> Array:
+    """w, (3, N), in the frame of the points."""
+    return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, "travel"))]
+
+
+def _speed(motion: Motion, velocity: Array) -> Array:
+    """|w| + |v| / size of the mechanism, (N,): what rounding of either is measured by."""
+    turning = np.linalg.norm(_slope_of_turn(motion), axis=0)
+    return np.asarray(turning + np.linalg.norm(velocity, axis=0) / motion.mechanism.drawing.size)
 
 
 def _anti(motion: Motion, velocity: Array, share: str) -> Array:
@@ -291,71 +334,101 @@ def _anti(motion: Motion, velocity: Array, share: str) -> Array:
     s = -1 at the front and 1 at the rear, (N,)."""
     names = ("axle", "wheelbase", "centre_of_gravity_height", share)
     sign, wheelbase, drawn_height, part = needed(motion.corner.car, *names)
-    height = drawn_height - contact_travel(motion).value
-    return 100.0 * part * sign * _ratio(velocity[1] * wheelbase, velocity[2] * height)
+    height = drawn_height - LENGTHS["contact_travel"](motion).value
+    return 100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, velocity[UP] * height)
 
 
 def _off_axis(motion: Motion, beside: Dual | None = None) -> Dual:
-    """To the wheel centre, or a point beside it, from the point of the steering axis that is as high: along
-    outboard, rearward and up, (3, N)."""
+    """To the wheel centre, or a point beside it, from the point of the steering axis that is as high, by its
+    components, (3, N)."""
     lower, _ = motion.corner.ends("steering_axis")
     point = motion.line(lower, _centre(motion))
     point = motion.components(point if beside is None else point + beside)
     axis = _along(motion, "steering_axis")
-    return point - axis * (point[2] / axis[2])
+    return point - axis * (point[UP] / axis[UP])
 
 
-EFFECTS: Mapping[str, Effect] = dict(_effects())
+@dataclass(frozen=True)
+class Asked:
+    """An effect and the parts of the mechanism whose wheels it looks at."""
+
+    effect: Effect
+    parts: tuple[str, ...]
+
+    def value(self, motion: Motion) -> Array:
+        """(N,) of a motion."""
+        return self.effect.value(*(replace(motion, part=part) for part in self.parts))
 
 
-def effects_of(names: Sequence[str]) -> dict[str, Effect]:
+def effect_names(model: Model) -> tuple[str, ...]:
+    """Names of all effects of a model: `NAME` of EFFECTS, in a mechanism with parts `PART.NAME`, and those of
+    AXLE_EFFECTS where it has two parts on opposite sides. Some may lack a role or a number of the car."""
+    return tuple(_effects_in(model))
+
+
+def _effects_in(model: Model) -> dict[str, Asked]:
+    found = {
+        f"{part}.{name}" if part else name: Asked(effect, (part,))
+        for part in model.corners
+        for name, effect in EFFECTS.items()
+    }
+    sides = {corner.side: part for part, corner in model.corners.items()}
+    if len(sides) == len(model.corners) == 2:
+        parts = (sides["left"], sides["right"])
+        found |= {name: Asked(effect, parts) for name, effect in AXLE_EFFECTS.items()}
+    return found
+
+
+def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
     """The effects of some names.
 
     Raises:
         InputError: there is no such effect; it names those there are.
+        DescriptionError: one of an axle, of a mechanism that is none.
     """
+    known = _effects_in(model)
     for name in names:
-        if name not in EFFECTS:
-            raise InputError(
-                f"there is no effect {name!r}; it must be one of {list(EFFECTS)}", name, None, name
+        if name not in known and name in AXLE_EFFECTS:
+            sides = {part: corner.side for part, corner in model.corners.items() if part}
+            raise DescriptionError(
+                f"effect {name!r} needs a mechanism with exactly two parts, on opposite sides, and this one "
+                f"has {sides or 'none'}: ask for other effects",
+                name,
+                sides,
             )
-    return {name: EFFECTS[name] for name in names}
+        if name not in known:
+            raise InputError(
+                f"there is no effect {name!r}; it must be one of {list(known)}", name, None, name
+            )
+    return {name: known[name] for name in names}
 
 
-def inputs_of(effects: Mapping[str, Effect], model: Model) -> dict[str, str]:
-    """ "travel", "rack" -> the value of the input that effects take their derivatives by, where they do.
+def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str], str]:
+    """Part and "travel" or "rack" -> the value of the input that effects take their derivatives by.
 
     Raises:
         DescriptionError: there is not exactly one such input.
     """
-    inputs: dict[str, str] = {}
-    for name, effect in effects.items():
-        if not effect.by:
-            continue
-        found = [value for value in model.values if (value in model.steering) == (effect.by == "rack")]
-        if len(found) != 1:
-            kind = "is the travel of a slide" if effect.by == "rack" else "is not the travel of a slide"
-            raise DescriptionError(
-                f"effect {name!r} needs exactly one driven input that {kind}, and there are {len(found)}: "
-                f"{found} of {list(model.values)}; drive other inputs, or ask for other effects",
-                name,
-                found,
-            )
-        inputs[effect.by] = found[0]
-    return inputs
+    wanted = {
+        (part, asked.effect.by): f"effect {name!r}"
+        for name, asked in effects.items()
+        for part in asked.parts
+        if asked.effect.by
+    }
+    return {(part, by): model.input_of(part, by, what) for (part, by), what in wanted.items()}
 
 
-def numbers_of(effects: Mapping[str, Effect], motion: Motion) -> dict[str, Array]:
+def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:
     """name -> (N,) of a motion.
 
     Raises:
         DescriptionError: the mechanism lacks a role or a wheel's radius that one needs.
     """
     numbers: dict[str, Array] = {}
-    for name, effect in effects.items():
+    for name, asked in effects.items():
         try:
             with np.errstate(all="ignore"):
-                numbers[name] = effect.value(motion)
+                numbers[name] = asked.value(motion)
         except DescriptionError as error:
             raise DescriptionError(f"effect {name!r} {error}", error.name) from None
     return numbers

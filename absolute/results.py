@@ -58,17 +58,19 @@ class Motion:
 
     Attributes:
         chassis: (N, 3, 3) displacement of the chassis and its rates, mm and s, after its turns.
-        by: what effects call the K inputs that they take derivatives by.
+        by: part, and "travel" or "rack", of the K inputs that effects take derivatives by.
+        part: whose wheel is looked at.
     """
 
     mechanism: Mechanism
     instants: Instants
     chassis: Array
     turns: tuple[Turning, ...]
-    by: tuple[str, ...] = ()
+    by: tuple[tuple[str, str], ...] = ()
+    part: str = ""
 
-    def solution(self, rates: bool, conditions: bool, effects: Mapping[str, Array]) -> Solution:
-        """The motion in mm, seen from the ground, with what is asked for."""
+    def solution(self, rates: bool, conditions: bool, **asked: Mapping[str, Array]) -> Solution:
+        """The motion in mm, seen from the ground, with what is asked for: effects and forces by name."""
         size, model = self.mechanism.drawing.size, self.mechanism.model
         # Of body rates, angular velocity is the first.
         orders = 3 if rates else 1
@@ -80,7 +82,7 @@ class Motion:
             if body not in model.aids:
                 for kind, state in zip(OF_BODIES[: orders - 1], self._body(body), strict=False):
                     numbers[kind][body] = state
-        numbers["effects"] = dict(effects)
+        numbers |= {kind: dict(of) for kind, of in asked.items()}
         iterations, residual = self.instants.corrections, self.instants.residual
         iterations.setflags(write=False)
         return Solution(
@@ -96,7 +98,7 @@ class Motion:
     @property
     def corner(self) -> Corner:
         """What of the linkage is the wheel, and which way the car points."""
-        return self.mechanism.model.corner
+        return self.mechanism.model.corners[self.part]
 
     def components(self, vector: Dual) -> Dual:
         """A vector (3, N) along outboard, rearward and up, which do not turn."""
@@ -110,14 +112,14 @@ class Motion:
         drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
         body = next((body for body, points in bodies.items() if {start, end} <= set(points)), None)
         if body is None:
-            return self._seen(self._place(end) - self._place(start))
-        return self._seen(self._turned(drawing.bodies[body], drawing.line(start, end)))
+            return self._seen(self.place(end) - self.place(start))
+        return self._seen(self._turned_line(drawing.bodies[body], drawing.line(start, end)))
 
     def moved(self, point: str) -> Dual:
         """(3, N) from the place where a point is drawn to where it is, mm, without the displacement of the
         chassis, which is the same for all points."""
         body, arm = self._holder(point)
-        moved = self._place(point)
+        moved = self.place(point)
         moved[0] -= self.mechanism.drawing.origins[body] + arm
         # A turn takes the difference of two places as a vector, and moves the drawn one as well.
         turned = np.zeros((1, *moved.shape[1:]))
@@ -130,37 +132,44 @@ class Motion:
         return constant(np.array(self.mechanism.model.points[point])[:, None])
 
     def riding(self, on: str, arm: Dual) -> Dual:
-        """An arm (3, N) that from now on turns with the body of a point."""
+        """An arm (3, N) that from now on turns with a body."""
         return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
 
     def spin(self, on: str) -> Array:
-        """(3, N, K) angular velocity of a point's body for unit rates of inputs, as the ground sees it."""
-        spin = self._slopes(self._holder(on)[0], 1)
+        """(3, N, K) angular velocity of a body for unit rates of inputs, as the ground sees it."""
+        return self.turned(self._slopes(self.mechanism.drawing.bodies[on], 1)).T
+
+    def turned_back(self, vector: Array) -> Array:
+        """Vectors (N, 3) that the ground sees, in the frame of the chassis."""
+        for turn in reversed(self.turns):
+            vector = np.matvec(turn.rotation.swapaxes(-1, -2), vector)
+        return vector
+
+    def turned(self, vector: Array) -> Array:
+        """Vectors (..., N, 3) in the frame of the chassis, as the ground sees them."""
         for turn in self.turns:
-            spin = np.matvec(turn.rotation, spin)
-        return spin.T
+            vector = np.matvec(turn.rotation, vector)
+        return vector
 
     def _seen(self, vector: Array) -> Dual:
         """A vector and its slopes (1 + K, N, 3), in units of size, as the ground sees it, mm."""
-        for turn in self.turns:
-            vector = np.matvec(turn.rotation, vector)
-        seen = (vector * self.mechanism.drawing.size).T
+        seen = (self.turned(vector) * self.mechanism.drawing.size).T
         return Dual(seen[..., 0], seen[..., 1:])
 
     def _slopes(self, body: int, kind: int) -> Array:
         """(K, N, 3) velocity of the origin of a body, or angular velocity (1), for unit rates of inputs."""
         return self.instants.slopes[:, :, body, kind].swapaxes(0, 1)
 
-    def _turned(self, body: int, line: Array) -> Array:
+    def _turned_line(self, body: int, line: Array) -> Array:
         """(1 + K, N, 3) a line of a body, (3,), and its slopes."""
         turned = self.instants.rotation[:, body] @ line
         return np.concatenate((turned[None], cross(self._slopes(body, 1), turned)))
 
-    def _place(self, point: str) -> Array:
+    def place(self, point: str) -> Array:
         """(1 + K, N, 3) a point from the middle, on the chassis, and its slopes, in units of size."""
         body, arm = self._holder(point)
         origin = self.instants.origin[:, body]
-        return np.concatenate((origin[None], self._slopes(body, 0))) + self._turned(body, arm)
+        return np.concatenate((origin[None], self._slopes(body, 0))) + self._turned_line(body, arm)
 
     def _holder(self, point: str) -> tuple[int, Array]:
         """The body of a point, and the arm to the point from its origin in the drawing, in units of size."""

@@ -1,7 +1,7 @@
 """What a solved motion holds: plain arrays by name, one row per instant."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,10 @@ class Solution:
             of the rows, and what rounds coordinates as large as the mechanism. What it makes of a number
             depends on the pose.
         effects: name -> (N,), those asked for, in their units (see `EFFECTS`).
+        rod_force: name of a rod, or `damper` with its part in front -> (N,) axial force, N, tension positive;
+            empty when no loads were asked for.
+        joint_force: point of a ball joint -> (N, 3), N, world axes: on the knuckle, or on the other body that
+            moves and is named first; empty when no loads were asked for.
     """
 
     position: Mapping[str, Array]
@@ -40,3 +44,5 @@ class Solution:
     condition: Array | None
     accuracy: Array
     effects: Mapping[str, Array]
+    rod_force: Mapping[str, Array] = field(default_factory=dict)
+    joint_force: Mapping[str, Array] = field(default_factory=dict)

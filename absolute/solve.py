@@ -12,6 +12,7 @@ from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
 from absolute.input_arrays import chassis_series, input_series
+from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates, velocities
 from absolute.results import Instants, Motion
@@ -59,6 +60,7 @@ def solve(
     rates: bool = True,
     conditions: bool = False,
     effects: Sequence[str] = (),
+    loads: bool = False,
 ) -> Solution:
     """Positions, velocities and accelerations of a linkage at N instants.
 
@@ -70,12 +72,14 @@ def solve(
             points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
-        effects: names of EFFECTS.
+        effects: names of `effect_names(model)`.
+        loads: also the forces of rods and ball joints under the loads of the model.
     Returns:
         Solution with one row per instant.
     Raises:
         DescriptionError: an axis of the model has no length or its lines point apart; rows that are too many;
-            effects of a linkage that lacks what they are effects of, or an input to take derivatives by.
+            loads of a mechanism that has none, or whose rows follow from each other; effects or loads of one
+            that lacks a role, a number of the car, or an input to take derivatives by.
         InputError: names, shapes or values of inputs or chassis; an effect that is not known.
         AssemblyError: the bodies as drawn do not fit together.
         UnreachableError: the mechanism locks before the inputs of an instant.
@@ -94,7 +98,7 @@ def solve(
     >>> bool(abs(solution.position["end"][0, 2] - 150.0) < 1e-12)
     True
     """
-    return Assembled(model).solve(inputs, chassis, rates, conditions, effects)
+    return Assembled(model).solve(inputs, chassis, rates, conditions, effects, loads)
 
 
 class Assembled:
@@ -123,10 +127,11 @@ class Assembled:
         rates: bool = True,
         conditions: bool = False,
         effects: Sequence[str] = (),
+        loads: bool = False,
     ) -> Solution:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
         model, mechanism = self.model, self._mechanism
-        asked = effects_of(effects)
+        asked = effects_of(effects, model)
         by = inputs_of(asked, model)
         driving = {name: law for name, law in inputs.items() if name not in model.turns}
         series = input_series(model.values, driving)
@@ -139,10 +144,11 @@ class Assembled:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
             turned = tuple(turn.first(len(found.residual)) for turn in turns)
             motion = Motion(mechanism, found, carried[: len(found.residual)], turned, tuple(by))
-            return motion.solution(rates, conditions, numbers_of(asked, motion))
+            carried_by = forces(motion) if loads else {}
+            return motion.solution(rates, conditions, effects=numbers_of(asked, motion), **carried_by)
 
         with np.errstate(over="ignore", invalid="ignore"):
-            # What effects lack is missing from no instants as well.
+            # What effects and loads lack is missing from no instants as well.
             solution()
             try:
                 for run in self._followed(series, rates, tuple(by.values())):

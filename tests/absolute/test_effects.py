@@ -13,6 +13,7 @@ from absolute.dual import arctan2, constant
 
 EFFECTS = tuple(absolute.EFFECTS)
 NUMBERS = tuple(name for name, effect in absolute.EFFECTS.items() if not effect.by)
+ANGLES = ("camber", "kingpin", "toe", "caster", "steer_angle")
 GRADIENTS = tuple(name for name in EFFECTS if "_by_" in name)
 POSES: tuple[dict[str, float], ...] = (
     {},
@@ -40,10 +41,10 @@ def assert_close(found: dict[str, float], wanted: dict[str, float], times: float
 
 def test_each_number_has_its_gradients_in_units_of_it() -> None:
     units = {name: effect.unit for name, effect in absolute.EFFECTS.items()}
-    assert len(NUMBERS) == 15
+    assert len(NUMBERS) == 16
     gradients = {f"{name}_by_{by}" for name in NUMBERS for by in ("travel", "rack")}
     assert set(EFFECTS) == {*NUMBERS, *gradients, *BY_TRAVEL}
-    assert {name for name in NUMBERS if units[name] == "rad"} == {"camber", "kingpin", "toe", "caster"}
+    assert {name for name in NUMBERS if units[name] == "rad"} == {*ANGLES}
     assert {units[name] for name in NUMBERS} == {"rad", "mm"}
     assert {name for name in BY_TRAVEL if units[name] != "mm"} == {"anti_brake", "anti_drive"}
     assert units["anti_brake"] == units["anti_drive"] == "%"
@@ -61,7 +62,10 @@ def test_a_mirrored_scaled_moved_or_turned_car_has_the_same_numbers(values: dict
     # The mirror image turns the other way about lines that it keeps, and the same way about those across.
     other = {**values, "turn": -values.get("turn", 0.0), "roll": -values.get("roll", 0.0)}
     points = {name: (x, -y, z) for name, (x, y, z) in DRAWN.items()}
-    assert_close(solved(EFFECTS, other, points, side="right"), here, 2)
+    # To the left on either side: a wheel turned in goes the other way.
+    signs = {name: -1.0 if name.startswith("steer_angle") else 1.0 for name in EFFECTS}
+    mirrored = solved(EFFECTS, other, points, side="right")
+    assert_close({name: signs[name] * value for name, value in mirrored.items()}, here, 2)
     for scale in (1e-3, 1e3):
         points = {name: np.multiply(scale, point) for name, point in DRAWN.items()}
         scaled = solved(

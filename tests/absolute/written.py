@@ -51,6 +51,7 @@ def numbers(
     found = {
         "camber": atan2(-spin[2], out * spin[1]),
         "toe": -heading,
+        "steer_angle": -out * heading,
         "travel": (still(hub) - drawn(hub))[2],
     }
     if "damper" in roles:

@@ -1,0 +1,119 @@
+"""Statics: tensions of rods and forces of ball joints under loads at the wheels, without mass and friction.
+
+Bodies are in equilibrium where the loads do no work in any motion that the rows allow. With J the rows'
+Jacobian, and w the loads by the velocities on which they work,
+
+    J^T f = w,
+
+and f of a row is the work of the loads for each mm that the row grows while all others are held. So f of a
+rod is its tension, and the rows of a ball joint, which say where its point of the second body is from that of
+the first, push the second body by -f.
+
+Chassis and inputs hold the mechanism; but in a corner with a damper its length is held, and the input that
+moves the wheel is free.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from absolute.effects import contact
+from absolute.errors import DescriptionError
+from absolute.mechanism import Mechanism
+from absolute.newton import SMALLEST_RCOND, solved
+from absolute.results import Motion
+from absolute.rows import Row, RowStack
+from absolute.solution import Array
+from absolute.vectors import cross
+
+
+def forces(motion: Motion) -> dict[str, dict[str, Array]]:
+    """What links carry.
+
+    Returns:
+        rod_force: name of a rod, or `damper` with its part in front where one holds -> (N,) tension, N.
+        joint_force: point of a ball joint -> (N, 3) force, N, on the body that `Model.ball_joints` names, as
+            the ground sees it.
+        Not numbers where the pose is singular while dampers are held.
+    Raises:
+        DescriptionError: there is no load, or a role that one needs; rows follow from each other, so that
+            forces are not determined.
+    """
+    mechanism, model = motion.mechanism, motion.mechanism.model
+    _require_determined(mechanism)
+    stack, bodies = mechanism.stack, mechanism.drawing.bodies
+    placed = stack.place(motion.instants.rotation, motion.instants.origin)
+    jacobian, owners = stack.jacobian(placed), list(stack.owners)
+    for part, corner in model.corners.items():
+        if "damper" in corner.roles:
+            name = f"{part}.damper" if part else "damper"
+            moving = model.input_of(part, "travel", f"the load of {name!r}")
+            values = [drive.value for drive in model.inputs.values()]
+            row = mechanism.joint_rows + values.index(moving)
+            held = RowStack([_damper(mechanism, name, *corner.ends("damper"))], (), len(bodies))
+            jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]
+            owners[row] = f"rod {name}"
+    work = np.zeros((len(jacobian), len(bodies), 2, 3))
+    for part in model.loads:
+        try:
+            work[:, bodies[model.corners[part].carrier]] += _on_knuckle(replace(motion, part=part))
+        except DescriptionError as error:
+            raise DescriptionError(f"the load of the wheel {error}", error.name) from None
+    with np.errstate(all="ignore"):
+        found = solved(jacobian.swapaxes(1, 2), work[:, 1:].reshape(*jacobian.shape[:2], 1))[..., 0]
+        found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
+    joints = {}
+    for point, body in model.ball_joints.items():
+        rows = [row for row, owner in enumerate(owners) if owner == f"ball joint {point}"]
+        force = (found[:, rows, None] * placed.a[:, rows]).sum(axis=1)
+        joints[point] = motion.turned(-force if stack.second[rows[0]] == bodies[body] else force)
+    rods = {name[4:]: found[:, row] for row, name in enumerate(owners) if name.startswith("rod ")}
+    return {"rod_force": rods, "joint_force": joints}
+
+
+def _require_determined(mechanism: Mechanism) -> None:
+    if not mechanism.model.loads:
+        raise DescriptionError(
+            "there are no loads: write [mechanism.loads], for example, force = [0.0, 0.0, 4000.0], in N, or "
+            "do not ask for loads",
+            "loads",
+        )
+    if mechanism.redundant is not None:
+        names = tuple(dict.fromkeys(mechanism.redundant.owners))
+        raise DescriptionError(
+            f"loads need joints that hold each body once; {', '.join(names)} follow from the others, so "
+            "that forces are not determined: free a joint, or do not ask for loads",
+            names[0],
+            names,
+        )
+
+
+def _damper(mechanism: Mechanism, name: str, start: str, end: str) -> Row:
+    """The row of a damper's length."""
+    drawing, bodies = mechanism.drawing, mechanism.model.bodies
+    if any({start, end} <= set(points) for points in bodies.values()):
+        raise DescriptionError(
+            f"{name} is between {start!r} and {end!r}, which keep their distance in one body; two points of "
+            "different bodies are needed",
+            name,
+        )
+    if f"rod {name}" in mechanism.stack.owners:
+        raise DescriptionError(
+            f"a rod and the role are both called {name!r}: give the rod another name", name
+        )
+    holders = [next(body for body in drawing.bodies if point in bodies[body]) for point in (start, end)]
+    first, second = (drawing.bodies[body] for body in holders)
+    one, other = (drawing.arm(body, point) for body, point in zip(holders, (start, end), strict=True))
+    return Row(name, "distance", first, second, np.zeros(3), one, other, drawing.length(name, start, end))
+
+
+def _on_knuckle(motion: Motion) -> Array:
+    """(N, 2, 3) force, N, and moment about the knuckle's origin, N times size, of the load of a part, in the
+    frame of the chassis."""
+    mechanism, corner = motion.mechanism, motion.corner
+    load, size = mechanism.model.loads[motion.part], mechanism.drawing.size
+    origin = motion.instants.origin[:, mechanism.drawing.bodies[corner.carrier]]
+    beside = motion.turned_back(contact(motion).value.T) / size
+    arm = motion.place(corner.ends("wheel_axis")[1])[0] - origin + beside
+    force, moment = (motion.turned_back(np.tile(of, (len(origin), 1))) for of in (load.force, load.moment))
+    return np.stack([force, moment / size + cross(arm, force)], axis=1)
