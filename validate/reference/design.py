@@ -107,7 +107,8 @@ class Design:
         unit: a power of two near the mechanism's size, mm.
         up: direction of z.
         right: direction of y.
-        outboard: +1 where outboard is `right`, -1 where it is the opposite.
+        corners: the prefix of each part's names, and 1 where outboard is `right` there, -1 where it is the
+            opposite; without parts there is one, whose names have none.
         car: what is given of the car as a whole, see `car_data`.
         chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
     """
@@ -119,7 +120,7 @@ class Design:
     unit: Fraction
     up: Vector
     right: Vector
-    outboard: int
+    corners: Mapping[str, int]
     car: Mapping[str, Fraction]
     chosen: tuple[int, ...]
 
@@ -140,8 +141,6 @@ class Design:
             raise BadInputError("up and right", (plain["up"], plain["right"]), "unit vectors, to 1e-12")
         if abs(dot(z, y)) > DIRECTION_SLACK:
             raise BadInputError("up and right", (plain["up"], plain["right"]), "at right angles, to 1e-12")
-        if plain["side"] not in ("left", "right"):
-            raise BadInputError("side", plain["side"], "'left' or 'right'")
         car, first = car_data(plain), next(iter(given))
         unit, origin = _unit(given, first), given[first]
         table = {n: times(minus(p, origin), 1 / unit) for n, p in given.items()}
@@ -152,8 +151,8 @@ class Design:
                     if point not in table:
                         raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(table)}")
         mechanism = compiled(exact, table, unit)
-        outboard = -1 if plain["side"] == "left" else 1
-        return cls(exact, mechanism, table, origin, unit, z, y, outboard, car, _chosen(mechanism, table))
+        corners = _corners(plain)
+        return cls(exact, mechanism, table, origin, unit, z, y, corners, car, _chosen(mechanism, table))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -256,6 +255,15 @@ def ball_vector(vector: Vector) -> Vector:
 def balls(jet: Jet) -> Jet:
     """A jet of fractions as a jet of balls."""
     return Jet(as_ball(jet.value), as_ball(jet.rate), as_ball(jet.acceleration))
+
+
+def _corners(plain: Mapping[str, Any]) -> dict[str, int]:
+    given = {f"sides[{part!r}]": side for part, side in plain.get("sides", {}).items()}
+    for what, side in (given or {"side": plain["side"]}).items():
+        if side not in ("left", "right"):
+            raise BadInputError(what, side, "'left' or 'right'")
+    sides = {f"{part}.": side for part, side in plain.get("sides", {}).items()} or {"": plain["side"]}
+    return {prefix: -1 if side == "left" else 1 for prefix, side in sides.items()}
 
 
 def _unit(points: Mapping[str, Vector], origin: str) -> Fraction:

@@ -11,7 +11,7 @@ from mpmath import mpf
 
 from validate.reference.certificate import Certificate, certify
 from validate.reference.design import Design, Known, ball_vector, values_only
-from validate.reference.effects.at_pose import effects_at, provided
+from validate.reference.effects.at_pose import effects_at, numbers_of
 from validate.reference.effects.registry import ANGLES, named
 from validate.reference.errors import NoReferenceError, NotDecidedError
 from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
@@ -25,7 +25,7 @@ Expected = Callable[[Sequence[arb]], bool]
 
 UNDEFINED = (
     "cannot be proven in this pose, where it is 0/0, or jumps by a whole turn, or the wheel does not travel, "
-    "or an instant centre is at infinity"
+    "or a centre is at infinity, or the wheels are not steered to one side"
 )
 
 
@@ -42,10 +42,11 @@ class Instant:
         acceleration: every point, mm/s^2.
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
-        effects: those that were asked for, by name, see `effects.registry`; rad, mm, these per mm, and %.
+        effects: those that were asked for, by name, with its part's prefix if there are parts, see
+            `effects.registry`; rad, mm, these per mm, and %.
         left_out: those of them that there are none of, and why: the car lacks what they need, or they are
             undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
-            infinity).
+            infinity, wheels that are steered apart).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
@@ -155,14 +156,14 @@ def prove_instant(
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
-    wanted, has = named(effects), provided(design)
+    numbers = {number.name: number for number in numbers_of(design, effects)}
     told = {
         name: ball
-        for name, ball in effects_at(design, known, certificate.enclosure, inverse, effects).items()
-        if ball.rad() < unit ** wanted[name].power * as_ball(Fraction(1, 10**digits))
+        for name, ball in effects_at(design, known, certificate.enclosure, inverse, numbers.values()).items()
+        if ball.rad() < unit ** numbers[name].effect.power * as_ball(Fraction(1, 10**digits))
     }
     bounds["effects"] = max((ball.rad() for ball in told.values()), default=arb(0))
-    left_out = {name: effect.lacks(has) for name, effect in wanted.items() if name not in told}
+    left_out = {name: number.lacks for name, number in numbers.items() if name not in told}
     return Instant(
         **{quantity: _centres(balls) for quantity, balls in vectors.items()},
         effects={name: centre_of(ball) for name, ball in told.items()},

@@ -17,13 +17,15 @@ from validate.reference import Instant
 from validate.reference.car_data import LENGTHS
 from validate.reference.dual import Dual, angle
 from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import Vector, cross, minus, plus, times
 
 FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
 
 
-NAMES = tuple(name for name in EFFECTS if not name.startswith("damper"))  # these cars have none
+# These cars have no damper, and one wheel.
+NAMES = tuple(n for n, one in EFFECTS.items() if not n.startswith("damper") and PAIR not in one.needs)
 
 
 def solved(car: ReferenceCar, inputs: Inputs) -> Instant:
@@ -38,7 +40,8 @@ def same(one: Instant, other: Instant, scale: int = 1, mirrored: bool = False) -
     bound = one.error_bound["effects"] + other.error_bound["effects"] + mpf("1e-60")
     assert set(one.effects) == set(other.effects) == set(NAMES)
     factors = {n: mpf(scale) ** -EFFECTS[n].power for n in NAMES}
-    factors |= {n: -factors[n] for n in NAMES if mirrored and n.endswith("_by_rack")}
+    turned = {n for n in NAMES if mirrored and n.endswith("_by_rack") != n.startswith("steer_angle")}
+    factors |= {n: -factors[n] for n in turned}
     return all(abs(one.effects[n] - other.effects[n] * factors[n]) <= scale * bound for n in NAMES)
 
 
@@ -173,7 +176,9 @@ def car_with(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) ->
         return arb(vector[0]), arb(vector[1]), arb(vector[2])
 
     start = balls((0, 0, 0))
-    lines = {n: Line.between(start, balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))}
+    lines = {
+        n: Line(start, balls(along), balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))
+    }
     drawn = DrawnCar({}, lines, balls(UP), balls(FORWARD), balls((0, out, 0)), None, start, {})
     return Car(drawn, lines, lines)
 

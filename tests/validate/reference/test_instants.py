@@ -68,7 +68,7 @@ def test_an_effect_that_has_not_the_digits_asked_for_is_left_out(
     car: ReferenceCar, size: float, given: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ball = arb(2, size * 1e-30)
-    made_up = Effect("made_up", "rad", "always", (), lambda _: ball)
+    made_up = Effect("made_up", "rad", (), lambda _: ball)
     monkeypatch.setitem(EFFECTS, made_up.name, made_up)
     found = car.solve(car.still, digits=30, effects=[made_up.name])
     assert ("made_up" in found.effects) == given

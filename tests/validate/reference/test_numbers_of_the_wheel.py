@@ -230,7 +230,7 @@ def test_numbers_of_positions_are_those_of_their_words_on_a_turned_chassis(name:
     wanted = by_hand(there, drawn, plain["roles"], car.wheel_radius, out)
     upright = by_hand(level.position, drawn, plain["roles"], car.wheel_radius, out)
     on_chassis = {"travel", "contact_travel"}
-    assert set(wanted) | {"damper_length"} == set(OF_POSITIONS) - set(ANGLES)
+    assert set(wanted) | {"damper_length", "steer_angle"} == set(OF_POSITIONS) - set(ANGLES)
     for one, value in wanted.items():
         assert abs(found.effects[one] - (upright if one in on_chassis else wanted)[one]) < WITHIN, one
         assert abs(level.effects[one] - upright[one]) < WITHIN, one
@@ -278,8 +278,8 @@ def test_what_a_car_lacks_is_said_by_name() -> None:
         (600, 400, 300), (600, 500, 300), roles={"wheel_axis": ROLES["wheel_axis"]}, wheel_radius=None
     )
     found = closed_drawing(Design.from_plain(plain), effects=EVERY).instant
-    gradients = {"camber_by_travel", "toe_by_travel", "travel_by_travel"}
-    assert set(found.effects) == {"camber", "toe", "travel"} | gradients
+    of_the_axis = {"camber", "toe", "steer_angle", "travel"}
+    assert set(found.effects) == of_the_axis | {f"{name}_by_travel" for name in of_the_axis}
     assert found.left_out["caster"] == "needs the role steering_axis"
     assert found.left_out["contact_travel"] == "needs a wheel_radius, mm"
     assert found.left_out["scrub_radius"] == "needs the role steering_axis and a wheel_radius, mm"
