@@ -19,8 +19,9 @@ and the rows are
     p = through + s R line                               a point on a slide; R u . R' v = 0 if it may not turn
     and those of the inputs: see `drives`
 
-A body that shares a point with one before it hangs on that point, so its place is no unknown. The numbers w
-are what the inputs stand for. Everything that the drawing gives is exact.
+A body that shares a point with one before it hangs on that point, so its place is no unknown, unless every
+joint is to have its rows (see `loads`). The numbers w are what the inputs stand for. Everything that the
+drawing gives is exact.
 """
 
 from __future__ import annotations
@@ -53,14 +54,16 @@ class Body:
 class Compiler:
     """Unknowns and rows as they are found; symbols of the numbers w are negative until all are known."""
 
-    def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction) -> None:
-        self.plain, self.table, self.unit = plain, table, unit
+    def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool) -> None:
+        self.plain, self.table, self.unit, self.hangs = plain, table, unit, hangs
         self.lengths: list[bool] = []
         self.rows: list[tuple[str, Polynomial]] = []
         self.readers: list[Reader] = []
         self.positive: list[Polynomial] = []
         self.triples: list[tuple[Vector, Vector, Vector]] = []
         self.frames: dict[str, tuple[Vector, Vector]] = {}
+        self.rods: dict[str, int] = {}
+        self.joints: dict[str, tuple[str, int]] = {}
         self.numbers = 0
         self.lines: dict[str, tuple[list[Polynomial], Vector, bool]] = {}
         self.free: dict[str, Vector] = {}
@@ -79,6 +82,7 @@ class Compiler:
             drawn = minus(*(self.table[end] for end in ends))
             if dot(drawn, drawn) == 0:
                 raise BadInputError(f"the length of {name}", 0, "more than 0")
+            self.rods[name] = len(self.rows)
             self.row(name, dot(gap, gap) - dot(drawn, drawn))
 
     def unknowns(self, count: int, read: Reader, length: bool = False) -> list[Polynomial]:
@@ -134,8 +138,8 @@ class Compiler:
             self.bodies[name] = self._hinged(name, points, on_chassis[0], on_chassis[1])
             tied = set(on_chassis)
         else:
-            hung = ties[0][1][0] if ties else None
-            base = self.bodies[ties[0][0]].place(ties[0][1][0]) if ties else None
+            hung = ties[0][1][0] if ties and self.hangs else None
+            base = self.bodies[ties[0][0]].place(hung) if hung else None
             self.bodies[name] = self._loose(name, points, hung or points[0], base)
             tied = {hung} if hung else set()
         body = self.bodies[name]
@@ -148,6 +152,7 @@ class Compiler:
                 tied.add(point)
                 apart = minus(body.place(point), self.bodies[other].place(point))
                 if i == 0:
+                    self.joints[point] = name, len(self.rows)
                     for axis in range(3):
                         self.row(f"{point} of {name} and {other}", apart[axis])
                 else:

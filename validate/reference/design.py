@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -110,6 +110,8 @@ class Design:
         corners: the prefix of each part's names, and 1 where outboard is `right` there, -1 where it is the
             opposite; without parts there is one, whose names have none.
         car: what is given of the car as a whole, see `car_data`.
+        loads: of the corners that have one, by their prefix, force, N, and moment, N mm, of the ground on the
+            knuckle at its contact point.
         chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
     """
 
@@ -122,6 +124,7 @@ class Design:
     right: Vector
     corners: Mapping[str, int]
     car: Mapping[str, Fraction]
+    loads: Mapping[str, tuple[Vector, Vector]]
     chosen: tuple[int, ...]
 
     @classmethod
@@ -151,8 +154,9 @@ class Design:
                     if point not in table:
                         raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(table)}")
         mechanism = compiled(exact, table, unit)
-        corners = _corners(plain)
-        return cls(exact, mechanism, table, origin, unit, z, y, corners, car, _chosen(mechanism, table))
+        corners, chosen = _corners(plain), _chosen(mechanism, table)
+        loads = _loads(plain, corners)
+        return cls(exact, mechanism, table, origin, unit, z, y, corners, car, loads, chosen)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -264,6 +268,17 @@ def _corners(plain: Mapping[str, Any]) -> dict[str, int]:
             raise BadInputError(what, side, "'left' or 'right'")
     sides = {f"{part}.": side for part, side in plain.get("sides", {}).items()} or {"": plain["side"]}
     return {prefix: -1 if side == "left" else 1 for prefix, side in sides.items()}
+
+
+def _loads(plain: Mapping[str, Any], corners: Collection[str]) -> dict[str, tuple[Vector, Vector]]:
+    found = {}
+    for part, load in plain.get("loads", {}).items():
+        prefix, what = f"{part}." if part else "", f"loads[{part!r}]"
+        if prefix not in corners:
+            raise BadInputError(what, load, f"a load of a part: {', '.join(corners).replace('.', '')}")
+        force, moment = load["force"], load.get("moment", (0, 0, 0))
+        found[prefix] = exact_vector(force, f"{what}.force"), exact_vector(moment, f"{what}.moment")
+    return found
 
 
 def _unit(points: Mapping[str, Vector], origin: str) -> Fraction:

@@ -18,6 +18,7 @@ from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_f
 from validate.reference.jet import part_of
 from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
 from validate.reference.krawczyk import newton
+from validate.reference.loads import forces_at
 from validate.reference.vectors import Vector, each, plus, times
 
 Triple = tuple[mpf, mpf, mpf]
@@ -44,8 +45,9 @@ class Instant:
         angular_acceleration: of the same, rad/s^2.
         effects: those that were asked for, by name, with its part's prefix if there are parts, see
             `effects.registry`; rad, mm, these per mm, and %.
-        left_out: those of them that there are none of, and why: the car lacks what they need, or they are
-            undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
+        rod_force, joint_force: where loads are given, of rods, dampers and ball joints, N; see `loads`.
+        left_out: those of these three that there are none of, and why: the car lacks what they need, or they
+            are undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
             infinity, wheels that are steered apart).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
@@ -61,6 +63,8 @@ class Instant:
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
     effects: Mapping[str, mpf]
+    rod_force: Mapping[str, mpf]
+    joint_force: Mapping[str, Triple]
     left_out: Mapping[str, str]
     radius: mpf
     error_bound: Mapping[str, mpf]
@@ -164,10 +168,17 @@ def prove_instant(
     }
     bounds["effects"] = max((ball.rad() for ball in told.values()), default=arb(0))
     left_out = {name: number.lacks for name, number in numbers.items() if name not in told}
+    statics = forces_at(design, known, certificate.enclosure, digits)
+    left_out = {name: f"needs {lack}" if lack else UNDEFINED for name, lack in left_out.items()}
+    if design.loads:
+        bounds["rod_force"] = max((ball.rad() for ball in statics.rods.values()), default=arb(0))
+        bounds["joint_force"] = max((x.rad() for v in statics.joints.values() for x in v), default=arb(0))
     return Instant(
         **{quantity: _centres(balls) for quantity, balls in vectors.items()},
         effects={name: centre_of(ball) for name, ball in told.items()},
-        left_out={name: f"needs {lack}" if lack else UNDEFINED for name, lack in left_out.items()},
+        rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
+        joint_force=_centres(statics.joints),
+        left_out={**left_out, **statics.left_out},
         radius=mpf_from_fraction(radius, working),
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
         condition=certificate.condition,
