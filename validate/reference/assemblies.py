@@ -82,7 +82,6 @@ def count_assemblies(
             continue  # not proven, so not counted
         if not any(_same(instant, other) for other in found):
             found.append(instant)
-    found.sort(key=lambda one: one.orientation, reverse=True)
     return Assemblies(tuple(found), starts, len(ends))
 
 

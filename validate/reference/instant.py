@@ -7,21 +7,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import arb
-from mpmath import mpf
 
 from validate.reference.certificate import Certificate, certify
 from validate.reference.design import Design, Known, ball_vector, values_only
 from validate.reference.effects.at_pose import effects_at, numbers_of
 from validate.reference.effects.registry import ANGLES, named
 from validate.reference.errors import NoReferenceError, NotDecidedError
-from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
+from validate.reference.exact import as_ball, as_fraction, centre_of
 from validate.reference.jet import part_of
 from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
 from validate.reference.krawczyk import newton
 from validate.reference.loads import forces_at
 from validate.reference.vectors import Vector, each, plus, times
 
-Triple = tuple[mpf, mpf, mpf]
+Triple = tuple[Fraction, Fraction, Fraction]
 Expected = Callable[[Sequence[arb]], bool]
 
 UNDEFINED = (
@@ -33,9 +32,6 @@ UNDEFINED = (
 @dataclass(frozen=True)
 class Instant:
     """The reference at one instant. Mappings go by point or body name; mm, s, rad.
-
-    The mpf numbers hold more digits than mpmath's default: set `mpmath.mp.dps` before computing with
-    them, or mpmath rounds the result.
 
     Attributes:
         position: every point, mm.
@@ -51,9 +47,6 @@ class Instant:
             infinity, wheels that are steered apart).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
-        condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
-        orientation: sign of the Jacobian's determinant, which no regular motion changes: assemblies that meet
-            at a fold differ in it.
         digits: how many digits it took.
     """
 
@@ -62,17 +55,15 @@ class Instant:
     acceleration: Mapping[str, Triple]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
-    effects: Mapping[str, mpf]
-    rod_force: Mapping[str, mpf]
+    effects: Mapping[str, Fraction]
+    rod_force: Mapping[str, Fraction]
     joint_force: Mapping[str, Triple]
     left_out: Mapping[str, str]
-    radius: mpf
-    error_bound: Mapping[str, mpf]
-    condition: float
-    orientation: int
+    radius: Fraction
+    error_bound: Mapping[str, Fraction]
     digits: int
 
-    def effect(self, name: str) -> mpf:
+    def effect(self, name: str) -> Fraction:
         """An effect that must be there.
 
         Raises:
@@ -179,10 +170,8 @@ def prove_instant(
         rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
         joint_force=_centres(statics.joints),
         left_out={**left_out, **statics.left_out},
-        radius=mpf_from_fraction(radius, working),
+        radius=radius,
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
-        condition=certificate.condition,
-        orientation=_orientation(certificate, still),
         digits=working,
     )
 
@@ -223,13 +212,6 @@ def _require_others(design: Design, certificate: Certificate, known: Known, digi
             )
         if not missed.abs_upper() < as_ball(Fraction(1, 10**digits)):
             raise NotDecidedError(f"the row {mechanism.names[i]!r}", missed, f"0 to {digits} digits")
-
-
-def _orientation(certificate: Certificate, known: Known) -> int:
-    determinant = known.matrix(certificate.enclosure).det()
-    if not (determinant > 0 or determinant < 0):
-        raise NotDecidedError("the sign of the Jacobian's determinant", determinant, "not 0")
-    return 1 if determinant > 0 else -1
 
 
 def _greatest(vectors: Iterable[Vector]) -> arb:

@@ -79,6 +79,16 @@ def test_an_effect_that_has_not_the_digits_asked_for_is_left_out(
         assert found.error_bound["effects"] >= Fraction(9, 10) * mpf("1e-30")
 
 
+def test_a_car_at_rest_has_rates_of_exactly_zero_and_heave_alone_turns_nothing(car: ReferenceCar) -> None:
+    rest, lifted = car.solve(car.still), car.solve({**car.still, "heave": (12.5, 3.0, -7.0)})
+    assert {x for v in (*rest.velocity.values(), *rest.acceleration.values()) for x in v} == {0}
+    assert {x for omega in rest.angular_velocity.values() for x in omega} == {0}
+    for name in rest.position:
+        assert max(abs(x) for x in minus(lifted.velocity[name], (0, 0, 3))) < mpf("1e-57")
+        assert max(abs(x) for x in minus(lifted.acceleration[name], (0, 0, -7))) < mpf("1e-57")
+    assert all(abs(x) < mpf("1e-57") for omega in lifted.angular_velocity.values() for x in omega)
+
+
 def test_a_car_that_goes_fast_without_pushing_takes_no_more_digits(car: ReferenceCar) -> None:
     # What is accelerated by nothing has centripetal parts all the same, which cancel.
     found = car.solve({**car.still, "heave": (0, 10**6, 0)}, digits=60)
