@@ -42,8 +42,10 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     # What turns follows from the points, so it need not be searched: give it room for every value that
     # points near these can have. Then "one zero in the box" is "one assembly near the points".
     there = known.equations.points_of(centre)
-    near = {n: p if n in known.fixed else plus(p, (arb(0, width),) * 3) for n, p in there.items()}
-    room = [abs(value - number).upper() for number, value in zip(centre, known.unknown_of(near), strict=True)]
+    fixed, off = known.mechanism.fixed, (arb(0, width),) * 3
+    near = {name: place if name in fixed else plus(place, off) for name, place in there.items()}
+    values = known.mechanism.unknown_of(near, as_ball)
+    room = [abs(value - number).upper() for number, value in zip(centre, values, strict=True)]
     inverse = middle_inverse(known.matrix(centre))
     proof = Contraction.at(known.system, centre, inverse)
     image = proof.image(room)

@@ -61,12 +61,8 @@ class Equations:
             name: _vector(self.places[name], unknown) for name in (self.places if names is None else names)
         }
 
-    def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
-        """Of every moving body two vectors fixed in it and not parallel."""
-        return {name: self.frame_of(unknown, name) for name in self.frames}
-
     def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
-        """The same of one body."""
+        """Two vectors fixed in a body and not parallel."""
         one, two = self.frames[body]
         return _vector(one, unknown), _vector(two, unknown)
 

@@ -50,6 +50,12 @@ class Mechanism:
     rods: Mapping[str, int]
     joints: Mapping[str, tuple[str, int]]
 
+    @property
+    def fixed(self) -> frozenset[str]:
+        """The points of the chassis."""
+        constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.places.items())
+        return frozenset(name for name, rests in constant if rests)
+
     def unknown_of(self, points: Table, exact: Exact) -> list[Scalar]:
         """The unknowns of assembled points, relative to the chassis, in their kind of number.
 

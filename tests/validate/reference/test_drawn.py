@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from closed_forms import Points, number, numbers, size
+from closed_forms import Points, numbers, size
 from mpmath import mpf
 from off_axis_cars import BASE, OffAxisCar, closing
 from plain_mechanisms import close_car, solve_car
 
 from validate.reference import Instant
-from validate.reference.effects.registry import ANGLES
 from validate.reference.vectors import cross, dot, minus, plus, times
 
 UP, RIGHT = (0, 0, 1), (0, 1, 0)
@@ -72,41 +71,3 @@ def test_a_tie_rod_drawn_off_the_rack_line_turns_the_knuckle_about_its_steering_
         assert size(minus(now, then)) > mpf("0.01")
         assert abs(dot(now, axis) - dot(then, axis)) < mpf("1e-70")
         assert abs(dot(now, now) - dot(then, then)) < mpf("1e-70")
-
-
-def test_a_straight_strut_that_closes_is_the_same_under_both_closures() -> None:
-    straight = {
-        **CAR.points,
-        "strut_lower": plus(BASE["lower_ball_joint"], times((20, 160, 630), Fraction(1, 4))),
-        "strut_rod_end": plus(BASE["lower_ball_joint"], times((20, 160, 630), Fraction(5, 8))),
-    }
-    drawn_at = close_car(straight, closure="drawn")
-    for turn in (Fraction(0), Fraction(1, 5), Fraction(-1, 4)):
-        theta = drawn_at.inputs["arm_angle"] + number(turn)
-        inputs = {"arm_angle": (theta, 2, -3), "rack": (240, 100, 50), "heave": (10, 20, 30)}
-        drawn, collinear = (solve_car(straight, inputs, closure=c) for c in ("drawn", "collinear"))
-        assert apart(drawn.position, collinear.position) <= drawn.radius + collinear.radius
-        for quantity in ("velocity", "acceleration", "angular_velocity", "angular_acceleration"):
-            bound = drawn.error_bound[quantity] + collinear.error_bound[quantity]
-            assert apart(getattr(drawn, quantity), getattr(collinear, quantity)) <= bound
-        bound = drawn.error_bound["effects"] + collinear.error_bound["effects"]
-        assert set(drawn.effects) == set(collinear.effects) == set(ANGLES)
-        assert all(abs(drawn.effects[n] - collinear.effects[n]) <= bound for n in drawn.effects)
-
-
-def test_the_side_stays_where_the_strut_top_passes_through_strut_lower() -> None:
-    # strut_lower is drawn just below the top: as the rod slides in, 7 rises above 4.
-    x, y, z = CAR.points["strut_top"]
-    near = OffAxisCar(
-        closing({**CAR.points, "strut_lower": (x, y, z - 10)}, -Fraction(3), Fraction(230), RIGHT), UP, RIGHT
-    )
-    heights = []
-    for step in range(21):
-        theta = near.drawn[0] - mpf(step) / 100
-        there = solve(near, {"arm_angle": (theta, 0, 0), "rack": (230, 0, 0)})
-        pose = near.drawn_pose(theta, 230)
-        assert pose is not None
-        assert apart(there.position, pose.points) < mpf("1e-55")
-        heights.append(there.position["strut_top"][2] - there.position["strut_lower"][2])
-    assert heights[0] > 9
-    assert heights[-1] < -20

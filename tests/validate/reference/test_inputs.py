@@ -64,6 +64,7 @@ def test_a_wrong_argument_is_refused_and_the_message_says_what_is_allowed(
     ("name", "place", "message"),
     [
         ("strut_rod_end", (460, -180, 470), "length of strut_rod"),
+        ("strut_lower", (460, -180, 470), "strut_top in strut_lower"),
         ("lower_arm_rear", (270, -5, -10), "hinge of lower_arm"),
         ("strut_top", (460, -180, math.inf), "finite real number"),
     ],
@@ -72,7 +73,7 @@ def test_a_mechanism_without_extent_is_refused(
     table: Table, name: str, place: tuple[float, ...], message: str
 ) -> None:
     with pytest.raises(BadInputError, match=message):
-        solve_car({**table, name: place}, STILL, closure="collinear")
+        solve_car({**table, name: place}, STILL, closure="drawn")
 
 
 def test_an_angle_that_is_undefined_is_an_error_only_for_who_asks(table: Table) -> None:

@@ -12,16 +12,14 @@ from typing import Any
 import mpmath
 import pytest
 from closed_forms import number, numbers, size
-from flint import arb
 from mechanism_drawings import described, five_link
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 from reference_cars import CARS
 
 from validate.reference import BadInputError, Design, Instant, closed_drawing, instants_of, solve_reference
-from validate.reference.dual import Dual, angle, slope_of
 from validate.reference.effects.registry import ANGLES, EFFECTS, OF_POSITIONS
-from validate.reference.vectors import Vector, cross, dot, minus, plus, root, times
+from validate.reference.vectors import Vector, cross, dot, minus, plus, times
 
 EVERY = tuple(EFFECTS)
 WITHIN = mpf("1e-55")
@@ -283,15 +281,3 @@ def test_a_wheel_without_size_is_refused(radius: float) -> None:
     plain = {**five_link(), "wheel_radius": radius}
     with pytest.raises(BadInputError, match="wheel_radius"):
         solve_reference(plain, {"wheel_travel": (0, 0, 0)}, effects=EVERY)
-
-
-def test_a_dual_of_duals_differentiates_twice() -> None:
-    # atan2(x^2, 1 + x) + sqrt(x) at 2: with f = x^2 / (1 + x), f' = (x^2 + 2 x) / (1 + x)^2 and
-    # f'' = 2 / (1 + x)^3, it is f'' / (1 + f^2) - 2 f f'^2 / (1 + f^2)^2 - x^(-3/2) / 4.
-    x = Dual(Dual(arb(2), arb(1)), Dual(arb(1), arb(0)))
-    found = slope_of(slope_of(angle(x * x, x + 1) + root(x)))
-    f, f1, f2 = Fraction(4, 3), Fraction(8, 9), Fraction(2, 27)
-    rational = f2 / (1 + f * f) - 2 * f * f1 * f1 / (1 + f * f) ** 2
-    wanted = arb(rational.numerator) / rational.denominator - 1 / (8 * arb(2).sqrt())
-    assert found.overlaps(wanted)
-    assert found.rad() < 1e-10
