@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from mpmath import mpf
-
 from validate.reference.errors import BadInputError, NotDecidedError
-from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
+from validate.reference.exact import as_ball, as_fraction, centre_of
 from validate.reference.solve import with_enough_digits
 
 KINDS = ("constant", "polynomial", "sine")
@@ -17,16 +15,15 @@ SINE = ("offset", "amplitude", "angular_frequency", "phase")
 
 def time_function_value(
     definition: Mapping[str, object], t: object, digits: int = 60
-) -> tuple[mpf, mpf, mpf]:
+) -> tuple[Fraction, Fraction, Fraction]:
     """Value, rate and acceleration at time t, s.
 
     {"constant": c}
     {"polynomial": [c0, c1, ...]}    c0 + c1 t + c2 t^2 + ..., c_k in unit / s^k
     {"sine": {"offset": o, "amplitude": a, "angular_frequency": w, "phase": p}}   o + a sin(w t + p)
 
-    Every number given is taken as exact. Constants and polynomials are exact where the result has
-    a power of two as denominator, as it has for float inputs; else each number has an error of at
-    most 10^-digits of its size. The sine's offset and phase may be left out (0).
+    Every number given is taken as exact. Constants and polynomials are exact; each number of a sine has an
+    error of at most 10^-digits of its size. The sine's offset and phase may be left out (0).
 
     Raises:
         BadInputError: an unknown kind or entry, or not finite numbers.
@@ -44,18 +41,18 @@ def time_function_value(
     results = []
     for _ in range(3):
         total = sum((c * time**k for k, c in enumerate(series)), Fraction(0))
-        results.append(mpf_from_fraction(total, digits))
+        results.append(total)
         series = [k * c for k, c in enumerate(series)][1:]
     return results[0], results[1], results[2]
 
 
-def _sine(given: object, time: Fraction, digits: int) -> tuple[mpf, mpf, mpf]:
+def _sine(given: object, time: Fraction, digits: int) -> tuple[Fraction, Fraction, Fraction]:
     if not isinstance(given, Mapping) or not {"amplitude", "angular_frequency"} <= set(given) <= set(SINE):
         allowed = f"a mapping with {', '.join(SINE)} (offset and phase may be left out)"
         raise BadInputError("sine", given, allowed)
     offset, amplitude, frequency, phase = (as_fraction(given.get(name, 0), f"sine {name}") for name in SINE)
 
-    def attempt(working: int) -> tuple[mpf, mpf, mpf]:
+    def attempt(working: int) -> tuple[Fraction, Fraction, Fraction]:
         sine, cosine = as_ball(frequency * time + phase).sin_cos()
         swing = as_ball(amplitude)
         numbers = (

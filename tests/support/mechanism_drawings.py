@@ -41,6 +41,31 @@ def described(
     }
 
 
+def joined(parts: Mapping[str, dict[str, Any]], **inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Descriptions on one chassis as parts of one, names behind their part's; further inputs of the whole."""
+    whole: dict[str, Any] = {"bodies": {"chassis": []}}
+
+    for part, plain in parts.items():
+        name = {known: f"{part}.{known}" for key in ("points", "bodies", "slides") for known in plain[key]}
+        name["chassis"] = "chassis"
+
+        def renamed(value: Any, name: dict[str, str] = name) -> Any:
+            if isinstance(value, Mapping):
+                return {key: renamed(one) for key, one in value.items()}
+            if isinstance(value, list | tuple):
+                return [renamed(one) for one in value]
+            return name.get(value, value) if isinstance(value, str) else value
+
+        for key in ("points", "rods", "slides", "inputs", "roles", "loads"):
+            tables = plain.get(key, {}).items()
+            whole[key] = whole.get(key, {}) | {f"{part}.{n}".rstrip("."): renamed(one) for n, one in tables}
+        for body, points in plain["bodies"].items():
+            whole["bodies"][name[body]] = whole["bodies"].get(name[body], []) + renamed(points)
+        whole = {**plain, **whole}
+    sides = {part: plain["side"] for part, plain in parts.items()}
+    return {**whole, "sides": sides, "inputs": {**whole["inputs"], **inputs}}
+
+
 def millimetres(place: Sequence[float]) -> tuple[float, ...]:
     """Metres as mm."""
     return tuple(1000.0 * x for x in place)

@@ -10,7 +10,6 @@ from typing import Any
 from lotus_front import POINTS as LOTUS
 from off_axis_cars import BASE, closing
 from plain_mechanisms import close_car, count_car, design_of, solve_car
-from reference_sensitivity import sensitivities
 
 from validate.reference import Instant
 from validate.reference.design import Design, Known, values_only
@@ -106,9 +105,6 @@ class ReferenceCar:
 
     def close(self, **settings: Any) -> Any:
         return close_car(self.points, **self.kind, **settings)
-
-    def sensitivities(self) -> Any:
-        return sensitivities(self.design, self.inputs)
 
 
 CARS = {

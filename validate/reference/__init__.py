@@ -10,8 +10,6 @@ try:
     from validate.reference.assemblies import Assemblies as Assemblies
     from validate.reference.assemblies import count_assemblies as count_assemblies
     from validate.reference.design import Design as Design
-    from validate.reference.drawing import ClosedDrawing as ClosedDrawing
-    from validate.reference.drawing import closed_drawing as closed_drawing
     from validate.reference.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
     from validate.reference.errors import BadInputError as BadInputError
     from validate.reference.errors import InfeasibleError as InfeasibleError
@@ -20,6 +18,8 @@ try:
     from validate.reference.errors import SingularPoseError as SingularPoseError
     from validate.reference.errors import TooManyStepsError as TooManyStepsError
     from validate.reference.instant import Instant as Instant
+    from validate.reference.solve import ClosedDrawing as ClosedDrawing
+    from validate.reference.solve import closed_drawing as closed_drawing
     from validate.reference.solve import instants_of as instants_of
     from validate.reference.solve import pose_exists as pose_exists
     from validate.reference.solve import solve_reference as solve_reference

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from flint import arb
 
 from validate.reference.design import Design, Driven
-from validate.reference.equations import Equations
 from validate.reference.errors import BadInputError, SingularPoseError
 from validate.reference.in_doubles import equations_in_doubles, jacobian_of
 from validate.reference.instant import Instant, prove_instant
@@ -32,17 +31,10 @@ class Assemblies:
     Attributes:
         found: distinct assemblies, each with its proof: there are at least so many.
         starts: random starts tried.
-        converged: starts that settled on an assembly.
     """
 
     found: tuple[Instant, ...]
     starts: int
-    converged: int
-
-    def __str__(self) -> str:
-        return (
-            f"found at least {len(self.found)} assemblies, {self.converged} of {self.starts} starts settled"
-        )
 
 
 def count_assemblies(
@@ -67,13 +59,15 @@ def count_assemblies(
     if starts < 1:
         raise BadInputError("starts", starts, "at least 1")
     driven = design.driven(inputs)
-    ends = _search(design, driven, starts, np.random.default_rng(seed))
-
+    tried: list[Floats] = []
     found: list[Instant] = []
-    for end in _distinct(ends):
+    for end in _search(design, driven, starts, np.random.default_rng(seed)):
+        if any(np.abs(end - other).max() <= SAME for other in tried):
+            continue
+        tried.append(end)
+        start = [arb(float(number)) for number in end]
 
-        def attempt(working: int, end: Floats = end) -> Instant:
-            start = [arb(float(number)) for number in end]
+        def attempt(working: int, start: Sequence[arb] = start) -> Instant:
             return prove_instant(design, design.known(driven), start, lambda _: True, digits, working)
 
         try:
@@ -82,8 +76,7 @@ def count_assemblies(
             continue  # not proven, so not counted
         if not any(_same(instant, other) for other in found):
             found.append(instant)
-    found.sort(key=lambda one: one.orientation, reverse=True)
-    return Assemblies(tuple(found), starts, len(ends))
+    return Assemblies(tuple(found), starts)
 
 
 def _search(design: Design, driven: Driven, starts: int, random: np.random.Generator) -> list[Floats]:
@@ -96,7 +89,11 @@ def _search(design: Design, driven: Driven, starts: int, random: np.random.Gener
     unknown[lengths] = corners.mean() + unknown[lengths] * np.ptp(corners, axis=0).max()
     ends: list[Floats] = []
     for _ in range(STEPS):
-        step = _newton_step(unknown, numbers, equations)
+        values = list(unknown)
+        rows = np.array(np.broadcast_arrays(*equations.residual(values, numbers), unknown[0])[:-1])
+        # A shift far below the accuracy asked for: an exactly singular matrix must not stop the batch.
+        matrix = jacobian_of(values, numbers, equations) + 1e-14 * np.eye(equations.size)
+        step = np.linalg.solve(matrix, rows.T[:, :, None])[:, :, 0].T
         size = np.abs(step).max(axis=0)
         unknown = unknown - step * np.minimum(1.0, LARGEST_STEP / np.maximum(size, 1e-300))
         settled = size < SETTLED
@@ -105,25 +102,6 @@ def _search(design: Design, driven: Driven, starts: int, random: np.random.Gener
         if not unknown.size:
             break
     return [end for end in ends if min(mechanism.handed(list(end), numbers, float), default=1.0) > 0.0]
-
-
-def _newton_step(unknown: Floats, numbers: Sequence[float], equations: Equations) -> Floats:
-    """C'^-1 C for a batch of unknowns, shape (n, starts)."""
-    starts = unknown.shape[1]
-    rows = np.array([np.broadcast_to(row, starts) for row in equations.residual(list(unknown), numbers)])
-    # A shift far below the accuracy asked for: an exactly singular matrix must not stop the batch.
-    matrix = jacobian_of(list(unknown), numbers, equations) + 1e-14 * np.eye(equations.size)
-    step: Floats = np.linalg.solve(matrix, rows.T[:, :, None])[:, :, 0].T
-    return step
-
-
-def _distinct(ends: Sequence[Floats]) -> list[Floats]:
-    """One of each group of ends that lie within `SAME` of it."""
-    kept: list[Floats] = []
-    for end in ends:
-        if all(np.abs(end - other).max() > SAME for other in kept):
-            kept.append(end)
-    return kept
 
 
 def _same(one: Instant, other: Instant) -> bool:

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from flint import arb, arb_mat
+from flint import arb
 
 from validate.reference.design import Known
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball
-from validate.reference.krawczyk import Contraction, column, largest, less, middle_inverse, sizes
+from validate.reference.krawczyk import Contraction, column, largest, less, middle_inverse
 from validate.reference.vectors import minus, plus
 
 
@@ -24,14 +24,12 @@ class Certificate:
         radius: half the box's width in each coordinate of the points.
         enclosure: balls that contain the zero, far inside the box.
         shift: its points are at most so far from the centre's.
-        condition: of the Jacobian, in the maximum norm, each row scaled to unit absolute sum.
     """
 
     centre: Sequence[arb]
     radius: Fraction
     enclosure: Sequence[arb]
     shift: arb
-    condition: float
 
 
 def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificate:
@@ -44,10 +42,11 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     # What turns follows from the points, so it need not be searched: give it room for every value that
     # points near these can have. Then "one zero in the box" is "one assembly near the points".
     there = known.equations.points_of(centre)
-    near = {n: p if n in known.fixed else plus(p, (arb(0, width),) * 3) for n, p in there.items()}
-    room = [abs(value - number).upper() for number, value in zip(centre, known.unknown_of(near), strict=True)]
-    at_centre = known.matrix(centre).mid()
-    inverse = middle_inverse(at_centre)
+    fixed, off = known.mechanism.fixed, (arb(0, width),) * 3
+    near = {name: place if name in fixed else plus(place, off) for name, place in there.items()}
+    values = known.mechanism.unknown_of(near, as_ball)
+    room = [abs(value - number).upper() for number, value in zip(centre, values, strict=True)]
+    inverse = middle_inverse(known.matrix(centre))
     proof = Contraction.at(known.system, centre, inverse)
     image = proof.image(room)
     if not less(image, room):
@@ -62,10 +61,4 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     shift = largest([x for n, p in found.items() for x in minus(p, there[n])])
     if not shift < width:
         raise NotDecidedError("the points of the zero within the radius of the centre's", shift, width)
-    return Certificate(centre, radius, enclosure, shift, _condition(at_centre, inverse))
-
-
-def _condition(matrix: arb_mat, inverse: arb_mat) -> float:
-    """|D C'| |C'^-1 D^-1| with D such that the rows of D C' have unit absolute sum."""
-    ones = arb_mat(matrix.ncols(), 1, [1] * matrix.ncols())
-    return max(float(x.mid()) for x in (sizes(inverse) * (sizes(matrix) * ones)).entries())
+    return Certificate(centre, radius, enclosure, shift)

@@ -5,25 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any, Protocol
+from typing import Any
 
 from validate.reference.directions import directed
-from validate.reference.exact import as_ball
-from validate.reference.jet import Jet
-from validate.reference.vectors import Scalar, Vector, cross, dot, minus, plus, times
-
-
-class Drawn(Protocol):
-    """A car as drawn (see `design`): its description, its points in local lengths, and their unit, mm."""
-
-    @property
-    def plain(self) -> Mapping[str, Any]: ...
-
-    @property
-    def table(self) -> Mapping[str, Vector]: ...
-
-    @property
-    def unit(self) -> Fraction: ...
+from validate.reference.jet import Jet, part_of
+from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, times
 
 
 @dataclass(frozen=True)
@@ -39,7 +25,7 @@ class Turn:
         """A vector after it (Rodrigues)."""
         along = times(self.along, dot(v, self.along))
         across = minus(v, along)
-        return plus(along, plus(_scaled(across, self.cosine), _scaled(cross(self.along, across), self.sine)))
+        return plus(along, plus(times(across, self.cosine), times(cross(self.along, across), self.sine)))
 
 
 @dataclass(frozen=True)
@@ -51,32 +37,33 @@ class ChassisMotion:
 
     @classmethod
     def of(
-        cls, design: Drawn, driven: Mapping[str, Jet], exact: Callable[[Fraction], Scalar] = as_ball
+        cls,
+        plain: Mapping[str, Any],
+        table: Mapping[str, Vector],
+        unit: Fraction,
+        driven: Mapping[str, Jet],
+        exact: Callable[[Fraction], Scalar],
     ) -> ChassisMotion:
-        """From jets of balls or of duals of balls, or of arrays, rad and mm.
+        """From jets of any kind of number, rad and mm.
 
         Args:
+            plain, table, unit: of a design.
             exact: a fraction in that kind of number.
         """
         turns, rise = [], None
-        for name, spec in design.plain["inputs"].items():
-            if "moves" not in spec and "turns" not in spec:
-                continue
-            x, y, z = (exact(part) for part in directed(design.plain, spec["along"]))
+        for name, spec in plain["inputs"].items():
             if "moves" in spec:
-                local = driven[name] * exact(1 / design.unit)
-                part = (local * x, local * y, local * z)
+                part = times(each(exact, directed(plain, spec["along"])), driven[name] * exact(1 / unit))
                 rise = part if rise is None else plus(rise, part)
-            else:
-                a, b, c = (exact(part) for part in design.table[spec["about"]])
-                turns.append(Turn((a, b, c), (x, y, z), *driven[name].sin_cos()))
+            elif "turns" in spec:
+                about, along = table[spec["about"]], directed(plain, spec["along"])
+                turns.append(Turn(each(exact, about), each(exact, along), *driven[name].sin_cos()))
         return cls(tuple(turns), rise)
 
     def still(self) -> ChassisMotion:
         """With the values of the jets."""
-        turns = tuple(Turn(t.about, t.along, t.sine.value, t.cosine.value) for t in self.turns)
-        rise = self.rise
-        return ChassisMotion(turns, None if rise is None else (rise[0].value, rise[1].value, rise[2].value))
+        turns = tuple(replace(turn, sine=turn.sine.value, cosine=turn.cosine.value) for turn in self.turns)
+        return ChassisMotion(turns, None if self.rise is None else part_of(self.rise, "value"))
 
     def without_displacement(self) -> ChassisMotion:
         """The turns alone."""
@@ -100,8 +87,3 @@ class ChassisMotion:
         for turn in self.turns:
             point = plus(turn.turned(minus(point, turn.about)), turn.about)
         return point if self.rise is None else plus(point, self.rise)
-
-
-def _scaled(vector: Vector, factor: Scalar) -> Vector:
-    # The factor may be a jet where the vector holds none: jets come first in a product.
-    return factor * vector[0], factor * vector[1], factor * vector[2]

@@ -19,8 +19,9 @@ and the rows are
     p = through + s R line                               a point on a slide; R u . R' v = 0 if it may not turn
     and those of the inputs: see `drives`
 
-A body that shares a point with one before it hangs on that point, so its place is no unknown. The numbers w
-are what the inputs stand for. Everything that the drawing gives is exact.
+A body that shares a point with one before it hangs on that point, so its place is no unknown, unless every
+joint is to have its rows (see `loads`). The numbers w are what the inputs stand for. Everything that the
+drawing gives is exact.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from fractions import Fraction
 from itertools import combinations
 from typing import Any
 
-from validate.reference.directions import direction_of
+from validate.reference.directions import directions
 from validate.reference.errors import BadInputError
 from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, Vector, across, cross, dot, each, minus, near_one, plus, times
@@ -53,16 +54,18 @@ class Body:
 class Compiler:
     """Unknowns and rows as they are found; symbols of the numbers w are negative until all are known."""
 
-    def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction) -> None:
-        self.plain, self.table, self.unit = plain, table, unit
+    def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool) -> None:
+        self.plain, self.table, self.unit, self.hangs = plain, table, unit, hangs
         self.lengths: list[bool] = []
         self.rows: list[tuple[str, Polynomial]] = []
         self.readers: list[Reader] = []
         self.positive: list[Polynomial] = []
         self.triples: list[tuple[Vector, Vector, Vector]] = []
         self.frames: dict[str, tuple[Vector, Vector]] = {}
+        self.rods: dict[str, int] = {}
+        self.joints: dict[str, tuple[str, int]] = {}
         self.numbers = 0
-        self.lines: dict[str, tuple[list[Polynomial], Vector, bool]] = {}
+        self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
         self.free: dict[str, Vector] = {}
         chassis = plain["bodies"][CHASSIS]
         self.bodies = {CHASSIS: Body(lambda v: v, lambda name: self.table[name])}
@@ -79,6 +82,7 @@ class Compiler:
             drawn = minus(*(self.table[end] for end in ends))
             if dot(drawn, drawn) == 0:
                 raise BadInputError(f"the length of {name}", 0, "more than 0")
+            self.rods[name] = len(self.rows)
             self.row(name, dot(gap, gap) - dot(drawn, drawn))
 
     def unknowns(self, count: int, read: Reader, length: bool = False) -> list[Polynomial]:
@@ -96,6 +100,11 @@ class Compiler:
     def row(self, name: str, row: Scalar) -> None:
         """One equation: what is named is 0."""
         self.rows.append((name, row))
+
+    def _meet(self, name: str, one: Vector, other: Vector) -> None:
+        """Two places are one: three rows."""
+        for apart in minus(one, other):
+            self.row(name, apart)
 
     def place(self, point: str) -> Vector:
         """Where a point is."""
@@ -120,38 +129,31 @@ class Compiler:
 
     def _add_body(self, name: str) -> None:
         points: list[str] = self.plain["bodies"][name]
-        shared: dict[str, list[str]] = {}
-        for other in self.bodies:
-            both = [p for p in points if p in self.plain["bodies"][other]]
-            if both:
-                shared[other] = both
+        shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
         if any(len(both) > 2 for both in shared.values()):
             raise BadInputError(f"the body {name}", "three points with another body", "at most two")
         # A hinge is told by both its points: bodies with two come first.
-        ties = sorted(shared.items(), key=lambda item: -len(item[1]))
-        on_chassis = shared.get(CHASSIS, [])
-        if len(on_chassis) == 2:
-            self.bodies[name] = self._hinged(name, points, on_chassis[0], on_chassis[1])
-            tied = set(on_chassis)
+        ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
+        if len(shared[CHASSIS]) == 2:
+            tied = set(shared[CHASSIS])
+            body = self._hinged(name, points, *shared[CHASSIS])
         else:
-            hung = ties[0][1][0] if ties else None
-            base = self.bodies[ties[0][0]].place(ties[0][1][0]) if ties else None
-            self.bodies[name] = self._loose(name, points, hung or points[0], base)
+            hung = ties[0][1][0] if ties and self.hangs else None
+            base = self.bodies[ties[0][0]].place(hung) if hung else None
             tied = {hung} if hung else set()
-        body = self.bodies[name]
+            body = self._loose(name, points, hung or points[0], base)
+        self.bodies[name] = body
         for other, both in ties:
-            if other == CHASSIS and len(both) == 2:
-                continue
             for i, point in enumerate(both):
                 if point in tied:
                     continue
                 tied.add(point)
-                apart = minus(body.place(point), self.bodies[other].place(point))
+                place, there = body.place(point), self.bodies[other].place(point)
                 if i == 0:
-                    for axis in range(3):
-                        self.row(f"{point} of {name} and {other}", apart[axis])
+                    self.joints[point] = name, len(self.rows)
+                    self._meet(f"{point} of {name} and {other}", place, there)
                 else:
-                    self._close_hinge(name, other, both, apart)
+                    self._close_hinge(name, other, both, minus(place, there))
         for point in points:
             self.holder.setdefault(point, name)
 
@@ -198,8 +200,7 @@ class Compiler:
 
     def _loose(self, name: str, points: Sequence[str], base: str, origin: Vector | None) -> Body:
         """A body that hangs on a point, or on none."""
-        given = [(p, minus(self.table[p], self.table[q])) for p, q in combinations(points, 2)]
-        ends = dict(zip(combinations(points, 2), (v for _, v in given), strict=True))
+        ends = {(p, q): minus(self.table[p], self.table[q]) for p, q in combinations(points, 2)}
         (i, j), (k, m) = max(combinations(ends, 2), key=lambda pair: _spread(ends[pair[0]], ends[pair[1]]))
         one, two = ends[i, j], ends[k, m]
         normal = cross(one, two)
@@ -211,14 +212,8 @@ class Compiler:
 
         def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
             a, b = minus(points[i], points[j]), minus(points[k], points[m])
-            images, g = (a, b, cross(a, b)), [each(exact, dual) for dual in duals]
-            return [
-                images[0][axis] * g[0][column]
-                + images[1][axis] * g[1][column]
-                + images[2][axis] * g[2][column]
-                for column in range(3)
-                for axis in range(3)
-            ]
+            rows, g = tuple(zip(a, b, cross(a, b), strict=True)), [each(exact, dual) for dual in duals]
+            return [dot(row, column) for column in zip(*g, strict=True) for row in rows]
 
         y = self.unknowns(9, read)
         c1, c2, c3 = columns = ((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7], y[8]))
@@ -238,20 +233,20 @@ class Compiler:
 
     def _add_slide(self, name: str, slide: Mapping[str, Any]) -> None:
         """Points on a line of a body."""
-        body, through = self.bodies[slide["body"]], slide["through"]
-        if through not in self.plain["bodies"][slide["body"]]:
-            raise BadInputError(f"slides.{name}: through", through, f"a point of {slide['body']}")
-        along = direction_of(self.plain, slide["along"])
-        of_the_car = along is not None
+        body, through = slide["body"], slide["through"]
+        if through not in self.plain["bodies"][body]:
+            raise BadInputError(f"slides.{name}: through", through, f"a point of {body}")
+        along = directions(self.plain).get(slide["along"])
+        # A direction of the car is a unit vector to its rounding; a line towards a point is as long as it is.
+        squared = Fraction(1)
         if along is None:
             along = near_one(minus(self.table[slide["along"]], self.table[through]))
-        if along is None:
-            raise BadInputError(f"slides.{name}: along", f"{slide['along']} in {through}", "a line")
-        line, start = body.turned(along), body.place(through)
-        shares = []
-        for point in slide["points"]:
-            shares.append(self._on_line(name, point, slide["body"], through, along, line, start))
-        self.lines[name] = (shares, along, of_the_car)
+            if along is None:
+                raise BadInputError(f"slides.{name}: along", f"{slide['along']} in {through}", "a line")
+            squared = dot(along, along)
+        line, start = self.bodies[body].turned(along), self.bodies[body].place(through)
+        shares = [self._on_line(name, point, body, through, along, line, start) for point in slide["points"]]
+        self.lines[name] = (shares, along, squared)
         if not slide["turns"]:
             self._hold(name, slide, along)
 
@@ -269,23 +264,20 @@ class Compiler:
         if body == CHASSIS and point not in self.holder and point not in self.free:
             self.free[point] = there  # its place needs no unknowns besides
         else:
-            for axis in range(3):
-                self.row(f"{point} on {name}", self.place(point)[axis] - there[axis])
+            self._meet(f"{point} on {name}", self.place(point), there)
         return share
 
     def _hold(self, name: str, slide: Mapping[str, Any], along: Vector) -> None:
         """A sliding joint that may not turn."""
         one = self.bodies[slide["body"]]
-        holders = [b for b in self.bodies if b != slide["body"] and self._holds(b, slide["points"])]
+        points = set(slide["points"])
+        holders = [b for b in self.bodies if b != slide["body"] and points <= set(self.plain["bodies"][b])]
         if not holders:
             raise BadInputError(f"slides.{name}: turns", False, "points of one other body")
         u, v = across(along)
         other = self.bodies[holders[0]]
         self.row(f"turn of {name}", dot(one.turned(u), other.turned(v)))
         self.positive.append(dot(one.turned(u), other.turned(u)))
-
-    def _holds(self, body: str, points: Sequence[str]) -> bool:
-        return all(point in self.plain["bodies"][body] for point in points)
 
 
 def at(vector: Vector, values: Sequence[Scalar], exact: Exact) -> Vector:

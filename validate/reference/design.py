@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -46,24 +46,13 @@ class Known:
     chassis: ChassisMotion
     inputs: Mapping[str, Jet]
 
-    @property
-    def fixed(self) -> frozenset[str]:
-        """The points of the chassis."""
-        constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.mechanism.places.items())
-        return frozenset(name for name, rests in constant if rests)
-
     def driven_at(self, name: str, rate: arb) -> Known:
         """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
         zero = arb(0)
         numbers: list[Jet] = []
         for one, drive in self.mechanism.drives.items():
-            going = Jet(self.inputs[one].value, rate if one == name else zero, zero)
-            numbers += drive.numbers(going)
+            numbers += drive.numbers(Jet(self.inputs[one].value, rate if one == name else zero, zero))
         return replace(self, numbers=numbers, chassis=self.chassis.still())
-
-    def unknown_of(self, points: Mapping[str, Vector]) -> list[arb]:
-        """The unknowns of points in balls, relative to the chassis."""
-        return self.mechanism.unknown_of(points, as_ball)
 
     def handed(self, unknown: Sequence[arb]) -> bool:
         """Whether a zero is an assembly, proven: no body is mirrored, no hinge the wrong way round."""
@@ -71,7 +60,7 @@ class Known:
 
     def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
         """Of every moving body two vectors fixed in it, with the chassis moved."""
-        frames = self.equations.frames_of(unknown)
+        frames = {name: self.equations.frame_of(unknown, name) for name in self.equations.frames}
         return {n: (self.chassis.turned(u), self.chassis.turned(v)) for n, (u, v) in frames.items()}
 
     def points_of(self, unknown: Sequence[Scalar]) -> dict[str, Vector]:
@@ -107,8 +96,11 @@ class Design:
         unit: a power of two near the mechanism's size, mm.
         up: direction of z.
         right: direction of y.
-        outboard: +1 where outboard is `right`, -1 where it is the opposite.
+        corners: the prefix of each part's names, and 1 where outboard is `right` there, -1 where it is the
+            opposite; without parts there is one, whose names have none.
         car: what is given of the car as a whole, see `car_data`.
+        loads: of the corners that have one, by their prefix, force, N, and moment, N mm, of the ground on the
+            knuckle at its contact point.
         chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
     """
 
@@ -119,8 +111,9 @@ class Design:
     unit: Fraction
     up: Vector
     right: Vector
-    outboard: int
+    corners: Mapping[str, int]
     car: Mapping[str, Fraction]
+    loads: Mapping[str, tuple[Vector, Vector]]
     chosen: tuple[int, ...]
 
     @classmethod
@@ -135,25 +128,36 @@ class Design:
         given = {name: exact_vector(place, f"points[{name!r}]") for name, place in plain["points"].items()}
         if not given:
             raise BadInputError("points", "none", "at least one")
-        z, y = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
-        if abs(dot(z, z) - 1) > DIRECTION_SLACK or abs(dot(y, y) - 1) > DIRECTION_SLACK:
-            raise BadInputError("up and right", (plain["up"], plain["right"]), "unit vectors, to 1e-12")
-        if abs(dot(z, y)) > DIRECTION_SLACK:
-            raise BadInputError("up and right", (plain["up"], plain["right"]), "at right angles, to 1e-12")
-        if plain["side"] not in ("left", "right"):
-            raise BadInputError("side", plain["side"], "'left' or 'right'")
-        car, first = car_data(plain), next(iter(given))
-        unit, origin = _unit(given, first), given[first]
-        table = {n: times(minus(p, origin), 1 / unit) for n, p in given.items()}
-        exact = {**plain, "up": z, "right": y}
-        for kind, groups in (("bodies", exact["bodies"]), ("rods", exact["rods"])):
-            for name, points in groups.items():
+        up, right = exact_vector(plain["up"], "up"), exact_vector(plain["right"], "right")
+        for off, allowed in (
+            (max(abs(dot(up, up) - 1), abs(dot(right, right) - 1)), "unit vectors"),
+            (abs(dot(up, right)), "at right angles"),
+        ):
+            if off > DIRECTION_SLACK:
+                raise BadInputError("up and right", (plain["up"], plain["right"]), f"{allowed}, to 1e-12")
+        for kind in ("bodies", "rods"):
+            for name, points in plain[kind].items():
                 for point in points:
-                    if point not in table:
-                        raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(table)}")
+                    if point not in given:
+                        raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(given)}")
+        origin = next(iter(given.values()))
+        unit, corners = _unit(given.values(), origin), _corners(plain)
+        table = {name: times(minus(p, origin), 1 / unit) for name, p in given.items()}
+        exact = {**plain, "up": up, "right": right}
         mechanism = compiled(exact, table, unit)
-        outboard = -1 if plain["side"] == "left" else 1
-        return cls(exact, mechanism, table, origin, unit, z, y, outboard, car, _chosen(mechanism, table))
+        return cls(
+            exact,
+            mechanism,
+            table,
+            origin,
+            unit,
+            up,
+            right,
+            corners,
+            car_data(plain),
+            _loads(plain, corners),
+            _chosen(mechanism, table),
+        )
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -210,20 +214,20 @@ class Design:
 
     def known(self, driven: Driven) -> Known:
         """What the equations take as given, as jets of balls at the present precision, local."""
-        return self.known_for({name: balls(jet) for name, jet in driven.items()})
-
-    def known_for(self, driven: Mapping[str, Jet]) -> Known:
-        """The same from jets of balls, or of duals of balls; rad, mm, mm."""
-        numbers = [w for name, drive in self.mechanism.drives.items() for w in drive.numbers(driven[name])]
-        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, driven), driven)
+        inputs = {name: balls(jet) for name, jet in driven.items()}
+        numbers = [w for name, drive in self.mechanism.drives.items() for w in drive.numbers(inputs[name])]
+        return self._known(numbers, inputs)
 
     def known_as_drawn(self) -> Known:
         """The same at rest at the inputs that the car is drawn at, the chassis in its place."""
-        drives = self.mechanism.drives
-        numbers = [Jet(w, arb(0), arb(0)) for drive in drives.values() for w in drive.drawn()]
+        drives, zero = self.mechanism.drives, arb(0)
         drawn = {name: drive.input_of(drive.drawn()) for name, drive in drives.items()}
-        still = {name: Jet(drawn.get(name, arb(0)), arb(0), arb(0)) for name in self.inputs}
-        return Known(self.mechanism, self.equations(), numbers, ChassisMotion.of(self, still), still)
+        numbers = [Jet(w, zero, zero) for drive in drives.values() for w in drive.drawn()]
+        return self._known(numbers, {name: Jet(drawn.get(name, zero), zero, zero) for name in self.inputs})
+
+    def _known(self, numbers: Sequence[Jet], inputs: Mapping[str, Jet]) -> Known:
+        chassis = ChassisMotion.of(self.plain, self.table, self.unit, inputs, as_ball)
+        return Known(self.mechanism, self.equations(), numbers, chassis, inputs)
 
     def drawn_unknown(self) -> list[arb]:
         """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""
@@ -258,18 +262,39 @@ def balls(jet: Jet) -> Jet:
     return Jet(as_ball(jet.value), as_ball(jet.rate), as_ball(jet.acceleration))
 
 
-def _unit(points: Mapping[str, Vector], origin: str) -> Fraction:
-    size = max(abs(x) for p in points.values() for x in minus(p, points[origin]))
+def _unit(points: Collection[Vector], origin: Vector) -> Fraction:
+    size = max(abs(x) for p in points for x in minus(p, origin))
     if size == 0:
         raise BadInputError("points", "all in one place", "points with some distance between them")
     power = size.numerator.bit_length() - size.denominator.bit_length()
     return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
 
 
+def _corners(plain: Mapping[str, Any]) -> dict[str, int]:
+    sides = {(f"{part}.", f"sides[{part!r}]"): side for part, side in plain.get("sides", {}).items()}
+    found = {}
+    for (prefix, what), side in (sides or {("", "side"): plain["side"]}).items():
+        if side not in ("left", "right"):
+            raise BadInputError(what, side, "'left' or 'right'")
+        found[prefix] = -1 if side == "left" else 1
+    return found
+
+
+def _loads(plain: Mapping[str, Any], corners: Collection[str]) -> dict[str, tuple[Vector, Vector]]:
+    found = {}
+    for part, load in plain.get("loads", {}).items():
+        prefix, what = f"{part}." if part else "", f"loads[{part!r}]"
+        if prefix not in corners:
+            raise BadInputError(what, load, f"a load of a part: {', '.join(corners).replace('.', '')}")
+        force, moment = load["force"], load.get("moment", (0, 0, 0))
+        found[prefix] = exact_vector(force, f"{what}.force"), exact_vector(moment, f"{what}.moment")
+    return found
+
+
 def _chosen(mechanism: Mechanism, table: Mapping[str, Vector]) -> tuple[int, ...]:
     """As many rows as unknowns; of more than that those that stand most clearly apart as drawn.
 
-    Rows are taken in turn, each time the one of which most is left beside those taken (Gram and Schmidt).
+    Rows are taken in turn, each time the one of which most is left beside those taken (QR with pivots).
     """
     rows, size = len(mechanism.rows), mechanism.size
     if rows < size:
@@ -277,25 +302,17 @@ def _chosen(mechanism: Mechanism, table: Mapping[str, Vector]) -> tuple[int, ...
         raise BadInputError("the equations", f"{rows} rows for {size} unknowns", allowed)
     if rows == size:
         return tuple(range(size))
+    from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
+
     drawn = [float(x) for x in mechanism.unknown_of({n: ball_vector(p) for n, p in table.items()}, as_ball)]
     numbers = [float(w) for drive in mechanism.drives.values() for w in drive.drawn()]
-    matrix = np.array(
-        [
-            [float(row.derivative(j).at([*drawn, *numbers], float)) for j in range(size)]
-            for row in mechanism.rows
-        ]
-    )
-    left = matrix / np.linalg.norm(matrix, axis=1, keepdims=True)
-    taken: list[int] = []
-    for _ in range(size):
-        lengths = np.linalg.norm(left, axis=1)
-        best = int(lengths.argmax())
-        if not lengths[best] > SAME_ROW:
-            allowed = f"inputs and joints that leave no freedom; {size - len(taken)} are left as drawn"
-            raise BadInputError(
-                "the equations", f"{len(taken)} independent rows for {size} unknowns", allowed
-            )
-        taken.append(best)
-        unit = left[best] / lengths[best]
-        left = left - np.outer(left @ unit, unit)
-    return tuple(sorted(taken))
+    every = equations_in(mechanism, range(rows), float)
+    matrix = np.zeros((rows, size))
+    for i, j, entry in every.jacobian(drawn, numbers):
+        matrix[i, j] = entry
+    triangle, taken = qr(matrix.T / np.linalg.norm(matrix, axis=1), mode="r", pivoting=True)
+    rank = int((np.abs(np.diag(triangle)) > SAME_ROW).sum())
+    if rank < size:
+        allowed = f"inputs and joints that leave no freedom; {size - rank} are left as drawn"
+        raise BadInputError("the equations", f"{rank} independent rows for {size} unknowns", allowed)
+    return tuple(sorted(int(row) for row in taken[:size]))

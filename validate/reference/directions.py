@@ -9,13 +9,11 @@ from validate.reference.errors import BadInputError
 from validate.reference.vectors import Vector, cross, times
 
 
-def direction_of(plain: Mapping[str, Any], word: str) -> Vector | None:
-    """A direction of the car by its word, of exact axes; None for any other word."""
-    up, right = plain["up"], plain["right"]
-    ahead = cross(up, right)
-    named = {"up": up, "right": right, "forward": ahead}
-    opposite = {"down": up, "left": right, "rearward": ahead}
-    return named[word] if word in named else times(opposite[word], -1) if word in opposite else None
+def directions(plain: Mapping[str, Any]) -> dict[str, Vector]:
+    """By their words, of exact axes."""
+    ways = {"up": plain["up"], "right": plain["right"], "forward": cross(plain["up"], plain["right"])}
+    opposite = {"up": "down", "right": "left", "forward": "rearward"}
+    return ways | {opposite[word]: times(way, -1) for word, way in ways.items()}
 
 
 def directed(plain: Mapping[str, Any], word: str) -> Vector:
@@ -24,7 +22,7 @@ def directed(plain: Mapping[str, Any], word: str) -> Vector:
     Raises:
         BadInputError: it is none.
     """
-    found = direction_of(plain, word)
-    if found is None:
-        raise BadInputError("a direction", word, "up, right, down, left, forward or rearward")
-    return found
+    known = directions(plain)
+    if word not in known:
+        raise BadInputError("a direction", word, f"one of {', '.join(known)}")
+    return known[word]

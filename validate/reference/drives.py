@@ -21,13 +21,13 @@ from typing import Any
 
 from flint import arb
 
-from validate.reference.compiler import CHASSIS, Compiler, Exact, Reader, Table
+from validate.reference.compiler import CHASSIS, Compiler, Exact, Table
 from validate.reference.directions import directed
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial
-from validate.reference.vectors import Scalar, across, cross, dot, minus, root
+from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
 
 
 @dataclass(frozen=True)
@@ -35,22 +35,22 @@ class Drive:
     """An input of a mechanism.
 
     Attributes:
-        required: whether it must be given; else it rests at zero.
-        numbers: the numbers w of the input's value, rad or mm, as a jet of balls or of duals.
+        numbers: the numbers w of the input's value, rad or mm, as a jet of balls.
         drawn: these numbers as drawn.
         input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
+        required: whether it must be given; else it rests at zero.
         turns: whether it is an angle of any number of turns.
     """
 
-    required: bool
     numbers: Callable[[Jet], Sequence[Jet]]
     drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
+    required: bool = True
     turns: bool = False
 
 
 def drive_of(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    """The drive that a description's input is; its rows go to the compiler.
+    """The drive that a description's input is; its rows go to the compiler, the one with the numbers last.
 
     Raises:
         BadInputError: there is no such kind of input, or it cannot drive the car as drawn.
@@ -72,37 +72,32 @@ def _angle(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         raise BadInputError(f"the distance from {end} to {pivot}", 0, "more than 0")
     compiler.row(name, dot(minus(compiler.place(end), compiler.place(pivot)), along) - compiler.number())
 
-    def numbers(value: Jet) -> list[Jet]:
-        return [value.sin_cos()[1] * as_ball(d2).sqrt()]
-
     def angle(numbers: Sequence[arb]) -> arb:
         # By cosine and sine: an arc cosine loses its digits where the arm stands along the direction. That is
         # a unit vector to rounding only, so the difference may be just below zero.
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
-    return Drive(True, numbers, lambda: [as_ball(height)], angle)
+    return Drive(lambda value: [value.sin_cos()[1] * as_ball(d2).sqrt()], lambda: [as_ball(height)], angle)
 
 
 def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     body, on, table = spec["angle"], spec["on"], compiler.table
-    bodies = compiler.plain["bodies"]
-    both = [point for point in bodies[body] if point in bodies[on]]
+    both = [point for point in compiler.plain["bodies"][body] if point in compiler.plain["bodies"][on]]
     if len(both) != 2:
         raise BadInputError(f"inputs.{name}: angle", body, f"a body hinged on {on}")
     n = minus(table[both[1]], table[both[0]])
     e, nn = across(n)[0], dot(n, n)
     turning, held = compiler.bodies[body].turned(e), compiler.bodies[on]
     products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
-    if on != CHASSIS:
-        parts = list(products)
+    if on != CHASSIS:  # each is quadratic itself, and so an unknown
+        for i, product in enumerate(tuple(products)):
 
-        def read(index: int) -> Reader:
-            return lambda _, unknown, exact: [parts[index].at(unknown, exact)]
+            def read(_: Table, values: Any, exact: Exact, product: Polynomial = product) -> list[Scalar]:
+                return [product.at(values, exact)]
 
-        products = [compiler.unknowns(1, read(i))[0] for i in range(2)]
-        for product, part in zip(products, parts, strict=True):
-            compiler.row(name, product - part)
+            (products[i],) = compiler.unknowns(1, read)
+            compiler.row(name, products[i] - product)
     sine, cosine = compiler.number(), compiler.number()
     compiler.row(name, products[0] * sine - products[1] * cosine)
     # At the angle itself g1 cos + g2 sin / |n| is positive; half a turn from it negative.
@@ -112,44 +107,41 @@ def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) 
         sin, cos = value.sin_cos()
         return [sin, cos * (1 / as_ball(nn).sqrt())]
 
-    def angle(numbers: Sequence[arb]) -> arb:
-        return arb.atan2(numbers[0], numbers[1] * as_ball(nn).sqrt())
-
-    return Drive(True, numbers, lambda: [arb(0), 1 / as_ball(nn).sqrt()], angle, turns=True)
+    return Drive(
+        numbers,
+        lambda: [arb(0), 1 / as_ball(nn).sqrt()],
+        lambda w: arb.atan2(w[0], w[1] * as_ball(nn).sqrt()),
+        turns=True,
+    )
 
 
 def _travel(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    drawn, lengths = [], []
+    drawn, lengths, unit = [], [], compiler.unit
     for slide in spec["travel"]:
-        lines, along, of_the_car = compiler.lines[slide]
-        compiler.row(name, lines[0] - compiler.number())
+        shares, along, squared = compiler.lines[slide]
+        compiler.row(name, shares[0] - compiler.number())
         told = compiler.plain["slides"][slide]
         off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
-        # A direction of the car is a unit vector to its rounding; a line towards a point is as long as it is.
-        lengths.append(Fraction(1) if of_the_car else dot(along, along))
+        lengths.append(squared)
 
     def numbers(value: Jet) -> list[Jet]:
-        local = value * as_ball(1 / compiler.unit)
+        local = value * as_ball(1 / unit)
         return [local * (1 / as_ball(squared).sqrt()) for squared in lengths]
 
-    def travel(numbers: Sequence[arb]) -> arb:
-        return numbers[0] * as_ball(compiler.unit) * as_ball(lengths[0]).sqrt()
-
-    return Drive(False, numbers, lambda: [as_ball(one) for one in drawn], travel)
+    return Drive(
+        numbers,
+        lambda: [as_ball(one) for one in drawn],
+        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt(),
+        required=False,
+    )
 
 
 def _height(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     along = directed(compiler.plain, spec.get("along", "up"))
     drawn = dot(compiler.table[spec["height"]], along)
     compiler.row(name, dot(compiler.place(spec["height"]), along) - compiler.number())
-
-    def numbers(value: Jet) -> list[Jet]:
-        return [value * as_ball(1 / compiler.unit) + as_ball(drawn)]
-
-    return Drive(
-        True, numbers, lambda: [as_ball(drawn)], lambda w: (w[0] - as_ball(drawn)) * as_ball(compiler.unit)
-    )
+    return _risen(compiler.unit, lambda: as_ball(drawn))
 
 
 def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -159,14 +151,13 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         raise BadInputError("wheel_radius", None, f"a number of mm, which inputs.{name} needs")
     up, r = directed(compiler.plain, "up"), Fraction(radius) / compiler.unit
     axis = minus(compiler.table[centre], compiler.table[inner])
-    l2, m = dot(axis, axis), dot(axis, up)
+    l2, m, high = dot(axis, axis), dot(axis, up), dot(compiler.table[centre], up)
     if l2 == 0:
         raise BadInputError(f"the distance from {inner} to {centre}", 0, "more than 0")
     share2 = r * r / l2
 
     def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
-        x, y, z = (exact(part) for part in up)
-        lean = dot(minus(points[centre], points[inner]), (x, y, z))
+        lean = dot(minus(points[centre], points[inner]), each(exact, up))
         return [root(exact(r * r) - lean * lean * exact(share2))]
 
     (drop,) = compiler.unknowns(1, read, length=True)
@@ -175,29 +166,28 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         compiler.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
     compiler.positive.append(drop)
     compiler.row(name, dot(compiler.place(centre), up) - drop - compiler.number())
-    high = dot(compiler.table[centre], up)
+    return _risen(compiler.unit, lambda: as_ball(high) - as_ball(r * r - m * m * share2).sqrt())
 
-    def drawn() -> arb:
-        return as_ball(high) - as_ball(r * r - m * m * share2).sqrt()
 
-    def numbers(value: Jet) -> list[Jet]:
-        return [value * as_ball(1 / compiler.unit) + drawn()]
-
-    return Drive(True, numbers, lambda: [drawn()], lambda w: (w[0] - drawn()) * as_ball(compiler.unit))
+def _risen(unit: Fraction, drawn: Callable[[], arb]) -> Drive:
+    """An input that counts, in mm, from the drawing on."""
+    return Drive(
+        lambda value: [value * as_ball(1 / unit) + drawn()],
+        lambda: [drawn()],
+        lambda w: (w[0] - drawn()) * as_ball(unit),
+    )
 
 
 def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     one, two = spec["distance"]
-    apart = minus(compiler.place(one), compiler.place(two))
+    unit, drawn = compiler.unit, minus(compiler.table[one], compiler.table[two])
+    apart, d2 = minus(compiler.place(one), compiler.place(two)), dot(drawn, drawn)
     compiler.row(name, dot(apart, apart) - compiler.number())
-    drawn = minus(compiler.table[one], compiler.table[two])
-    d2 = dot(drawn, drawn)
-
-    def numbers(value: Jet) -> list[Jet]:
-        local = value * as_ball(1 / compiler.unit)
-        return [local * local]
-
-    return Drive(True, numbers, lambda: [as_ball(d2)], lambda w: w[0].sqrt() * as_ball(compiler.unit))
+    return Drive(
+        lambda value: [value * value * as_ball(1 / unit**2)],
+        lambda: [as_ball(d2)],
+        lambda w: w[0].sqrt() * as_ball(unit),
+    )
 
 
 KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {

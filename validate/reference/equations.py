@@ -45,20 +45,15 @@ class Equations:
 
     def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> arb_mat:
         """dC/dy as a square matrix of balls."""
-        matrix = arb_mat(self.size, self.size)
-        for row, column, entry in self.jacobian(unknown, numbers):
-            matrix[row, column] = entry
-        return matrix
+        return matrix_of(self.size, self.jacobian(unknown, numbers))
 
-    def bend(self, unknown: Sequence[arb], numbers: Sequence[arb] = ()) -> arb_mat:
-        """By how much these changes of y and w change dC/dy, which is linear in both."""
-        matrix = arb_mat(self.size, self.size)
-        values = [*unknown, *numbers]
-        for row, column, terms in self.entries:
-            moved = [one for one in terms if one[0] and one[0][0] < len(values)]
-            if moved:
-                matrix[row, column] = value_of(moved, values)
-        return matrix
+    def bend(self, change: Sequence[arb]) -> arb_mat:
+        """By how much a change of y changes dC/dy, which is linear in y."""
+        moved = (
+            (row, column, [one for one in terms if one[0] and one[0][0] < self.size])
+            for row, column, terms in self.entries
+        )
+        return matrix_of(self.size, ((i, j, value_of(terms, change)) for i, j, terms in moved if terms))
 
     def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
         """Where every point is, or some are, relative to the chassis."""
@@ -66,14 +61,18 @@ class Equations:
             name: _vector(self.places[name], unknown) for name in (self.places if names is None else names)
         }
 
-    def frames_of(self, unknown: Sequence[Scalar]) -> dict[str, tuple[Vector, Vector]]:
-        """Of every moving body two vectors fixed in it and not parallel."""
-        return {name: self.frame_of(unknown, name) for name in self.frames}
-
     def frame_of(self, unknown: Sequence[Scalar], body: str) -> tuple[Vector, Vector]:
-        """The same of one body."""
+        """Two vectors fixed in a body and not parallel."""
         one, two = self.frames[body]
         return _vector(one, unknown), _vector(two, unknown)
+
+
+def matrix_of(size: int, entries: Iterable[tuple[int, int, arb]]) -> arb_mat:
+    """A square matrix of balls, of its entries that are not zero."""
+    matrix = arb_mat(size, size)
+    for i, j, entry in entries:
+        matrix[i, j] = entry
+    return matrix
 
 
 def equations_in(

@@ -6,9 +6,9 @@ No function of this package returns a number that it could not prove: it raises 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 
 from flint import arb
-from mpmath import mpf
 
 
 class NoReferenceError(Exception):
@@ -41,7 +41,7 @@ class InfeasibleError(NoReferenceError):
         inputs: at the fold, rad or mm, without those that move the whole car.
     """
 
-    def __init__(self, way: str, share: float, inputs: Mapping[str, mpf]) -> None:
+    def __init__(self, way: str, share: float, inputs: Mapping[str, Fraction]) -> None:
         self.way, self.share, self.inputs = way, share, inputs
         there = ", ".join(f"{name} = {float(value):.9g}" for name, value in inputs.items())
         super().__init__(

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 import numbers
-from decimal import Decimal
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from typing import Any, TypeVar
 
-from flint import arb, fmpq
-from mpmath import libmp, mp, mpf
+from flint import arb, ctx, fmpq
 
-from validate.reference.errors import BadInputError
+from validate.reference.errors import BadInputError, NotDecidedError, SingularPoseError
+
+MOST_DIGITS = 400  # of the arithmetic: enough for an arm 1e-100 rad from its dead point
+
+Answer = TypeVar("Answer")
 
 
-def as_fraction(value: object, what: str) -> Fraction:
-    """The given number as a fraction, exactly: binary numbers (float, mpf) are what they are.
+def as_fraction(value: Any, what: str) -> Fraction:
+    """The given number as a fraction, exactly: binary numbers (float, mpmath's mpf) are what they are.
 
     Raises:
         BadInputError: not a real number, or not finite.
@@ -22,15 +26,9 @@ def as_fraction(value: object, what: str) -> Fraction:
     try:
         if isinstance(value, numbers.Integral):
             return Fraction(int(value))
-        if isinstance(value, Fraction | Decimal):
-            return Fraction(value)
-        if isinstance(value, mpf):
-            return Fraction(*(int(part) for part in value.as_integer_ratio()))
-        if isinstance(value, numbers.Real):
-            return Fraction(float(value))
-    except (ValueError, OverflowError):  # infinities and not-a-number have no ratio
-        pass
-    raise BadInputError(what, value, "a finite real number (int, float, Fraction or mpf)")
+        return Fraction(*(int(part) for part in value.as_integer_ratio()))
+    except (AttributeError, ValueError, OverflowError):  # infinities and not-a-number have no ratio
+        raise BadInputError(what, value, "a finite real number (int, float, Fraction or mpf)") from None
 
 
 def as_ball(value: Fraction | int) -> arb:
@@ -39,21 +37,27 @@ def as_ball(value: Fraction | int) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
-def centre_of(ball: arb) -> mpf:
-    """The centre of a ball, without rounding, whatever the working precision of mpmath is."""
-    mantissa, exponent = ball.mid().man_exp()
-    return mp.make_mpf(libmp.from_man_exp(int(mantissa), int(exponent)))
-
-
-def mpf_from_fraction(value: Fraction, digits: int) -> mpf:
-    """The fraction as mpf: exact if its denominator is a power of two, else rounded to `digits`."""
-    power = value.denominator.bit_length() - 1
-    if value.denominator == 1 << power:
-        return mp.make_mpf(libmp.from_man_exp(value.numerator, -power))
-    precision = bits(digits)
-    return mp.make_mpf(libmp.from_rational(value.numerator, value.denominator, precision))
+def centre_of(ball: arb) -> Fraction:
+    """The centre of a ball, without rounding."""
+    mantissa, exponent = (int(part) for part in ball.mid().man_exp())
+    return Fraction(mantissa << exponent) if exponent >= 0 else Fraction(mantissa, 1 << -exponent)
 
 
 def bits(digits: int) -> int:
     """Binary digits that hold so many decimal digits, with 25 to spare for the arithmetic."""
     return math.ceil((digits + 25) * math.log2(10))
+
+
+def with_more_digits(attempt: Callable[[int], Answer], ladder: Sequence[int]) -> Answer:
+    """What an attempt gives with the first of these digits with which its proofs hold.
+
+    Raises:
+        SingularPoseError: they hold with none.
+    """
+    for digits in ladder:
+        try:
+            with ctx.workprec(bits(digits)):
+                return attempt(digits)
+        except NotDecidedError as error:
+            doubt = error
+    raise SingularPoseError(digits, doubt)

@@ -4,26 +4,56 @@ Where a way turns back, its Jacobian is singular. The fold is the zero of
 
     C(y, t) = 0,   C'(y, t) v = 0,   v_j = 1                            in y, v, t,
 
-found and proven as in `krawczyk`. Past it t is no parameter of the branch, but y_j is: with the row y_j = s
-the system in (y, t) is regular, and a box about q(s), the branch to second order about the fold, is proven to
-hold one solution for each s from the pose to the fold, as in `way`. So the fold is that pose's own. By the
-enclosures of dy/ds, dt/ds and d2t/ds2 over the box t has no other extreme there: every t between is met once
-before the fold, by a regular pose, and no t beyond the fold is met.
+found and proven as in `krawczyk`. Past it t is no parameter of the branch, but s = y_j is: with the row
+y_j = s the equations in (y, t) are a curve of their own, regular at the fold, and a tube about it (see `way`)
+that holds both the pose and the fold makes the fold that pose's own. By the enclosures of dy/ds, dt/ds and
+d2t/ds2 over the tube t has no other extreme there: every t between is met once before the fold, by a regular
+pose, and no t beyond the fold is met.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from flint import arb, arb_mat, arb_poly
+from flint import arb, arb_mat
 
+from validate.reference.equations import matrix_of
 from validate.reference.errors import NotDecidedError
-from validate.reference.krawczyk import Contraction, System, column, middle_inverse, newton, within
+from validate.reference.krawczyk import Contraction, System, column, middle_inverse, newton
 from validate.reference.vectors import Scalar
-from validate.reference.way import Pose, Way, series_of, start_pose
+from validate.reference.way import Curve, Pose, Tube, Way, proven_tube, series_of, start_pose
 
 STEPS = 16  # of Newton's method: a guess that is good to two digits has 400 after eight
+FOLD_ORDER = 3  # of the series about the fold: one of second order says which way t turns
+BEYOND = 0.02  # of the way to the fold, at both ends of the tube, so that they lie inside
+
+
+@dataclass(frozen=True)
+class Bordered(Curve):
+    """The rows C(y, t) and y_j - s in x = (y, t); s is the parameter."""
+
+    way: Way
+    index: int
+
+    def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
+        """Both."""
+        return [*self.way.rows(x[:-1], x[-1]), x[self.index] - t]
+
+    def by_time(self, x: Sequence[Scalar]) -> list[Scalar]:
+        """dC/dt: a central difference, exact as C is quadratic."""
+        ahead, behind = (self.way.rows(x[:-1], x[-1] + step) for step in (1, -1))
+        return [(a - b) * arb(0.5) for a, b in zip(ahead, behind, strict=True)]
+
+    def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
+        """Of their Jacobian."""
+        last = len(x) - 1
+        by_time = [(i, last, one) for i, one in enumerate(self.by_time(x))]
+        return [*self.way.entries(x[:-1], x[-1]), *by_time, (last, self.index, x[-1] * 0 + 1)]
+
+    def bend(self, change: Sequence[arb]) -> arb_mat:
+        """The change of a matrix that is linear in x."""
+        return self.matrix(change, arb(0)) - self.matrix([arb(0)] * len(change), arb(0))
 
 
 @dataclass(frozen=True)
@@ -34,16 +64,14 @@ class Fold:
         t: where on the way, a ball.
         unknown: there, balls.
         index: j, the unknown that is the parameter.
-        curve: q and t as polynomials in s less its value at the fold.
-        width: of the box about them, t's last.
+        tube: of (y, t) along s.
         before: s at the pose less that at the fold.
     """
 
     t: arb
     unknown: Sequence[arb]
     index: int
-    curve: Sequence[arb_poly]
-    width: Sequence[arb]
+    tube: Tube
     before: arb
 
 
@@ -51,9 +79,18 @@ def fold_ahead(way: Way, pose: Pose) -> Fold | None:
     """The fold at which the branch of a pose ends, or None if none is proven."""
     try:
         start, index = _guess(way, pose)
-        solved = _proven(fold_rows(way, index), start)
-        t = solved[-1]
-        return _joined(way, pose, solved, index) if t > pose.t else None
+        bordered = Bordered(way, index)
+        y, t = _proven(bordered, start)
+        middle = [*(x.mid() for x in y), t.mid()]
+        series = series_of(bordered, start_pose(bordered, middle, middle[index]), FOLD_ORDER)
+        before = (pose.unknown[index] - middle[index]).mid()
+        begin, stop = middle[index] - before * BEYOND, pose.unknown[index] + before * BEYOND
+        tube = proven_tube(bordered, middle[index], series, begin.mid(), stop.mid())
+        ends = ([*pose.box, pose.t], [*y, t])
+        held = tube is not None and all(tube.holds(x[index], x) for x in ends)
+        if tube is None or not held or not t > pose.t or not _one_extreme(bordered, tube.all_along):
+            return None
+        return Fold(t, y, index, tube, before)
     except (ZeroDivisionError, NotDecidedError):
         return None
 
@@ -64,68 +101,17 @@ def pose_before(way: Way, fold: Fold, t: arb) -> Pose:
     Raises:
         NotDecidedError: it cannot be proven with the present digits.
     """
-    bend = -fold.curve[-1][2]
-    s = ((fold.t - t) / bend).mid()
-    if not s > 0:
-        raise NotDecidedError("the distance to the fold", s, "> 0")
-    s = s.sqrt() if fold.before > 0 else -s.sqrt()
-    pose = start_pose(way, [one(s.mid()) for one in fold.curve[:-1]], t)
-    at = pose.box[fold.index] - fold.unknown[fold.index]
-    between = abs(at) < abs(fold.before) and (at > 0 if fold.before > 0 else at < 0)
-    near = within([*pose.box, t], [one(at) for one in fold.curve], fold.width)
-    if not (between and near):
-        raise NotDecidedError("the pose on the branch before the fold", at, fold.before)
+    squared = ((fold.t - t) / -fold.tube.series[-1][2]).mid()
+    if not squared > 0:
+        raise NotDecidedError("the distance to the fold", squared, "> 0")
+    sign = 1 if fold.before > 0 else -1
+    near = fold.tube.at((fold.tube.start + sign * squared.sqrt()).mid())
+    pose = start_pose(way, [x.mid() for x in near[:-1]], t)
+    s = pose.box[fold.index]
+    left = sign * (s - fold.unknown[fold.index])
+    if not (left > 0 and left < abs(fold.before) and fold.tube.holds(s, [*pose.box, t])):
+        raise NotDecidedError("the pose on the branch before the fold", left, fold.before)
     return pose
-
-
-def fold_rows(way: Way, index: int) -> System:
-    """The rows C, C' v and v_j - 1, whose zero is a fold, in x = (y, v, t)."""
-    size = way.equations.size
-
-    def residual(x: Sequence[arb]) -> list[arb]:
-        y, v, t = x[:size], x[size:-1], x[-1]
-        return [*way.rows(y, t), *(way.matrix(y, t) * column(v)).entries(), v[index] - 1]
-
-    def matrix(x: Sequence[arb]) -> arb_mat:
-        y, v, t = x[:size], x[size:-1], x[-1]
-        jacobian, bend = way.matrix(y, t), way.equations.bend(v)
-        by_time, turned = way.by_time(y, t), (way.bend_by_time() * column(v)).entries()
-        matrix = arb_mat(2 * size + 1, 2 * size + 1)
-        for i in range(size):
-            for j in range(size):
-                matrix[i, j] = matrix[size + i, size + j] = jacobian[i, j]
-                matrix[size + i, j] = bend[i, j]
-            matrix[i, 2 * size], matrix[size + i, 2 * size] = by_time[i], turned[i]
-        matrix[2 * size, size + index] = arb(1)
-        return matrix
-
-    return System(residual, matrix, _change_of(matrix))
-
-
-@dataclass(frozen=True)
-class Bordered:
-    """The rows C(y, t) and y_j = s, in (y, t)."""
-
-    way: Way
-    index: int
-
-    def entries(self, x: Sequence[Scalar]) -> list[tuple[int, int, Scalar]]:
-        """Of their Jacobian."""
-        y, t = x[:-1], x[-1]
-        by_time = [(i, len(y), one) for i, one in enumerate(self.way.by_time(y, t))]
-        return [*self.way.entries(y, t), *by_time, (len(y), self.index, t * 0 + 1)]
-
-    def matrix(self, x: Sequence[arb]) -> arb_mat:
-        """The same of balls."""
-        matrix = arb_mat(len(x), len(x))
-        for i, j, entry in self.entries(x):
-            matrix[i, j] = entry
-        return matrix
-
-
-def _change_of(matrix: Callable[[Sequence[arb]], arb_mat]) -> Callable[[Sequence[arb]], arb_mat]:
-    """What a change of x changes of a matrix that is linear in x."""
-    return lambda d: matrix(d) - matrix([arb(0)] * len(d))
 
 
 def _guess(way: Way, pose: Pose) -> tuple[list[arb], int]:
@@ -140,53 +126,44 @@ def _guess(way: Way, pose: Pose) -> tuple[list[arb], int]:
     return [*y, *(c / first[index] for c in first), pose.t + left], index
 
 
-def _proven(rows: System, start: Sequence[arb]) -> list[arb]:
-    """The fold: balls that hold one and only one zero."""
+def _proven(bordered: Bordered, start: Sequence[arb]) -> tuple[list[arb], arb]:
+    """The fold: balls y, t, and v with them, that hold one and only one zero of C, C' v and v_j - 1."""
+    way, size = bordered.way, bordered.way.equations.size
+
+    def residual(x: Sequence[arb]) -> list[arb]:
+        y, v, t = x[:size], x[size:-1], x[-1]
+        return [*way.rows(y, t), *(way.matrix(y, t) * column(v)).entries(), v[bordered.index] - 1]
+
+    def matrix(x: Sequence[arb]) -> arb_mat:
+        y, v, t = x[:size], x[size:-1], x[-1]
+        entries = bordered.entries([*y, t], t)
+        # C' v is linear in y and t: its derivatives are those of the bordered rows along v.
+        turned = bordered.bend([*v, arb(0)])
+        place = [*range(size), 2 * size]  # of the columns of y and t
+        found = [(i, place[j], one) for i, j, one in entries if i < size]
+        found += [(size + i, size + j, one) for i, j, one in entries if i < size and j < size]
+        found += [(size + i, k, turned[i, j]) for i in range(size) for j, k in enumerate(place)]
+        return matrix_of(2 * size + 1, [*found, (2 * size, size + bordered.index, arb(1))])
+
+    none = matrix([arb(0)] * len(start))
+    rows = System(residual, matrix, lambda change: matrix(change) - none)
     centre, inverse = newton(rows, start, STEPS)
     proof = Contraction.at(rows, centre, inverse)
     width = proof.settled(0.75)
     if width is None:
         raise NotDecidedError("the fold in its box", "none", "one")
-    return [arb(x, r) for x, r in zip(centre, proof.image(width), strict=True)]
-
-
-def _joined(way: Way, pose: Pose, solved: Sequence[arb], index: int) -> Fold | None:
-    """The fold with the box that leads to it from the pose, or None if the box is too wide for a proof."""
-    size, bordered = way.equations.size, Bordered(way, index)
-    y, v, t = solved[:size], solved[size:-1], solved[-1]
-    middle = [x.mid() for x in y]
-    inverse = middle_inverse(bordered.matrix([*middle, t.mid()]))
-    # At the fold dt/ds = 0 and dy/ds = v; the second derivatives follow from C differentiated twice.
-    twice = (inverse * column([*(-(way.equations.bend(v) * column(v))).entries(), arb(0)])).entries()
-    first = [*(b.mid() for b in v), arb(0)]
-    curve = [arb_poly([a, b, c.mid() / 2]) for a, b, c in zip([*middle, t.mid()], first, twice, strict=True)]
-    curve[index] = arb_poly([middle[index], 1])
-    before = (pose.unknown[index] - middle[index]).mid()
-    half = (before / 2).mid()
-    span = arb(0, (abs(half) * arb(1.02)).upper())  # a little beyond both ends, so that they lie inside
-    about = [one(arb_poly([half, 1])) for one in curve]
-    rows = [*way.rows(about[:-1], about[-1]), arb_poly([])]
-    proof = Contraction.along(rows, bordered.entries(about), _change_of(bordered.matrix), span)
-    width = proof.settled()
-    if width is None:
-        return None
-    start = [*pose.box, pose.t]
-    at = start[index] - middle[index]
-    box = [one(span) + arb(0, r) for one, r in zip(about, width, strict=True)]
-    if not (within(start, [one(at) for one in curve], width) and _one_extreme(bordered, box)):
-        return None
-    return Fold(t, y, index, curve, width, before)
+    solved = [arb(x, r) for x, r in zip(centre, proof.image(width), strict=True)]
+    return solved[:size], solved[-1]
 
 
 def _one_extreme(bordered: Bordered, box: Sequence[arb]) -> bool:
-    """Whether d2t/ds2 is negative on the whole box."""
-    way, size = bordered.way, len(box) - 1
-    matrix = bordered.matrix(box)
+    """Whether d2t/ds2 is negative on the whole box.
+
+    With B the Jacobian of the bordered rows x' = B^-1 e and x'' = -B^-1 (B'' x') x', e the last unit vector.
+    """
+    matrix = bordered.matrix(box, box[-1])
     inverse = middle_inverse(matrix)
-    product = inverse * matrix
-    first = product.solve(inverse * column([*([arb(0)] * size), arb(1)])).entries()
-    dy, dt = first[:size], first[size]
-    bent = (way.equations.bend(dy) * column(dy)).entries()
-    twisted = (way.bend_by_time() * column(dy)).entries()
-    second = [-x - 2 * z * dt for x, z in zip(bent, twisted, strict=True)]
-    return bool(product.solve(inverse * column([*second, arb(0)]))[size, 0] < 0)
+    product, last = inverse * matrix, len(box) - 1
+    first = product.solve(inverse * column([*([arb(0)] * last), arb(1)]))
+    second = product.solve(inverse * -(bordered.bend(first.entries()) * first))
+    return bool(second[last, 0] < 0)

@@ -49,7 +49,7 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
         ]
         numbers += [Jet(*one) for one in np.array(found).transpose(1, 2, 0)]
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
-    chassis = ChassisMotion.of(design, driven, float)
+    chassis = ChassisMotion.of(design.plain, design.table, design.unit, driven, float)
     return Known(design.mechanism, equations_in_doubles(design), numbers, chassis, driven)
 
 

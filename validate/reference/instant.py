@@ -7,25 +7,25 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import arb
-from mpmath import mpf
 
 from validate.reference.certificate import Certificate, certify
 from validate.reference.design import Design, Known, ball_vector, values_only
-from validate.reference.effects.at_pose import effects_at, provided
+from validate.reference.effects.at_pose import effects_at, numbers_of
 from validate.reference.effects.registry import ANGLES, named
 from validate.reference.errors import NoReferenceError, NotDecidedError
-from validate.reference.exact import as_ball, as_fraction, centre_of, mpf_from_fraction
+from validate.reference.exact import as_ball, centre_of
 from validate.reference.jet import part_of
 from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
 from validate.reference.krawczyk import newton
+from validate.reference.loads import forces_at
 from validate.reference.vectors import Vector, each, plus, times
 
-Triple = tuple[mpf, mpf, mpf]
+Triple = tuple[Fraction, Fraction, Fraction]
 Expected = Callable[[Sequence[arb]], bool]
 
 UNDEFINED = (
     "cannot be proven in this pose, where it is 0/0, or jumps by a whole turn, or the wheel does not travel, "
-    "or an instant centre is at infinity"
+    "or a centre is at infinity, or the wheels are not steered to one side"
 )
 
 
@@ -33,24 +33,20 @@ UNDEFINED = (
 class Instant:
     """The reference at one instant. Mappings go by point or body name; mm, s, rad.
 
-    The mpf numbers hold more digits than mpmath's default: set `mpmath.mp.dps` before computing with
-    them, or mpmath rounds the result.
-
     Attributes:
         position: every point, mm.
         velocity: every point, mm/s.
         acceleration: every point, mm/s^2.
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
-        effects: those that were asked for, by name, see `effects.registry`; rad, mm, these per mm, and %.
-        left_out: those of them that there are none of, and why: the car lacks what they need, or they are
-            undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
-            infinity).
+        effects: those that were asked for, by name, with its part's prefix if there are parts, see
+            `effects.registry`; rad, mm, these per mm, and %.
+        rod_force, joint_force: where loads are given, of rods, dampers and ball joints, N; see `loads`.
+        left_out: those of these three that there are none of, and why: the car lacks what they need, or they
+            are undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
+            infinity, wheels that are steered apart).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
-        condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
-        orientation: sign of the Jacobian's determinant, which no regular motion changes: assemblies that meet
-            at a fold differ in it.
         digits: how many digits it took.
     """
 
@@ -59,15 +55,15 @@ class Instant:
     acceleration: Mapping[str, Triple]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
-    effects: Mapping[str, mpf]
+    effects: Mapping[str, Fraction]
+    rod_force: Mapping[str, Fraction]
+    joint_force: Mapping[str, Triple]
     left_out: Mapping[str, str]
-    radius: mpf
-    error_bound: Mapping[str, mpf]
-    condition: float
-    orientation: int
+    radius: Fraction
+    error_bound: Mapping[str, Fraction]
     digits: int
 
-    def effect(self, name: str) -> mpf:
+    def effect(self, name: str) -> Fraction:
         """An effect that must be there.
 
         Raises:
@@ -83,8 +79,8 @@ class Instant:
 
     def position_as_float(self, name: str) -> tuple[float, float, float]:
         """The point rounded to float64, mm: the nearest, up to `radius` where two are equally near."""
-        x, y, z = (float(as_fraction(number, name)) for number in self.position[name])
-        return x, y, z
+        x, y, z = self.position[name]
+        return float(x), float(y), float(z)
 
 
 def prove_instant(
@@ -109,42 +105,17 @@ def prove_instant(
         NotDecidedError: a proof fails with the present digits.
         BadInputError: there is no such effect.
     """
-    still = values_only(known)
+    still, unit, least = values_only(known), as_ball(design.unit), as_ball(Fraction(1, 10**digits))
     certificate = prove_pose(still, start, expected, digits, working)
-    _require_others(design, certificate, still, digits)
-    inverse = inverse_jacobian(certificate.enclosure, still)
-    solved = unknown_jets(certificate.enclosure, known, inverse)
-    points = known.points_of(solved)
-
-    unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    turns = body_turns(solved, known)
-
-    def local(order: str) -> dict[str, Vector]:
-        return {name: times(part_of(points[name], order), unit) for name in design.names}
-
-    vectors = {
-        "position": {name: plus(origin, place) for name, place in local("value").items()},
-        "velocity": local("rate"),
-        "acceleration": local("acceleration"),
-        "angular_velocity": {body: turn[0] for body, turn in turns.items()},
-        "angular_acceleration": {body: turn[1] for body, turn in turns.items()},
-    }
-    _, fastest, hardest, spin, twist = (_greatest(named.values()) for named in vectors.values())
-    push = hardest + fastest * fastest / unit  # centripetal parts may cancel: their size counts
-    scales = {
-        "position": unit,
-        "velocity": fastest,
-        "acceleration": push,
-        "angular_velocity": spin + fastest / unit,
-        "angular_acceleration": twist + push / unit,
-    }
-    if not all(x.is_finite() for balls in vectors.values() for vector in balls.values() for x in vector):
-        raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
-    bounds = {quantity: _greatest_radius(balls.values()) for quantity, balls in vectors.items()}
-    for quantity, bound in bounds.items():
-        limit = scales[quantity] * as_ball(Fraction(1, 10**digits))
-        if not (bound <= limit):
-            raise NotDecidedError(f"the error bound of {quantity}", bound, limit)
+    enclosure = certificate.enclosure
+    _require_others(design, enclosure, still, least)
+    inverse = inverse_jacobian(enclosure, still)
+    solved = unknown_jets(enclosure, known, inverse)
+    vectors = _motion(design, known.points_of(solved), body_turns(solved, known))
+    bounds = {quantity: _largest_radius(of.values()) for quantity, of in vectors.items()}
+    for quantity, scale in _scales(vectors, unit).items():
+        if not bounds[quantity] <= scale * least:
+            raise NotDecidedError(f"the error bound of {quantity}", bounds[quantity], scale * least)
 
     # The proof speaks of a box about the centre, the answer is the middle of the enclosure. Half the
     # box about the answer lies inside the whole box about the centre, so the proof holds there too;
@@ -155,22 +126,30 @@ def prove_instant(
     if not shift < as_ball(radius / 2):
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
-    wanted, has = named(effects), provided(design)
+    numbers = {number.name: number for number in numbers_of(design, effects)}
     told = {
         name: ball
-        for name, ball in effects_at(design, known, certificate.enclosure, inverse, effects).items()
-        if ball.rad() < unit ** wanted[name].power * as_ball(Fraction(1, 10**digits))
+        for name, ball in effects_at(design, known, enclosure, inverse, numbers.values()).items()
+        if ball.rad() < unit ** numbers[name].effect.power * least
     }
     bounds["effects"] = max((ball.rad() for ball in told.values()), default=arb(0))
-    left_out = {name: effect.lacks(has) for name, effect in wanted.items() if name not in told}
+    left_out = {
+        name: f"needs {number.lacks}" if number.lacks else UNDEFINED
+        for name, number in numbers.items()
+        if name not in told
+    }
+    statics = forces_at(design, known, enclosure, digits)
+    if design.loads:
+        bounds["rod_force"] = max((ball.rad() for ball in statics.rods.values()), default=arb(0))
+        bounds["joint_force"] = _largest_radius(statics.joints.values())
     return Instant(
-        **{quantity: _centres(balls) for quantity, balls in vectors.items()},
+        **{quantity: _centres(of) for quantity, of in vectors.items()},
         effects={name: centre_of(ball) for name, ball in told.items()},
-        left_out={name: f"needs {lack}" if lack else UNDEFINED for name, lack in left_out.items()},
-        radius=mpf_from_fraction(radius, working),
+        rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
+        joint_force=_centres(statics.joints),
+        left_out={**left_out, **statics.left_out},
+        radius=radius,
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
-        condition=certificate.condition,
-        orientation=_orientation(certificate, still),
         digits=working,
     )
 
@@ -193,7 +172,7 @@ def prove_pose(
     return certificate
 
 
-def _require_others(design: Design, certificate: Certificate, known: Known, digits: int) -> None:
+def _require_others(design: Design, enclosure: Sequence[arb], known: Known, least: arb) -> None:
     """Pass if the rows that are not solved, because the others say them in the drawing, hold here too.
 
     That they hold exactly cannot be proven by balls, only that they do to the digits asked for.
@@ -201,7 +180,7 @@ def _require_others(design: Design, certificate: Certificate, known: Known, digi
     Raises:
         NoReferenceError: one does not hold.
     """
-    mechanism, values = design.mechanism, [*certificate.enclosure, *known.numbers]
+    mechanism, values = design.mechanism, [*enclosure, *known.numbers]
     for i in set(range(len(mechanism.rows))) - set(design.chosen):
         missed = mechanism.rows[i].at(values, as_ball)
         if not missed.contains(0):
@@ -209,26 +188,48 @@ def _require_others(design: Design, certificate: Certificate, known: Known, digi
                 f"the row {mechanism.names[i]!r}, which depends on the others in the drawing, is violated "
                 f"here by {missed.str(6)}, needed 0; the mechanism is locked, or not drawn exactly enough"
             )
-        if not missed.abs_upper() < as_ball(Fraction(1, 10**digits)):
-            raise NotDecidedError(f"the row {mechanism.names[i]!r}", missed, f"0 to {digits} digits")
+        if not missed.abs_upper() < least:
+            raise NotDecidedError(f"the row {mechanism.names[i]!r}", missed, least)
 
 
-def _orientation(certificate: Certificate, known: Known) -> int:
-    determinant = known.matrix(certificate.enclosure).det()
-    if not (determinant > 0 or determinant < 0):
-        raise NotDecidedError("the sign of the Jacobian's determinant", determinant, "not 0")
-    return 1 if determinant > 0 else -1
+def _motion(
+    design: Design, points: Mapping[str, Vector], turns: Mapping[str, tuple[Vector, Vector]]
+) -> Mapping[str, Mapping[str, Vector]]:
+    """Positions, rates and turning in mm, s, rad."""
+    unit, origin = as_ball(design.unit), ball_vector(design.origin)
+    local = {
+        order: {name: times(part_of(points[name], order), unit) for name in design.names}
+        for order in ("value", "rate", "acceleration")
+    }
+    found = {
+        "position": {name: plus(origin, place) for name, place in local["value"].items()},
+        "velocity": local["rate"],
+        "acceleration": local["acceleration"],
+        "angular_velocity": {body: turn[0] for body, turn in turns.items()},
+        "angular_acceleration": {body: turn[1] for body, turn in turns.items()},
+    }
+    if not all(x.is_finite() for of in found.values() for vector in of.values() for x in vector):
+        raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
+    return found
 
 
-def _greatest(vectors: Iterable[Vector]) -> arb:
-    """Greatest component in size, from above."""
-    greatest: arb = max(x.abs_upper() for vector in vectors for x in vector)
-    return greatest
+def _scales(vectors: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str, arb]:
+    """The greatest number of each kind; centripetal parts may cancel: their size counts."""
+    _, fastest, hardest, spin, twist = (
+        max(x.abs_upper() for vector in of.values() for x in vector) for of in vectors.values()
+    )
+    push = hardest + fastest * fastest / unit
+    return {
+        "position": unit,
+        "velocity": fastest,
+        "acceleration": push,
+        "angular_velocity": spin + fastest / unit,
+        "angular_acceleration": twist + push / unit,
+    }
 
 
-def _greatest_radius(vectors: Iterable[Vector]) -> arb:
-    greatest: arb = max(x.rad() for vector in vectors for x in vector)
-    return greatest
+def _largest_radius(vectors: Iterable[Vector]) -> arb:
+    return max((x.rad() for vector in vectors for x in vector), default=arb(0))
 
 
 def _centres(balls: Mapping[str, Vector]) -> dict[str, Triple]:

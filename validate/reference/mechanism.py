@@ -30,6 +30,10 @@ class Mechanism:
             or an angle is off by half a turn.
         readers: give the unknowns of assembled points, one after the other.
         drives: by input, what its numbers w are; chassis motions are not among them.
+        driving: of each of these the row that its numbers are in, the last of them if there are several.
+        rods: of each the row of its length.
+        joints: of each point whose place two bodies say in rows the body, place - place of the other, and the
+            first of the three rows.
     """
 
     size: int
@@ -42,6 +46,15 @@ class Mechanism:
     positive: tuple[Polynomial, ...]
     readers: tuple[Reader, ...]
     drives: Mapping[str, Drive]
+    driving: Mapping[str, int]
+    rods: Mapping[str, int]
+    joints: Mapping[str, tuple[str, int]]
+
+    @property
+    def fixed(self) -> frozenset[str]:
+        """The points of the chassis."""
+        constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.places.items())
+        return frozenset(name for name, rests in constant if rests)
 
     def unknown_of(self, points: Table, exact: Exact) -> list[Scalar]:
         """The unknowns of assembled points, relative to the chassis, in their kind of number.
@@ -64,19 +77,21 @@ class Mechanism:
         return found
 
 
-def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction) -> Mechanism:
+def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool = True) -> Mechanism:
     """The equations of a description, its points taken from `table`, local.
 
+    Args:
+        hangs: whether a body hangs on a point of one before it; else each joint has its rows.
     Raises:
         BadInputError: something in the description cannot be.
     """
-    compiler = Compiler(plain, table, unit)
+    compiler = Compiler(plain, table, unit, hangs)
     compiler.add_parts()
-    drives = {
-        name: drive_of(compiler, name, spec)
-        for name, spec in compiler.plain["inputs"].items()
-        if "moves" not in spec and "turns" not in spec
-    }
+    drives, driving = {}, {}
+    for name, spec in plain["inputs"].items():
+        if "moves" not in spec and "turns" not in spec:
+            drives[name] = drive_of(compiler, name, spec)
+            driving[name] = len(compiler.rows) - 1
     for name in compiler.table:
         if name not in compiler.holder and name not in compiler.free:
             raise BadInputError(f"points.{name}", "in no body, rod or slide", "a point of one of them")
@@ -96,6 +111,9 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction) -> Mechanis
         positive=tuple(_final(one, size) for one in compiler.positive),
         readers=tuple(compiler.readers),
         drives=drives,
+        driving=driving,
+        rods=compiler.rods,
+        joints=compiler.joints,
     )
 
 

@@ -7,31 +7,28 @@ take of them (see `drives`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from itertools import islice, permutations
+from itertools import chain, islice, pairwise, permutations
 from math import ceil
 
-from flint import arb, ctx
-from mpmath import mpf
+from flint import arb
 
 from validate.reference.design import Design, Driven, balls, values_only
 from validate.reference.errors import (
     AmbiguousAssemblyError,
     InfeasibleError,
     NotDecidedError,
-    SingularPoseError,
     TooManyStepsError,
 )
-from validate.reference.exact import centre_of
+from validate.reference.exact import MOST_DIGITS, centre_of, with_more_digits
 from validate.reference.fold import fold_ahead, pose_before
 from validate.reference.jet import Jet
 from validate.reference.way import Pose, Way, bending, next_pose, start_pose
 
-# Bits of the arithmetic on the way: first three doubles' worth, at last 400 decimal digits, see `solve`.
-PRECISIONS = (106, 212, 424, 1413)
+DIGITS = (7, 39, 103, MOST_DIGITS)  # of the arithmetic on the way: twice a double's bits, and twice that
 FOLDS_FROM = 0.05  # of the way: shorter steps lead into a fold, which is then looked for
 TURN = Fraction(3, 2)  # rad, less than a quarter turn
 # Ways take one step or a few, however thin a body is, and up to a hundred where they end within 1e-12 of a
@@ -43,10 +40,9 @@ CLEAR = 1e-9  # a drawing is rounded to floats and need not close: where its ass
 
 @dataclass(frozen=True)
 class Assembly:
-    """Where a route has come to: a proven pose, and which inputs are as driven there, the others as drawn."""
+    """Where a route has come to: a proven pose, with these inputs as driven and the others as drawn."""
 
-    driven: Driven | None
-    which: frozenset[str]
+    driven: Driven
     pose: Pose
 
 
@@ -60,25 +56,22 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
         AmbiguousAssemblyError: the drawing lies (nearly) at a singular pose.
         InfeasibleError, SingularPoseError: it does not close without passing one.
     """
-    doubt: NotDecidedError | None = None
-    for precision in PRECISIONS:
-        with ctx.workprec(precision):
-            drawn, known = design.drawn_unknown(), values_only(design.known_as_drawn())
-            way = Way(known.equations, known.numbers, known.numbers, known.residual(drawn))
-            try:
-                pose = start_pose(way, drawn, arb(0))
-            except NotDecidedError:
-                continue
-            clear = 1.0 / bending(way, pose)
-            if clear < clearness:
-                raise _ambiguous(clear, clearness)
-            try:
-                return Assembly(None, frozenset(), _led(way, pose, design, "closing the drawing"))
-            except NotDecidedError as error:
-                doubt = error
-    if doubt is None:
-        raise _ambiguous(0.0, clearness)
-    raise SingularPoseError(400, doubt)
+
+    def attempt(digits: int) -> Assembly:
+        drawn, known = design.drawn_unknown(), values_only(design.known_as_drawn())
+        way = Way(known.equations, known.numbers, known.numbers, known.residual(drawn))
+        try:
+            pose = start_pose(way, drawn, arb(0))
+        except NotDecidedError:
+            if digits < MOST_DIGITS:
+                raise
+            raise _ambiguous(0.0, clearness) from None
+        clear = 1.0 / bending(way, pose)
+        if clear < clearness:
+            raise _ambiguous(clear, clearness)
+        return Assembly({}, _led(way, pose, design, "closing the drawing"))
+
+    return with_more_digits(attempt, DIGITS)
 
 
 def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
@@ -93,43 +86,42 @@ def reached(design: Design, clearness: float, driven: Driven) -> Assembly:
     try:
         return moved(design, here, driven)
     except InfeasibleError as straight:
-        for order in islice(permutations(_changed(design, driven)), MOST_ORDERS):
-            if len(order) == 1:
-                break
-            try:
-                there = here
-                for k in range(1, len(order)):
-                    there = moved(design, there, driven, frozenset(order[:k]))
-                return moved(design, there, driven)
-            except InfeasibleError:
-                continue
+        drawn, wanted = _numbers(design, {}), _numbers(design, driven)
+        same = {n for n in drawn if all(a.overlaps(b) for a, b in zip(drawn[n], wanted[n], strict=True))}
+        changed = [name for name in drawn if name not in same]
+        if len(changed) > 1:
+            for order in islice(permutations(changed), MOST_ORDERS):
+                try:
+                    there = here
+                    for k in range(1, len(order)):
+                        there = moved(design, there, {name: driven[name] for name in order[:k]})
+                    return moved(design, there, driven)
+                except InfeasibleError:
+                    continue
         raise straight from None
 
 
-def moved(design: Design, here: Assembly, driven: Driven, which: frozenset[str] | None = None) -> Assembly:
+def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
     """The assembly that the straight way to other inputs leads to.
 
     Args:
-        which: the inputs that go there, the others being as drawn; all unless given.
+        driven: the inputs that go there, the others being as drawn.
     Raises:
         InfeasibleError: proven that the way meets a fold before its end.
         SingularPoseError: the way meets a singular pose, or one so near that 400 digits do not tell.
     """
-    which = frozenset(design.mechanism.drives) if which is None else which
-    for precision in PRECISIONS:
-        with ctx.workprec(precision):
-            try:
-                pose = here.pose
-                for begin, end in _legs(design, here, driven, which):
-                    way = Way(design.equations(), begin, end)
-                    start = start_pose(way, pose.unknown, arb(0))
-                    if not pose.holds(start.box):
-                        raise NotDecidedError("the start of the way", "another solution", "the same")
-                    pose = _led(way, start, design, "the way to the inputs")
-                return Assembly(driven, which, pose)
-            except NotDecidedError as error:
-                doubt = error
-    raise SingularPoseError(400, doubt)
+
+    def attempt(_: int) -> Assembly:
+        pose = here.pose
+        for begin, end in pairwise(_stops(design, here.driven, driven)):
+            way = Way(design.equations(), begin, end)
+            start = start_pose(way, pose.unknown, arb(0))
+            if not pose.holds(start.box):
+                raise NotDecidedError("the start of the way", "another solution", "the same")
+            pose = _led(way, start, design, "the way to the inputs")
+        return Assembly(driven, pose)
+
+    return with_more_digits(attempt, DIGITS)
 
 
 def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
@@ -145,8 +137,7 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
             raise TooManyStepsError(what, float(pose.t), MOST_STEPS)
         there = next_pose(way, pose, longest)
         step = float(there.t - pose.t)
-        longest = arb(4 * step)
-        pose = there
+        pose, longest = there, arb(4 * step)
         if step < tried and pose.t < 1:
             tried = step / 4
             fold = fold_ahead(way, pose)
@@ -160,61 +151,44 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
     return pose
 
 
-def _legs(
-    design: Design, here: Assembly, driven: Driven, which: frozenset[str]
-) -> Iterator[tuple[Sequence[arb], Sequence[arb]]]:
-    """The numbers w at the ends of each straight way."""
+def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
+    """The numbers w between which the ways are straight."""
     drives = design.mechanism.drives
-    begin, end = _numbers(design, here.driven, here.which), _numbers(design, driven, which)
-    angles = {
-        name: (_angle(here.driven, here.which, name), _angle(driven, which, name))
+    turns = {
+        name: [Fraction(inputs[name].value) if name in inputs else Fraction(0) for inputs in (begin, end)]
         for name, one in drives.items()
         if one.turns
     }
-    count = max(1, ceil(max((abs(b - a) for a, b in angles.values()), default=Fraction(0)) / TURN))
-
-    def at(k: int) -> list[arb]:
-        found: list[arb] = []
+    count = max(1, ceil(max((abs(b - a) for a, b in turns.values()), default=Fraction(0)) / TURN))
+    first, last = _numbers(design, begin), _numbers(design, end)
+    between = []
+    for k in range(1, count):
+        numbers: list[arb] = []
         for name, one in drives.items():
-            if k in (0, count):
-                found += (end if k else begin)[name]
-            elif one.turns:
-                a, b = angles[name]
-                found += [jet.value for jet in one.numbers(balls(Jet(a + Fraction(k, count) * (b - a))))]
+            if name in turns:
+                a, b = turns[name]
+                numbers += [jet.value for jet in one.numbers(balls(Jet(a + Fraction(k, count) * (b - a))))]
             else:
-                found += [x + (y - x) * k / count for x, y in zip(begin[name], end[name], strict=True)]
-        return found
-
-    for k in range(count):
-        yield at(k), at(k + 1)
+                numbers += [x + (y - x) * k / count for x, y in zip(first[name], last[name], strict=True)]
+        between.append(numbers)
+    return [[*chain(*first.values())], *between, [*chain(*last.values())]]
 
 
-def _numbers(design: Design, driven: Driven | None, which: frozenset[str]) -> dict[str, Sequence[arb]]:
+def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
+    """The numbers w of each input, of those that are not driven as drawn."""
     return {
-        name: one.drawn()
-        if driven is None or name not in which
-        else [jet.value for jet in one.numbers(balls(driven[name]))]
+        name: [jet.value for jet in one.numbers(balls(driven[name]))] if name in driven else [*one.drawn()]
         for name, one in design.mechanism.drives.items()
     }
 
 
-def _changed(design: Design, driven: Driven) -> list[str]:
-    """The inputs that are not as drawn."""
-    drawn, there = _numbers(design, None, frozenset()), _numbers(design, driven, frozenset(driven))
-    return [n for n in drawn if not all(a.overlaps(b) for a, b in zip(drawn[n], there[n], strict=True))]
-
-
-def _inputs(design: Design, numbers: Sequence[arb]) -> dict[str, mpf]:
+def _inputs(design: Design, numbers: Sequence[arb]) -> dict[str, Fraction]:
     found, first = {}, 0
     for name, drive in design.mechanism.drives.items():
         count = len(drive.drawn())
         found[name] = centre_of(drive.input_of(numbers[first : first + count]))
         first += count
     return found
-
-
-def _angle(driven: Driven | None, which: frozenset[str], name: str) -> Fraction:
-    return Fraction(0) if driven is None or name not in which else Fraction(driven[name].value)
 
 
 def _ambiguous(clear: float, clearness: float) -> AmbiguousAssemblyError:

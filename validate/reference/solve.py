@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+from itertools import takewhile
+from typing import Any
 
 from flint import ctx
 
-from validate.reference.design import Design, Driven
+from validate.reference.design import Design, Known
 from validate.reference.effects.registry import ANGLES
-from validate.reference.errors import BadInputError, InfeasibleError, NotDecidedError, SingularPoseError
-from validate.reference.exact import bits
+from validate.reference.errors import BadInputError, InfeasibleError, SingularPoseError
+from validate.reference.exact import MOST_DIGITS, Answer, bits, centre_of, with_more_digits
 from validate.reference.instant import Instant, prove_instant
-from validate.reference.route import CLEAR, Assembly, moved, reached
+from validate.reference.route import CLEAR, Assembly, closed, moved, reached
 
-MOST_DIGITS = 400  # of the arithmetic: enough for an arm 1e-100 rad from its dead point
 LEAST_PROMISED, MOST_PROMISED = 15, 200  # leaves one doubling at least
-DOUBLINGS = 5  # from 15 digits to 400
 
-Answer = TypeVar("Answer")
+Inputs = Mapping[str, Sequence[object]]
 
 
 def solve_reference(
     plain: Mapping[str, Any],
-    inputs: Mapping[str, Sequence[object]],
+    inputs: Inputs,
     digits: int = 60,
     clearness: float = CLEAR,
     effects: Sequence[str] = ANGLES,
@@ -67,7 +69,7 @@ def solve_reference(
 
 def instants_of(
     design: Design,
-    inputs: Iterable[Mapping[str, Sequence[object]]],
+    inputs: Iterable[Inputs],
     digits: int = 60,
     clearness: float = CLEAR,
     effects: Sequence[str] = ANGLES,
@@ -83,26 +85,40 @@ def instants_of(
     for one in inputs:
         driven = design.driven(one)
         here = reached(design, clearness, driven) if here is None else moved(design, here, driven)
-        yield proven(design, here, driven, digits, effects)
+        yield _proven(design, here, partial(design.known, driven), digits, effects)
 
 
-def proven(
-    design: Design, here: Assembly, driven: Driven, digits: int, effects: Sequence[str] = ANGLES
-) -> Instant:
-    """The instant of an assembly that a route has come to.
+@dataclass(frozen=True)
+class ClosedDrawing:
+    """A car at its own drawn inputs, every link as long as drawn.
+
+    Attributes:
+        instant: the proven pose, at rest.
+        inputs: as drawn, by name, rad or mm, without those that move the whole car.
+    """
+
+    instant: Instant
+    inputs: Mapping[str, Fraction]
+
+
+def closed_drawing(
+    design: Design, digits: int = 60, clearness: float = CLEAR, effects: Sequence[str] = ANGLES
+) -> ClosedDrawing:
+    """Solve a drawing at its own inputs.
+
+    They are taken from the drawing in the numbers that the equations take (see `drives`), without the way
+    through an angle. A drawing that closes comes back within the radius.
 
     Raises:
-        SingularPoseError: no proof with 400 digits.
+        BadInputError, InfeasibleError, AmbiguousAssemblyError, SingularPoseError: as `solve_reference`.
     """
-    return with_enough_digits(
-        lambda working: prove_instant(
-            design, design.known(driven), here.pose.unknown, here.pose.holds, digits, working, effects
-        ),
-        digits,
-    )
+    instant = _proven(design, closed(design, clearness), design.known_as_drawn, digits, effects)
+    with ctx.workprec(bits(instant.digits)):
+        drives = design.mechanism.drives
+        return ClosedDrawing(instant, {n: centre_of(one.input_of(one.drawn())) for n, one in drives.items()})
 
 
-def pose_exists(design: Design, inputs: Mapping[str, Sequence[object]], clearness: float = CLEAR) -> bool:
+def pose_exists(design: Design, inputs: Inputs, clearness: float = CLEAR) -> bool:
     """Whether the assembly of the drawing comes to these inputs.
 
     A pose that is singular to 400 digits counts as existing: it is the end itself.
@@ -116,8 +132,18 @@ def pose_exists(design: Design, inputs: Mapping[str, Sequence[object]], clearnes
     return True
 
 
+def _proven(
+    design: Design, here: Assembly, known: Callable[[], Known], digits: int, effects: Sequence[str]
+) -> Instant:
+    pose = here.pose
+    return with_enough_digits(
+        lambda working: prove_instant(design, known(), pose.unknown, pose.holds, digits, working, effects),
+        digits,
+    )
+
+
 def with_enough_digits(attempt: Callable[[int], Answer], digits: int) -> Answer:
-    """Repeat with twice the digits until the proofs hold: 15 digits or more are 400 after five doublings.
+    """Repeat with twice the digits until the proofs hold, the last time with 400.
 
     Raises:
         BadInputError: `digits` is not from 15 to 200.
@@ -125,11 +151,5 @@ def with_enough_digits(attempt: Callable[[int], Answer], digits: int) -> Answer:
     """
     if not LEAST_PROMISED <= digits <= MOST_PROMISED:
         raise BadInputError("digits", digits, f"{LEAST_PROMISED} to {MOST_PROMISED}")
-    for working in (min(digits << doublings, MOST_DIGITS) for doublings in range(DOUBLINGS + 1)):
-        try:
-            with ctx.workprec(bits(working)):
-                return attempt(working)
-        except NotDecidedError as doubt:
-            if working >= MOST_DIGITS:
-                raise SingularPoseError(working, doubt) from doubt
-    raise NotDecidedError("a proof, digits of the arithmetic", working, MOST_DIGITS)
+    doubled = (digits << doublings for doublings in range(MOST_DIGITS))
+    return with_more_digits(attempt, [*takewhile(lambda n: n < MOST_DIGITS, doubled), MOST_DIGITS])

@@ -60,14 +60,6 @@ def length(a: Vector) -> Scalar:
     return root(dot(a, a))
 
 
-def squares(*vectors: Vector) -> Scalar:
-    """|a|^2 |b|^2 ...: the scale, squared, of a product of these vectors."""
-    product = dot(vectors[0], vectors[0])
-    for vector in vectors[1:]:
-        product = product * dot(vector, vector)
-    return product
-
-
 def across(axis: Vector) -> tuple[Vector, Vector]:
     """Two vectors square to a line and to each other, of fractions."""
     # By rounded numbers: a drawing that is moved by a trifle takes the same vectors, moved by as little.

@@ -16,13 +16,14 @@ a far smaller box is proven to hold one, and to lie inside the first: so it is t
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, log
 
 from flint import arb, arb_mat, arb_poly, ctx
 
-from validate.reference.equations import Equations
+from validate.reference.equations import Equations, matrix_of
 from validate.reference.errors import NotDecidedError
 from validate.reference.krawczyk import Contraction, System, column, largest, less, newton, sizes, within
 from validate.reference.vectors import Scalar
@@ -34,8 +35,32 @@ SHORTER = 0.6  # so much of a step that could not be proven is tried next
 BOXES = (0.75, 0.5, 0.25)  # of the bits: how narrow the boxes about a pose are
 
 
+class Curve(ABC):
+    """Quadratic equations F(x, t) = 0 in x, as many as unknowns; t is a ball or a polynomial in balls."""
+
+    @abstractmethod
+    def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
+        """F(x, t)."""
+
+    @abstractmethod
+    def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
+        """F' as (row, column, entry), zeros left out."""
+
+    @abstractmethod
+    def bend(self, change: Sequence[arb]) -> arb_mat:
+        """By how much a change of x changes F', which is linear in x."""
+
+    def matrix(self, x: Sequence[arb], t: arb) -> arb_mat:
+        """F' in balls."""
+        return matrix_of(len(x), self.entries(x, t))
+
+    def at(self, t: arb) -> System:
+        """The equations at one t."""
+        return System(lambda x: self.rows(x, t), lambda x: self.matrix(x, t), self.bend)
+
+
 @dataclass(frozen=True)
-class Way:
+class Way(Curve):
     """A straight way.
 
     Attributes:
@@ -49,41 +74,31 @@ class Way:
     missed: Sequence[arb] = ()
 
     def numbers(self, t: Scalar) -> list[Scalar]:
-        """w(t), of a ball or of a power series of t."""
+        """w(t)."""
         return [a + (b - a) * t for a, b in zip(self.begin, self.end, strict=True)]
 
-    def rows(self, unknown: Sequence[Scalar], t: Scalar) -> list[Scalar]:
+    def rows(self, x: Sequence[Scalar], t: Scalar) -> list[Scalar]:
         """C(y, w(t)) - (1 - t) c."""
-        rows = self.equations.residual(unknown, self.numbers(t))
+        rows = self.equations.residual(x, self.numbers(t))
         if not self.missed:
             return rows
         return [row - (1 - t) * c for row, c in zip(rows, self.missed, strict=True)]
 
-    def entries(self, unknown: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
-        """C'(y, w(t)) as (row, column, entry), zeros left out."""
-        return self.equations.jacobian(unknown, self.numbers(t))
+    def entries(self, x: Sequence[Scalar], t: Scalar) -> list[tuple[int, int, Scalar]]:
+        """C'(y, w(t))."""
+        return self.equations.jacobian(x, self.numbers(t))
 
-    def matrix(self, unknown: Sequence[arb], t: arb) -> arb_mat:
-        """The same of balls, as a matrix."""
-        return self.equations.matrix(unknown, self.numbers(t))
-
-    def by_time(self, unknown: Sequence[Scalar], t: Scalar) -> list[Scalar]:
-        """dC/dt: a central difference, exact as C is quadratic."""
-        ahead, behind = self.rows(unknown, t + 1), self.rows(unknown, t - 1)
-        return [(a - b) * arb(0.5) for a, b in zip(ahead, behind, strict=True)]
-
-    def bend_by_time(self) -> arb_mat:
-        """dC'/dt."""
-        rates = [b - a for a, b in zip(self.begin, self.end, strict=True)]
-        return self.equations.bend([arb(0)] * self.equations.size, rates)
+    def bend(self, change: Sequence[arb]) -> arb_mat:
+        """C'' times a change of y."""
+        return self.equations.bend(change)
 
 
 @dataclass(frozen=True)
 class Pose:
-    """A solution on a way: it lies within `error` of `unknown`, and no other within `reach`, by coordinate.
+    """A solution on a curve: it lies within `error` of `unknown`, and no other within `reach`, by coordinate.
 
     Attributes:
-        t: where on the way.
+        t: where on the curve.
         unknown: exact numbers.
         inverse: nearly, of the Jacobian.
     """
@@ -109,14 +124,13 @@ class Tube:
     """A step: each box of half width `width` about the series in t - `start` holds one solution.
 
     Attributes:
-        series: of each unknown.
-        stop: the last t.
+        all_along: a box about all of them.
     """
 
     start: arb
-    stop: arb
     series: Sequence[arb_poly]
     width: Sequence[arb]
+    all_along: Sequence[arb]
 
     def at(self, t: arb) -> list[arb]:
         """The series there."""
@@ -127,13 +141,13 @@ class Tube:
         return within(solution, self.at(t), self.width)
 
 
-def start_pose(way: Way, near: Sequence[arb], t: arb) -> Pose:
+def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
     """The solution next to a place, proven.
 
     Raises:
         NotDecidedError: there is none so near, or the Jacobian is singular to the present precision.
     """
-    system = System(lambda y: way.rows(y, t), lambda y: way.matrix(y, t), way.equations.bend)
+    system = curve.at(t)
     unknown, inverse = newton(system, near)
     proof = Contraction.at(system, unknown, inverse)
     # The narrowest box tells where the solution is, the widest how far it is from any other.
@@ -149,42 +163,71 @@ def start_pose(way: Way, near: Sequence[arb], t: arb) -> Pose:
     return Pose(t, unknown, proofs[0][0], proofs[-1][1], inverse)
 
 
-def next_pose(way: Way, pose: Pose, longest: arb) -> Pose:
+def next_pose(curve: Curve, pose: Pose, longest: arb) -> Pose:
     """One step on, proven to lead along the branch; at most so long.
 
     Raises:
         NotDecidedError: a step falls below the least that the present digits can carry.
     """
-    series, share = _ahead(way, pose, float(arb.min(longest, 1 - pose.t)))
+    series, share = _ahead(curve, pose, float(arb.min(longest, 1 - pose.t)))
     step = arb.min(arb(share), longest).mid()
     least = arb(2) ** (-ctx.prec // 3)
     while step > least:
         stop = arb.min((pose.t + step).mid(), arb(1)).mid()
-        tube = proven_tube(way, pose, series, stop)
-        there = None if tube is None else _joined(way, tube, stop)
-        if there is not None:
+        tube = proven_tube(curve, pose.t, series, pose.t, stop)
+        try:
+            there = None if tube is None else start_pose(curve, tube.at(stop), stop)
+        except NotDecidedError:
+            there = None
+        if tube is not None and there is not None and tube.holds(stop, there.box):
             return there
         step = ((stop - pose.t) * SHORTER).mid()
     raise NotDecidedError(f"the way: a step at {float(pose.t):.6g} of it", step, least)
 
 
-def bending(way: Way, pose: Pose) -> float:
+def bending(curve: Curve, pose: Pose) -> float:
     """|A C''| at a pose, in doubles: within half of its inverse Newton's method cannot leave the solution
     (Kantorovich).
     """
-    bend = way.equations.bend([arb(0, 1)] * len(pose.unknown))
+    bend = curve.bend([arb(0, 1)] * len(pose.unknown))
     product = sizes(pose.inverse) * (sizes(bend) * column([arb(1)] * bend.ncols()))
     return float(largest(product.entries()))
 
 
-def _ahead(way: Way, pose: Pose, wanted: float) -> tuple[list[arb_poly], float]:
+def series_of(curve: Curve, pose: Pose, order: int, begun: Sequence[arb_poly] = ()) -> list[arb_poly]:
+    """The unknowns as polynomials in t less the pose's t; `begun` are their first terms, if there are any."""
+    terms = [one.coeffs() for one in begun] or [[x] for x in pose.unknown]
+    time = arb_poly([pose.t, 1])
+    for k in range(max(map(len, terms)), order + 1):
+        rows = curve.rows([arb_poly(one) for one in terms], time)
+        for one, x in zip(terms, (pose.inverse * column([row[k] for row in rows])).entries(), strict=True):
+            one += [arb(0)] * (k - len(one)) + [-x.mid()]
+    return [arb_poly(one) for one in terms]
+
+
+def proven_tube(curve: Curve, start: arb, series: Sequence[arb_poly], begin: arb, stop: arb) -> Tube | None:
+    """The step from `begin` to `stop` along a series about `start`, or None if it cannot be proven."""
+    middle = ((stop + begin) / 2).mid()
+    span = arb(0, arb.max(abs(stop - middle), abs(middle - begin)).upper())
+    about, time = [one(arb_poly([middle - start, 1])) for one in series], arb_poly([middle, 1])
+    rows, entries = curve.rows(about, time), curve.entries(about, time)
+    try:
+        width = Contraction.along(rows, entries, curve.bend, span).settled()
+    except NotDecidedError:
+        return None
+    if width is None:
+        return None
+    return Tube(start, series, width, [one(span) + arb(0, r) for one, r in zip(about, width, strict=True)])
+
+
+def _ahead(curve: Curve, pose: Pose, wanted: float) -> tuple[list[arb_poly], float]:
     """The series of as many terms as it pays to have, and how far it leads.
 
     To `order` it misses some speed * radius * share^(order + 1), and that may bend A C' by an eighth.
     """
-    series = series_of(way, pose, LEAST_ORDER)
+    series = series_of(curve, pose, LEAST_ORDER)
     speed, radius = max(abs(float(one[1])) for one in series), _radius(series)
-    bend = max(1.0, 8.0 * speed * radius * bending(way, pose))
+    bend = max(1.0, 8.0 * speed * radius * bending(curve, pose))
 
     def reach(order: int) -> float:
         return radius * min(SHARE, float(bend ** (-1.0 / (order + 1))))
@@ -192,41 +235,8 @@ def _ahead(way: Way, pose: Pose, wanted: float) -> tuple[list[arb_poly], float]:
     order = LEAST_ORDER
     if reach(order) < wanted:
         order = max(order, ceil(min(log(bend) / PER_TERM, MOST_ORDER)))
-        series = series_of(way, pose, order, series)
+        series = series_of(curve, pose, order, series)
     return series, reach(order)
-
-
-def series_of(way: Way, pose: Pose, order: int, begun: Sequence[arb_poly] = ()) -> list[arb_poly]:
-    """The unknowns as polynomials in t less the pose's t; `begun` are their first terms, if there are any."""
-    terms = [one.coeffs() for one in begun] or [[x] for x in pose.unknown]
-    time = arb_poly([pose.t, 1])
-    for k in range(max(map(len, terms)), order + 1):
-        rows = way.rows([arb_poly(one) for one in terms], time)
-        for one, x in zip(terms, (pose.inverse * column([row[k] for row in rows])).entries(), strict=True):
-            one += [arb(0)] * (k - len(one)) + [-x.mid()]
-    return [arb_poly(one) for one in terms]
-
-
-def proven_tube(way: Way, pose: Pose, series: Sequence[arb_poly], stop: arb) -> Tube | None:
-    """The step to `stop`, or None if it cannot be proven."""
-    middle = ((stop + pose.t) / 2).mid()
-    span = arb(0, arb.max(stop - middle, middle - pose.t).upper())
-    about, time = [one(arb_poly([middle - pose.t, 1])) for one in series], arb_poly([middle, 1])
-    rows, entries = way.rows(about, time), way.entries(about, time)
-    try:
-        width = Contraction.along(rows, entries, way.equations.bend, span).settled()
-    except NotDecidedError:
-        return None
-    return None if width is None else Tube(pose.t, stop, series, width)
-
-
-def _joined(way: Way, tube: Tube, t: arb) -> Pose | None:
-    """The solution at the end of a tube, as the start of the next; None if it is not proven to be in it."""
-    try:
-        pose = start_pose(way, tube.at(t), t)
-    except NotDecidedError:
-        return None
-    return pose if tube.holds(t, pose.box) else None
 
 
 def _radius(series: Sequence[arb_poly]) -> float:

@@ -91,11 +91,10 @@ FLIP = AbsoluteEffect("rad", flip)
 
 # In the reference, whose derivatives make bounds of the absolute model's stated accuracy.
 REFERENCES = (
-    ReferenceEffect("stub_axle", "mm", "outboard", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard)),
+    ReferenceEffect("stub_axle", "mm", (WHEEL,), lambda car: dot(car.wheel.along, car.outboard)),
     ReferenceEffect(
         "flip",
         "rad",
-        "the wheel leans in",
         (WHEEL,),
         lambda car: angle(dot(car.wheel.along, car.up), -dot(car.wheel.along, car.outboard)),
     ),

@@ -5,25 +5,26 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-import mpmath
 import numpy as np
 import pytest
-from closed_forms import rational_turn, turned, unit
+from closed_forms import rational_turn, turned
 from flint import arb
 from mpmath import mpf
-from reference_cars import CARS, Inputs, ReferenceCar
+from reference_cars import Inputs, ReferenceCar
 
 from validate.reference import Instant
 from validate.reference.car_data import LENGTHS
 from validate.reference.dual import Dual, angle
 from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import EFFECTS
-from validate.reference.vectors import Vector, cross, minus, plus, times
+from validate.reference.vectors import Vector, plus
 
 FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
 
 
-NAMES = tuple(name for name in EFFECTS if not name.startswith("damper"))  # these cars have none
+# These cars have no damper, and one wheel.
+NAMES = tuple(n for n, one in EFFECTS.items() if not n.startswith("damper") and PAIR not in one.needs)
 
 
 def solved(car: ReferenceCar, inputs: Inputs) -> Instant:
@@ -38,7 +39,8 @@ def same(one: Instant, other: Instant, scale: int = 1, mirrored: bool = False) -
     bound = one.error_bound["effects"] + other.error_bound["effects"] + mpf("1e-60")
     assert set(one.effects) == set(other.effects) == set(NAMES)
     factors = {n: mpf(scale) ** -EFFECTS[n].power for n in NAMES}
-    factors |= {n: -factors[n] for n in NAMES if mirrored and n.endswith("_by_rack")}
+    turned = {n for n in NAMES if mirrored and n.endswith("_by_rack") != n.startswith("steer_angle")}
+    factors |= {n: -factors[n] for n in turned}
     return all(abs(one.effects[n] - other.effects[n] * factors[n]) <= scale * bound for n in NAMES)
 
 
@@ -83,86 +85,6 @@ def test_effects_do_not_see_where_the_origin_lies_but_for_the_middle_plane(car: 
     assert same(replace(plain, effects={**plain.effects, "roll_centre_height": height}), aside)
 
 
-# The steering axis of each linkage, from below; x rearward, y right, z up.
-AXIS = {
-    "strut as drawn": ("lower_ball_joint", "strut_top"),
-    "collinear strut": ("lower_ball_joint", "strut_lower"),
-    "double wishbone": ("lower_ball_joint", "upper_ball_joint"),
-}
-
-
-def pierced(instant: Instant, foot: str, head: str, height: mpf) -> Vector:
-    """The point of the steering axis at a height."""
-    low, high = instant.position[foot], instant.position[head]
-    along = minus(high, low)
-    return plus(low, times(along, (height - low[2]) / along[2]))
-
-
-@pytest.mark.parametrize("name", AXIS)
-@pytest.mark.parametrize("turn", [Fraction(-1, 5), Fraction(0), Fraction(1, 5)])
-def test_a_steering_axis_that_leans_rearward_is_farther_back_at_the_top_by_the_tangent(
-    name: str, turn: Fraction
-) -> None:
-    car: ReferenceCar = CARS[name]
-    instant = car.solve({**car.still, "arm_angle": (car.inputs["arm_angle"][0] + turn, 0, 0)})
-    ground, above = (pierced(instant, *AXIS[name], mpf(height)) for height in (-500, 500))
-    back = above[0] - ground[0]
-    caster = instant.effects["caster"]
-    assert abs(mpmath.tan(caster) - back / 1000) < mpf("1e-55")
-    assert abs(caster) < mpmath.pi / 2
-    assert (caster > 0) == (back > 0)
-
-
-def test_a_top_moved_rearward_by_5_in_12_leans_by_that_angle_whatever_its_lean_inboard() -> None:
-    car = CARS["double wishbone"]
-    x, y, z = car.points["lower_ball_joint"]
-    for inboard in (0, 20, 60):
-        moved = replace(car, points={**car.points, "upper_ball_joint": (x + 100, y - inboard, z + 240)})
-        assert abs(moved.close().instant.effects["caster"] - mpmath.atan(mpf(5) / 12)) < mpf("1e-70")
-
-
-def edges(car: ReferenceCar, instant: Instant) -> tuple[tuple[mpf, ...], tuple[mpf, ...]]:
-    """The foremost and the rearmost point of the wheel's level diameter; x rearward, y right, z up."""
-    inner, centre = car.wheel_axis
-    p = instant.position
-    axis = minus(p[centre], p[inner])
-    level = times(unit(cross(axis, (0, 0, 1))), 300)
-    one, other = plus(p[centre], level), minus(p[centre], level)
-    return (one, other) if one[0] < other[0] else (other, one)
-
-
-@pytest.mark.parametrize("turn", [Fraction(-1, 5), Fraction(0), Fraction(1, 5)])
-@pytest.mark.parametrize("travel", [-25, 0, 25])
-def test_the_front_edge_of_a_wheel_that_toes_in_is_nearer_the_middle_by_the_tangent(
-    car: ReferenceCar, turn: Fraction, travel: int
-) -> None:
-    theta, rack = car.inputs["arm_angle"][0] + turn, car.inputs["rack"][0] + travel
-    instant = car.solve({"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)})
-    front, rear = edges(car, instant)
-    out = 1 if car.side == "right" else -1
-    nearer = out * (rear[1] - front[1])  # how much nearer the car's middle the front edge is
-    toe = instant.effects["toe"]
-    assert abs(mpmath.tan(toe) - nearer / (rear[0] - front[0])) < mpf("1e-55")
-    assert abs(toe) < mpmath.pi / 2
-    assert (toe > 0) == (nearer > 0)
-
-
-def test_a_tie_rod_ahead_of_the_axle_that_is_pulled_inboard_toes_the_wheel_in() -> None:
-    car = CARS["double wishbone"]
-    assert car.points["tie_rod_outer"][0] < car.points["wheel_centre"][0]
-    # The right wheel's: S moves the rack to the left.
-    toes = [car.solve({**car.still, "rack": (travel, 0, 0)}).effects["toe"] for travel in (-20, 0, 20)]
-    assert toes == sorted(toes)
-    assert toes[0] < 0 < toes[2]
-
-
-def test_a_level_spin_axis_that_points_forward_by_3_in_4_toes_in_by_its_angle() -> None:
-    car = CARS["double wishbone"]
-    x, y, z = car.points["wheel_centre"]
-    known = replace(car, points={**car.points, "wheel_axis_inner": (x + 3, y - 4, z)})
-    assert abs(known.close().instant.effects["toe"] - mpmath.atan(mpf(3) / 4)) < mpf("1e-70")
-
-
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
 
 
@@ -173,20 +95,25 @@ def car_with(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) ->
         return arb(vector[0]), arb(vector[1]), arb(vector[2])
 
     start = balls((0, 0, 0))
-    lines = {n: Line.between(start, balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))}
+    lines = {
+        n: Line(start, balls(along), balls(along)) for n, along in ((WHEEL, wheel), (STEERING, steering))
+    }
     drawn = DrawnCar({}, lines, balls(UP), balls(FORWARD), balls((0, out, 0)), None, start, {})
     return Car(drawn, lines, lines)
 
 
 @pytest.mark.parametrize("out", [-1, 1])
 @pytest.mark.parametrize("lean", [-2.5, -0.2, 0.3, 1.9])
-def test_a_wheel_leans_out_at_the_top_and_its_steering_axis_in(lean: float, out: int) -> None:
+def test_angles_are_those_by_which_axes_are_turned_by_hand(lean: float, out: int) -> None:
     sine, cosine = float(np.sin(lean)), float(np.cos(lean))
     # The spin axis of a wheel that leans out points down on its way out; the steering axis leads in on its
     # way up. Neither angle sees what is along the car.
-    turned = car_with((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
-    for name in ("camber", "kingpin"):
-        assert float(EFFECTS[name].evaluate(turned)) == pytest.approx(lean, abs=1e-15)
+    leaning = car_with((7.0, out * cosine, -sine), (-3.0, -out * sine, cosine), out)
+    # The spin axis of a wheel that toes in points forward, -x; a steering axis with caster leads rearward.
+    toeing = car_with((-sine, out * cosine, 7.0), (sine, -3.0, cosine), out)
+    for name, car in {"camber": leaning, "kingpin": leaning, "toe": toeing, "caster": toeing}.items():
+        assert float(EFFECTS[name].evaluate(car)) == pytest.approx(lean, abs=1e-15)
+    assert float(EFFECTS["steer_angle"].evaluate(toeing)) == pytest.approx(out * lean, abs=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -205,8 +132,3 @@ def test_an_angle_turns_with_both_of_its_components(y: Dual | arb, x: Dual | arb
     assert found.slope.overlaps(arb(slope.numerator) / slope.denominator)
     values = [float(part.value) if isinstance(part, Dual) else float(part) for part in (y, x)]
     assert float(found.value) == pytest.approx(np.arctan2(*values), abs=1e-15)
-
-
-def test_an_angle_of_plain_numbers_is_a_plain_number() -> None:
-    assert isinstance(angle(arb(3), arb(4)), arb)
-    assert angle(np.array([3.0, -1.0]), np.array([4.0, -1.0])).tolist() == [np.arctan2(3, 4), -0.75 * np.pi]

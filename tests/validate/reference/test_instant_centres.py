@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-import mpmath
 import pytest
 from closed_forms import number, unit
 from mechanism_drawings import described
 from mpmath import mpf
-from plain_mechanisms import plain_mechanism
 
 from validate.reference import BadInputError, Design, closed_drawing, solve_reference
 from validate.reference.vectors import Vector, minus, plus, times
@@ -106,45 +104,6 @@ def test_a_trailing_arm_turns_about_its_pivot_in_the_side_view_and_has_no_centre
         assert abs(found.effects[name] - number(value)) < WITHIN, name
     for name in FRONT_VIEW:
         assert "at infinity" in found.left_out[name]
-
-
-# In the front view both arms and the tie rod lie on lines through (-300, 350), and both axes are points.
-WISHBONES = {
-    "lower_arm_front": (-120, 200, 250),
-    "lower_arm_rear": (140, 200, 250),
-    "lower_ball_joint": (-10, 700, 150),
-    "upper_arm_front": (-90, 270, 410),
-    "upper_arm_rear": (110, 270, 410),
-    "upper_ball_joint": (20, 650, 450),
-    "tie_rod_inner": (-130, 190, 300),
-    "tie_rod_outer": (-130, 680, 250),
-    "wheel_axis_inner": (0, 660, 300),
-    "wheel_centre": (0, 720, 300),
-}
-
-
-@pytest.mark.parametrize("side", ["right", "left"])
-def test_wishbones_with_level_axes_along_the_car_have_their_centre_where_their_lines_meet(side: str) -> None:
-    out = -1 if side == "left" else 1
-    points = {name: (x, out * y, z) for name, (x, y, z) in WISHBONES.items()}
-    driven = ["wheel_travel", "rack"]
-    plain = plain_mechanism("double_wishbone", points, driven, side=side, wheel_radius=300, car=CAR)
-    found = closed_drawing(Design.from_plain(plain), effects=NAMES).instant
-    assert abs(found.effects["front_view_swing_arm"] - 1020) < WITHIN
-    assert abs(found.effects["front_view_centre_height"] - 350) < WITHIN
-    # The knuckle turns about a line along the car: nothing moves along it.
-    assert all(abs(found.effects[name]) < WITHIN for name in ANTI)
-    for name in SIDE_VIEW:
-        assert "at infinity" in found.left_out[name]
-
-
-def test_a_centre_of_gravity_at_the_height_of_the_contact_point_leaves_no_share() -> None:
-    # The wheel goes up by 400 sin(swing).
-    plain = on_an_arm(((600, 400, 300), (600, 500, 300)), UPRIGHT)
-    plain["car"] = {**CAR, "centre_of_gravity_height": 240}
-    found = solve_reference(plain, {"swing": (-mpmath.asin(mpf(3) / 5), 0, 0)}, effects=NAMES)
-    assert abs(found.effects["contact_travel"] - 240) < WITHIN
-    assert not set(ANTI) & set(found.effects)
 
 
 def test_each_missing_number_of_the_car_is_said_by_name() -> None:

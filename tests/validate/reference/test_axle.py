@@ -1,0 +1,190 @@
+"""The parts of an axle have the numbers of their wheels alone, and make further ones together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from mechanism_drawings import described, joined
+from mpmath import mpf
+from plain_mechanisms import plain_mechanism
+from reference_cars import CARS
+
+from validate.reference import BadInputError, Design, Instant, closed_drawing, solve_reference
+from validate.reference.dual import Dual
+from validate.reference.effects.car import WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.effect import PAIR
+from validate.reference.effects.registry import EFFECTS
+
+WITHIN = mpf("1e-55")
+OF_A_WHEEL = tuple(n for n, one in EFFECTS.items() if PAIR not in one.needs and not n.startswith("damper"))
+TOGETHER = tuple(name for name, one in EFFECTS.items() if PAIR in one.needs)
+
+
+def test_each_wheel_of_an_axle_has_the_numbers_of_the_wheel_alone() -> None:
+    car = CARS["double wishbone"]
+    points = {name: (x, -y, z) for name, (x, y, z) in car.points.items()}
+    alone = {"left": replace(car, points=points, side="left"), "right": car}
+    driven = {"left": ["arm_angle"], "right": ["arm_angle"]}
+    parts = {
+        part: plain_mechanism(
+            one.suspension, one.points, driven[part], side=part, wheel_radius=one.wheel_radius, car=one.car
+        )
+        for part, one in alone.items()
+    }
+    axle = joined(parts, rack={"travel": ["left.rack", "right.rack"]})
+    angles = {"left": Fraction(8, 5), "right": Fraction(7, 5)}
+    inputs = {f"{part}.arm_angle": (angle, 0, 0) for part, angle in angles.items()}
+    found = solve_reference(axle, {**inputs, "rack": (5, 0, 0)}, effects=OF_A_WHEEL)
+    assert set(found.effects) == {f"{part}.{name}" for part in alone for name in OF_A_WHEEL}
+    for part, one in alone.items():
+        want = one.solve({"arm_angle": (angles[part], 0, 0), "rack": (5, 0, 0)}, effects=OF_A_WHEEL)
+        for name in OF_A_WHEEL:
+            assert abs(found.effects[f"{part}.{name}"] - want.effects[name]) < WITHIN, name
+
+
+def wheel(side: int, pivots: Mapping[str, Any]) -> dict[str, Any]:
+    """An upright wheel of radius 300 on an arm, at y = 700 or -700."""
+    return described(
+        {"inner": (1000, side * 650, 300), "centre": (1000, side * 700, 300), **pivots},
+        {"chassis": list(pivots), "arm": [*pivots, "inner", "centre"]},
+        {"swing": {"angle": "arm", "from": "drawing"}},
+        roles={"knuckle": "arm", "wheel_axis": ["inner", "centre"]},
+        side="right" if side > 0 else "left",
+        wheel_radius=300,
+        car={"wheelbase": 2600},
+    )
+
+
+def axle_on(left: Mapping[str, Any], right: Mapping[str, Any]) -> dict[str, Any]:
+    return joined({"left": wheel(-1, left), "right": wheel(1, right)})
+
+
+def along_the_car(y: int, z: int) -> dict[str, Any]:
+    return {"front": (900, y, z), "rear": (1100, y, z)}
+
+
+@pytest.mark.parametrize("turn", [0, Fraction(1, 10)])
+def test_the_roll_centre_is_where_the_lines_of_both_wheels_to_their_hinges_meet(turn: Fraction) -> None:
+    # Seen from the front an arm turns about its hinge, and the normal of each path leads there.
+    hinges = ((-200, 200), (250, 180))
+    plain = axle_on(*(along_the_car(*hinge) for hinge in hinges))
+    still = {"left.swing": (turn, 0, 0), "right.swing": (turn / 2, 0, 0)}
+    found = solve_reference(plain, still, effects=TOGETHER)
+    contacts = []
+    for part in ("left", "right"):
+        (_, y, z), (_, y2, z2) = (found.position[f"{part}.{name}"] for name in ("inner", "centre"))
+        span = mpmath.hypot(y2 - y, z2 - z)  # the disc's lowest point is 300 square to the axis
+        out = 1 if part == "right" else -1
+        contacts.append((y2 + out * 300 * (z2 - z) / span, z2 - out * 300 * (y2 - y) / span))
+    (y, z), (y2, z2) = contacts
+    one, two = ((v - q) / (h - p) for (p, q), (h, v) in zip(contacts, hinges, strict=True))
+    offset = (z2 - z + one * y - two * y2) / (one - two)
+    height = z + one * (offset - y) - (z + (z2 - z) * (offset - y) / (y2 - y))
+    assert abs(found.effects["axle_roll_centre_offset"] - offset) < WITHIN
+    assert abs(found.effects["axle_roll_centre_height"] - height) < WITHIN
+    assert abs(found.effects["track"] - (y2 - y)) < WITHIN
+    if turn == 0:
+        # Both lines rise by two fifths: 200 over 500, 180 over 450.
+        assert abs(height - 280) < WITHIN
+        assert abs(found.effects["track"] - 1400) < WITHIN
+
+
+def test_parallel_lines_and_a_contact_point_at_rest_have_no_roll_centre() -> None:
+    level = axle_on(along_the_car(-200, 0), along_the_car(250, 0))
+    at_rest = axle_on(along_the_car(-700, 0), along_the_car(250, 180))
+    for plain in (level, at_rest):
+        found = closed_drawing(Design.from_plain(plain), effects=TOGETHER).instant
+        assert "axle_roll_centre_height" not in found.effects
+        assert "axle_roll_centre_offset" in found.left_out
+
+
+# Wheels that are turned about upright lines through their contact points, to the left by their inputs.
+STEERED = axle_on(*({"low": (1000, y, 0), "high": (1000, y, 100)} for y in (-700, 700)))
+
+
+def steered(left: object, right: object) -> Instant:
+    return solve_reference(
+        STEERED,
+        {"left.swing": (left, 0, 0), "right.swing": (right, 0, 0)},
+        effects=(*TOGETHER, "steer_angle"),
+    )
+
+
+@pytest.mark.parametrize("inner", [mpf("0.2"), mpf("1.1")])
+@pytest.mark.parametrize("way", [1, -1])
+def test_wheels_that_roll_about_one_point_have_no_error_and_all_of_ackermann(inner: mpf, way: int) -> None:
+    # The left wheel is the inner one to the left.
+    outer = mpmath.acot(mpmath.cot(inner) + mpf(1400) / 2600)
+    angles = (inner, outer) if way > 0 else (-outer, -inner)
+    found = steered(*angles).effects
+    assert abs(found["left.steer_angle"] - angles[0]) < WITHIN
+    assert abs(found["right.steer_angle"] - angles[1]) < WITHIN
+    assert abs(found["turning_radius"] - (2600 * mpmath.cot(inner) + 700)) < WITHIN * 10
+    assert abs(found["ackermann"] - 100) < WITHIN * 10
+    assert abs(found["ackermann_error"]) < WITHIN
+
+
+@pytest.mark.parametrize("angle", [mpf("0.3"), mpf("-0.3")])
+def test_parallel_wheels_have_nothing_of_ackermann_and_steer_the_outer_one_too_much(angle: mpf) -> None:
+    found = steered(angle, angle).effects
+    assert abs(found["ackermann"]) < WITHIN
+    assert abs(found["turning_radius"] - abs(2600 * mpmath.cot(angle))) < WITHIN * 10
+    too_much = abs(angle) - mpmath.acot(mpmath.cot(abs(angle)) + mpf(1400) / 2600)
+    assert abs(found["ackermann_error"] - too_much) < WITHIN
+
+
+@pytest.mark.parametrize("angles", [(0, 0), (Fraction(1, 10), Fraction(-1, 20)), (0, Fraction(1, 10))])
+def test_wheels_that_are_not_steered_to_one_side_roll_about_no_point(angles: tuple[Any, Any]) -> None:
+    found = steered(*angles)
+    for name in ("turning_radius", "ackermann", "ackermann_error"):
+        assert "not steered to one side" in found.left_out[name]
+    assert abs(found.effects["track"] - 1400) < WITHIN
+
+
+def test_what_an_axle_lacks_is_said_by_name() -> None:
+    one = {key: value for key, value in wheel(1, along_the_car(250, 180)).items() if key != "car"}
+    lacking = closed_drawing(Design.from_plain(one), effects=TOGETHER).instant.left_out
+    assert lacking["track"] == "needs two parts on opposite sides of the car"
+    assert lacking["ackermann"].endswith("of the car and the car's wheelbase, mm")
+    same = joined({"left": one, "right": one}) | {"sides": {"left": "left", "right": "left"}}
+    assert "opposite" in closed_drawing(Design.from_plain(same), effects=TOGETHER).instant.left_out["track"]
+    with pytest.raises(BadInputError, match=r"sides\['left'\] is 'port'"):
+        Design.from_plain({**STEERED, "sides": {"left": "port"}})
+    with pytest.raises(BadInputError, match=r"middle\.camber"):
+        closed_drawing(Design.from_plain(STEERED), effects=["middle.camber"])
+
+
+def corners(turns: np.ndarray) -> list[Car]:
+    """Upright wheels steered by angles (N,), duals of slope 1; x rearward, y right, z up."""
+    found = []
+    for out in (-1.0, 1.0):
+        sine, cosine = Dual(np.sin(turns), np.cos(turns)[None]), Dual(np.cos(turns), -np.sin(turns)[None])
+        along = (sine * -out, cosine * out, Dual(0.0 * turns, 0.0 * turns[None]))
+        centre, drawn = (0.0, 700.0 * out, 300.0), (0.0, out, 0.0)
+        as_drawn = {WHEEL: Line(centre, centre, drawn)}
+        axes = (0.0, 0.0, 1.0), (-1.0, 0.0, 0.0), (0.0, out, 0.0)
+        whole = DrawnCar({}, as_drawn, *axes, 300.0, (0.0, 0.0, 0.0), {"wheelbase": 2600.0})
+        lines = {WHEEL: Line(centre, centre, along)}
+        found.append(Car(whole, lines, lines))
+    return found
+
+
+@pytest.mark.parametrize("name", ["turning_radius", "ackermann", "ackermann_error"])
+def test_in_arrays_of_duals_the_numbers_and_their_slopes_are_those_of_balls(name: str) -> None:
+    turns = np.array([0.3, -0.2, 0.0])
+    step = 1e-6
+    with np.errstate(divide="ignore", invalid="ignore"):  # the last wheels are not steered
+        found = EFFECTS[name].evaluate(*corners(turns))
+        ahead, behind = (EFFECTS[name].evaluate(*corners(turns + s)).value for s in (step, -step))
+    for i, turn in enumerate(turns[:2]):
+        want = float(steered(Fraction(turn), Fraction(turn)).effects[name])
+        assert found.value[i] == pytest.approx(want, rel=1e-9, abs=1e-9)
+        slope = (ahead[i] - behind[i]) / (2 * step)
+        assert found.slope[0, i] == pytest.approx(slope, rel=1e-6, abs=1e-6 * abs(found.value[0]))
+    assert np.isnan(found.value[2])

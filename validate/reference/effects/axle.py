@@ -1,0 +1,116 @@
+r"""The numbers that the two wheels of an axle make together, defined in `pointcoord/effects/README.md`.
+
+c is a contact point, v its velocity as a point of the wheel's carrier as that wheel travels, d a steer angle,
+positive to the left, L the wheelbase, t the track as drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import nan
+
+import numpy as np
+
+from validate.reference.car_data import WHEELBASE
+from validate.reference.dual import Dual, angle, slope_of, value_of
+from validate.reference.effects.car import RADIUS, WHEEL, Car
+from validate.reference.effects.effect import PAIR, TRAVEL, Effect
+from validate.reference.effects.wheel import MOVING, steer_angle, velocity_of_contact
+from validate.reference.vectors import Scalar, Vector, dot, each, minus
+
+
+def _track(left: Car, right: Car) -> Scalar:
+    """(c right - c left) . right."""
+    return dot(minus(right.contact, left.contact), right.outboard)
+
+
+def _roll_centre(left: Car, right: Car) -> tuple[Scalar, Scalar]:
+    """Offset and height of the point P in the front view where (P - c) . v = 0 on both sides.
+
+    The offset is that from the origin along right, the height that above the line through both c.
+    """
+
+    def seen(car: Car, vector: Vector) -> tuple[Scalar, Scalar]:
+        return dot(vector, right.outboard), dot(vector, car.up)
+
+    (y, z), (y2, z2) = (
+        seen(car, minus(each(value_of, car.contact), car.drawn.origin)) for car in (left, right)
+    )
+    (vy, vz), (vy2, vz2) = (seen(car, velocity_of_contact(car)) for car in (left, right))
+    one, two = y * vy + z * vz, y2 * vy2 + z2 * vz2
+    across = vy * vz2 - vz * vy2
+    offset, height = (one * vz2 - two * vz) / across, (two * vy - one * vy2) / across
+    return offset, height - z - (offset - y) * (z2 - z) / (y2 - y)
+
+
+def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar:
+    """The first where both wheels are steered to the left, the second where both to the right, else none."""
+    one, two = (value_of(steer_angle(car)) for car in (left, right))
+    if isinstance(one, np.ndarray):
+
+        def chosen(part: Callable[[Scalar], Scalar]) -> Scalar:
+            right_or_none = np.where((one < 0) & (two < 0), part(to_right), nan)
+            return np.where((one > 0) & (two > 0), part(to_left), right_or_none)
+
+        return Dual(chosen(value_of), chosen(slope_of))
+    if one > 0 and two > 0:
+        return to_left
+    return to_right if one < 0 and two < 0 else to_left * nan
+
+
+def _cotangent(car: Car) -> Scalar:
+    """cot d."""
+    ahead = dot(car.wheel.along, car.forward)
+    return dot(car.wheel.along, car.outboard) / (ahead if car.is_right else -ahead)
+
+
+def _turning_radius(left: Car, right: Car) -> Scalar:
+    """L |cot d left + cot d right| / 2."""
+    twice = left.drawn.data[WHEELBASE] * (_cotangent(left) + _cotangent(right))
+    return _by_side(left, right, twice / 2, -twice / 2)
+
+
+def _drawn_track(left: Car, right: Car) -> Scalar:
+    return dot(minus(right.drawn.contact, left.drawn.contact), right.outboard)
+
+
+def _ackermann(left: Car, right: Car) -> Scalar:
+    """100 (d inner - d outer) / (atan(L / (R - t/2)) - atan(L / (R + t/2))), R the turning radius.
+
+    Of magnitudes; their difference is that of the angles, d left - d right, whichever wheel is the inner one.
+    """
+    wheelbase, radius = left.drawn.data[WHEELBASE], _turning_radius(left, right)
+    half = _drawn_track(left, right) / 2
+
+    def steered(at: Scalar) -> Scalar:
+        tangent = wheelbase / at
+        return angle(tangent, tangent * 0 + 1)
+
+    return 100 * (steer_angle(left) - steer_angle(right)) / (steered(radius - half) - steered(radius + half))
+
+
+def _ackermann_error(left: Car, right: Car) -> Scalar:
+    """d outer - arccot(cot d inner + t / L), magnitudes: what the outer wheel is steered too much."""
+    apart = _drawn_track(left, right) / left.drawn.data[WHEELBASE]
+
+    def needed(inner: Scalar) -> Scalar:
+        return angle(inner * 0 + 1, inner + apart)
+
+    return _by_side(
+        left,
+        right,
+        steer_angle(right) - needed(_cotangent(left)),
+        -steer_angle(left) - needed(-_cotangent(right)),
+    )
+
+
+_STEERED = (PAIR, WHEEL, RADIUS, WHEELBASE)
+
+NUMBERS = (
+    Effect("track", "mm", (PAIR, WHEEL, RADIUS), _track),
+    Effect("axle_roll_centre_height", "mm", (PAIR, *MOVING), lambda *cars: _roll_centre(*cars)[1], TRAVEL),
+    Effect("axle_roll_centre_offset", "mm", (PAIR, *MOVING), lambda *cars: _roll_centre(*cars)[0], TRAVEL),
+    Effect("turning_radius", "mm", _STEERED, _turning_radius),
+    Effect("ackermann", "%", _STEERED, _ackermann),
+    Effect("ackermann_error", "rad", _STEERED, _ackermann_error),
+)

@@ -1,0 +1,176 @@
+r"""The forces in rods and ball joints that loads on the wheels make, by virtual work.
+
+The chassis and every driven input hold the mechanism, but where a corner has a damper its length is held and
+the input that moves the wheel is free. A force f and a moment m act on the knuckle at the contact point c.
+With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of what holds,
+
+    C'^T l = q
+
+gives the work l_i of the load for each unit by which row i is violated, all other rows held. So a rod of the
+length d, whose row |a - b|^2 - d^2 is violated by 2 d e where it is e longer, has the tension 2 d l. The rows
+p - p' of a ball joint say how far its halves are apart: it pulls the body of p by -l, and the other by l. The
+equations are those of the mechanism with rows for every joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+
+from flint import arb, ctx
+
+from validate.reference.compiler import CHASSIS
+from validate.reference.design import Design, Known, ball_vector
+from validate.reference.dual import Dual, slope_of, value_of
+from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
+from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, WHEEL
+from validate.reference.effects.effect import NEEDS, TRAVEL
+from validate.reference.equations import Equations, equations_in
+from validate.reference.exact import as_ball
+from validate.reference.jet import Jet
+from validate.reference.kinematics import body_rates
+from validate.reference.krawczyk import column
+from validate.reference.mechanism import Mechanism, compiled
+from validate.reference.vectors import Vector, cross, dot, each, length, minus, plus, times
+
+ROD_FORCE, JOINT_FORCE = "rod_force", "joint_force"
+
+
+@dataclass(frozen=True)
+class Statics:
+    """Forces, N, or why there are none.
+
+    Attributes:
+        rods: tension, of every rod by its name and of every damper that holds, `left.damper`.
+        joints: in the scene's axes, of every point that is a ball joint of just two bodies, which share no
+            other point, and is on no slide: on the body of a role knuckle if it is one of them, else on the
+            one that the mechanism's file names first and that is not the chassis.
+        left_out: why, by quantity.
+    """
+
+    rods: Mapping[str, arb]
+    joints: Mapping[str, Vector]
+    left_out: Mapping[str, str]
+
+
+def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: int) -> Statics:
+    """The forces at a pose in balls, to so many digits of the loads; none where no load is given.
+
+    Args:
+        known: its rates are not looked at.
+        enclosure: of the unknowns.
+    """
+    if not design.loads:
+        return Statics({}, {}, {})
+    lack = _lacking(design)
+    if lack:
+        return _none(f"needs {lack}")
+    mechanism, equations, chassis = _held(design), _equations(design, ctx.prec), known.chassis.still()
+    places = known.equations.points_of(enclosure)
+    unknown = mechanism.unknown_of(places, as_ball)
+    work, scale = [arb(0)] * mechanism.size, arb(0)
+    for prefix, (force, moment) in design.loads.items():
+        f, m = ball_vector(force), times(ball_vector(moment), as_ball(1 / design.unit))
+        car = car_at(drawn_car(design, as_ball, prefix), chassis, places)
+        spoke = minus(car.contact, car.wheel.end)
+        centre, body = design.role(prefix + WHEEL)[1], design.role(prefix + KNUCKLE)
+        for j in range(mechanism.size):
+            pose = [Dual(y, arb(int(i == j))) for i, y in enumerate(unknown)]
+            u, v = (each(_moving, side) for side in equations.frame_of(pose, body))
+            turn = chassis.turned(body_rates(u, v)[0])
+            moved = chassis.turned(each(slope_of, equations.points_of(pose, [centre])[centre]))
+            work[j] += dot(f, plus(moved, cross(turn, spoke))) + dot(m, turn)
+        scale += length(f) + length(m)
+    numbers = [jet.value for jet in known.numbers]
+    try:
+        solved = equations.matrix(unknown, numbers).transpose().solve(column(work)).entries()
+    except ZeroDivisionError:
+        return _none("cannot be proven in this pose: what holds the wheel does not hold it here")
+
+    rods = {name: (mechanism.rods[name], ends) for name, ends in design.plain["rods"].items()}
+    rods |= {f"{prefix}{DAMPER}": one for prefix, one in _dampers(design, mechanism).items()}
+    tension = {
+        name: 2 * length(minus(places[ends[0]], places[ends[1]])) * solved[row]
+        for name, (row, ends) in rods.items()
+    }
+    pulls: dict[str, Vector] = {}
+    for point, pulled in _joints(design).items():
+        body, row = mechanism.joints[point]
+        pull = (solved[row], solved[row + 1], solved[row + 2])
+        pulls[point] = chassis.turned(times(pull, -1 if pulled == body else 1))
+    within = scale * as_ball(Fraction(1, 10**digits))
+    every = [*tension.values(), *(x for pull in pulls.values() for x in pull)]
+    if not all(x.is_finite() and x.rad() <= within for x in every):
+        return _none("cannot be proven in this pose, which is all but singular under its loads")
+    return Statics(tension, pulls, {})
+
+
+def _none(why: str) -> Statics:
+    return Statics({}, {}, {ROD_FORCE: why, JOINT_FORCE: why})
+
+
+def _lacking(design: Design) -> str:
+    """What forces need and the car does not have, in words; empty if they can be had."""
+    rows = set(range(len(design.mechanism.rows))) - set(design.chosen)
+    if rows:
+        twice = ", ".join(dict.fromkeys(design.mechanism.names[row] for row in sorted(rows)))
+        return f"rows that do not depend on each other, as these do: {twice}"
+    for prefix in design.corners:
+        has = provided(design, prefix)
+        needs = [WHEEL, KNUCKLE, RADIUS] if prefix in design.loads else []
+        needs += [TRAVEL] if DAMPER in has else []
+        lacks = [NEEDS[need] for need in needs if need not in has]
+        if lacks:
+            return " and ".join(lacks)
+    return ""
+
+
+@lru_cache(maxsize=64)
+def _held(design: Design) -> Mechanism:
+    """The mechanism with rows for all its joints, and dampers held for the inputs that move the wheels."""
+    free = compiled(design.plain, design.table, design.unit, hangs=False)
+    rows = list(free.rows)
+    for row, ends in _dampers(design, free).values():
+        apart = minus(*(free.places[end] for end in ends))
+        rows[row] = dot(apart, apart)
+    return replace(free, rows=tuple(rows))
+
+
+def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Sequence[str]]]:
+    """Of each corner that has one the damper's row, in place of the one of an input, and its ends."""
+    return {
+        prefix: (mechanism.driving[drivers(design, prefix)[TRAVEL]], design.role(prefix + DAMPER))
+        for prefix in design.corners
+        if design.role(prefix + DAMPER) is not None
+    }
+
+
+@lru_cache(maxsize=64)
+def _equations(design: Design, precision: int) -> Equations:
+    mechanism = _held(design)
+    return equations_in(mechanism, range(mechanism.size), as_ball)
+
+
+def _joints(design: Design) -> dict[str, str]:
+    """The body that the force of each ball joint is given on."""
+    bodies: Mapping[str, Sequence[str]] = design.plain["bodies"]
+    on_slides = {point for slide in design.plain["slides"].values() for point in slide["points"]}
+    knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
+    found = {}
+    for point in design.names:
+        holders = [body for body, points in bodies.items() if point in points]
+        if (
+            len(holders) != 2
+            or point in on_slides
+            or len(set(bodies[holders[0]]) & set(bodies[holders[1]])) > 1
+        ):
+            continue
+        wanted = [body for body in holders if body in knuckles]
+        found[point] = (wanted or [body for body in holders if body != CHASSIS])[0]
+    return found
+
+
+def _moving(number: Dual) -> Jet:
+    return Jet(value_of(number), slope_of(number))
