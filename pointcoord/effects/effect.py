@@ -31,13 +31,14 @@ class Quantity:
         name: in results and files, such as angular_velocity.
         words: for people, such as angular velocity.
         unit: of what is computed.
-        of: what each number belongs to; points and bodies have vectors (N, 3), a car has scalars (N,).
+        of: what each number belongs to; points, bodies and joints have vectors (N, 3), a
+            car has scalars (N,).
     """
 
     name: str
     words: str
     unit: str
-    of: Literal["point", "body", "car"]
+    of: Literal["point", "body", "joint", "car"]
 
 
 @dataclass(frozen=True)

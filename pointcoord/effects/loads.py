@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 ROD_FORCE = Quantity("rod_force", "force in the rod", "N", "car")
-JOINT_FORCE = Quantity("joint_force", "force at the ball joint", "N", "point")
+JOINT_FORCE = Quantity("joint_force", "force at the ball joint", "N", "joint")
 HOLDING = "damper"
 ROLES = ("wheel_axis", "knuckle")
 AXES = np.eye(3)

@@ -25,6 +25,7 @@ from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.exact import as_fraction
+from validate.reference.loads import JOINT_FORCE, ROD_FORCE
 from validate.reference.route import CLEAR
 
 Array = NDArray[np.float64]
@@ -79,7 +80,7 @@ def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = F
 def effects_of(scene: Scene) -> tuple[str, ...]:
     """The numbers of the car that the reference is asked for: what the scene asks for, and the angles."""
     asked = [name for names in _numbers_of_the_car(scene).values() for name in names]
-    return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name in EFFECTS)
+    return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name.rpartition(".")[2] in EFFECTS)
 
 
 def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
@@ -117,7 +118,13 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
         "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
     }
+    for quantity in (ROD_FORCE, JOINT_FORCE):
+        if quantity in asked_numbers(scene):
+            forces = [getattr(instant, quantity) for instant in instants]
+            numbers[quantity] = {n: np.array([_in_doubles(one[n]) for one in forces]) for n in forces[0]}
     for quantity, names in _numbers_of_the_car(scene).items():
+        if quantity == ROD_FORCE:
+            continue
         there = [name for name in names if name in told]
         numbers[quantity] = {n: np.array([float(i.effects[n]) for i in instants]) for n in there}
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
@@ -155,6 +162,11 @@ def _largest(vectors: Mapping[str, Array]) -> float:
 
 def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
     return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
+
+
+def _in_doubles(force: Any) -> Any:
+    """A force or its components."""
+    return [float(x) for x in force] if isinstance(force, tuple) else float(force)
 
 
 def off_by(found: float, exact: Any) -> float:

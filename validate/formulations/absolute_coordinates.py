@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,9 +13,10 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import MechanismPart, Scene
 from validate.extras import MissingPackage
-from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
+from validate.formulations.stated_accuracy import FORCES
 
 try:
     import absolute
@@ -53,7 +55,7 @@ class AbsoluteCoordinates:
                 {n: law for n, law in problem.laws.items() if n not in part.topology.chassis_motion},
                 chassis=chassis_motion(part, problem.laws),
                 rates=plan_effects(scene.effects).derivative > 0,
-                effects=effects_in(asked),
+                **what_is_asked(scene, model),
             )
             return problem.solution(self.name, found_of(solved, asked))
         except absolute.AbsoluteError as error:
@@ -63,10 +65,19 @@ class AbsoluteCoordinates:
             raise FormulationError(self.name, error) from error
 
 
+def what_is_asked(scene: Scene, model: absolute.Model) -> dict[str, Any]:
+    """What the model is asked for beside poses: numbers that it has, and forces."""
+    known = absolute.effect_names(model)
+    effects = tuple(name for name in asked_of_the_car(scene) if name in known)
+    return {"effects": effects, "loads": not FORCES.isdisjoint(asked_numbers(scene))}
+
+
 def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Found:
-    """The model's numbers; it calls the quantities of points and bodies as pointcoord does."""
+    """The model's numbers; it calls forces and the quantities of points and bodies as pointcoord does."""
     numbers: Numbers = {
-        quantity: solved.effects if QUANTITIES[quantity].of == "car" else getattr(solved, quantity, {})
+        quantity: solved.effects
+        if QUANTITIES[quantity].of == "car" and quantity not in FORCES
+        else getattr(solved, quantity, {})
         for quantity in asked
     }
     return Found({"position": solved.position, **numbers}, solved.accuracy)
@@ -91,9 +102,3 @@ def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | 
             if name in inputs
         ]
         return np.asarray(sum(moves[1:], moves[0])) if moves else None
-
-
-def effects_in(asked: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
-    """What is asked for and the model calls effects, which are numbers of the whole car."""
-    wanted = (name for quantity, names in asked.items() if QUANTITIES[quantity].of == "car" for name in names)
-    return tuple(name for name in wanted if name in absolute.EFFECTS)

@@ -10,7 +10,7 @@ from pointcoord.effects.registry import QUANTITIES
 def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     """By quantity, in the order of pointcoord's registry, the names of what the scene's effects give."""
     topology = scene.mechanism.topology
-    every = {"point": scene.reported_points, "body": tuple(topology.bodies), "car": ()}
+    every = {"point": scene.reported_points, "body": tuple(topology.bodies), "joint": (), "car": ()}
     asked: dict[str, tuple[str, ...]] = {}
     for effect in plan_effects(scene.effects).computed:
         for quantity, names in effect.gives_numbers(topology).items():

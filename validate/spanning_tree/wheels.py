@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.reference.effects.car import RADIUS, Car, DrawnCar, Line
-from validate.reference.effects.registry import ANGLES, EFFECTS, available
+from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.vectors import Vector
 from validate.spanning_tree.chassis import ChassisMotion
 from validate.spanning_tree.cut import SpanningTree, car_directions
@@ -92,13 +92,19 @@ class Wheels:
         if turning is not None:
             turned_points = turning.moved({"position": points})["position"]
             turned_vectors = {ends: turning.directions(vector) for ends, vector in vectors.items()}
-        wanted = [name for name in names if name in EFFECTS and EFFECTS[name].along is None]
+        cars = {
+            prefix: Car(one, _lines(one, turned_points, turned_vectors), _lines(one, points, vectors))
+            for prefix, one in self.cars.items()
+        }
         found = {}
-        for prefix, one in self.cars.items():
-            car = Car(one, _lines(one, turned_points, turned_vectors), _lines(one, points, vectors))
+        for name in names:
+            part, dot, base = name.rpartition(".")
+            effect, one = EFFECTS.get(base), self.cars.get(part + dot)
+            if effect is None or one is None or effect.along is not None:
+                continue
             has = {*one.ends, *([] if one.wheel_radius is None else [RADIUS])}
-            for name, effect in available(wanted, has).items():
-                found[prefix + name] = effect.evaluate(car) * self.tree.unit**effect.power
+            if not effect.lacks(has):
+                found[name] = effect.evaluate(cars[part + dot]) * self.tree.unit**effect.power
         return found
 
 
