@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.asked_numbers import asked_numbers, is_force
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
@@ -79,12 +79,13 @@ def reference_motion(scene: Scene, times: Sequence[float], exact_sides: bool = F
 def effects_of(scene: Scene) -> tuple[str, ...]:
     """The numbers of the car that the reference is asked for: what the scene asks for, and the angles."""
     asked = [name for names in _numbers_of_the_car(scene).values() for name in names]
-    return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name in EFFECTS)
+    return tuple(name for name in dict.fromkeys((*ANGLES, *asked)) if name.rpartition(".")[2] in EFFECTS)
 
 
 def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
     """By quantity, in which angles are though nobody asks for them."""
     asked = {q: names for q, names in asked_numbers(scene).items() if QUANTITIES[q].of == "car"}
+    asked = {quantity: names for quantity, names in asked.items() if not is_force(quantity)}
     quantity = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
     return asked | {quantity: tuple(dict.fromkeys((*ANGLES, *asked.get(quantity, ()))))}
 
@@ -117,6 +118,10 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
         "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
     }
+    for quantity in filter(is_force, QUANTITIES):
+        rows: list[Mapping[str, Any]] = [getattr(i, quantity) for i in instants]
+        forces = (name for name in rows[0] if all(name in row for row in rows))
+        numbers[quantity] = {n: np.array([row[n] for row in rows], dtype=float) for n in forces}
     for quantity, names in _numbers_of_the_car(scene).items():
         there = [name for name in names if name in told]
         numbers[quantity] = {n: np.array([float(i.effects[n]) for i in instants]) for n in there}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import MechanismPart, Scene
 from validate.extras import MissingPackage
-from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 
@@ -53,7 +54,7 @@ class AbsoluteCoordinates:
                 {n: law for n, law in problem.laws.items() if n not in part.topology.chassis_motion},
                 chassis=chassis_motion(part, problem.laws),
                 rates=plan_effects(scene.effects).derivative > 0,
-                effects=effects_in(asked),
+                **effects_in(scene, model),
             )
             return problem.solution(self.name, found_of(solved, asked))
         except absolute.AbsoluteError as error:
@@ -66,7 +67,7 @@ class AbsoluteCoordinates:
 def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Found:
     """The model's numbers; it calls the quantities of points and bodies as pointcoord does."""
     numbers: Numbers = {
-        quantity: solved.effects if QUANTITIES[quantity].of == "car" else getattr(solved, quantity, {})
+        quantity: getattr(solved, quantity, solved.effects if QUANTITIES[quantity].of == "car" else {})
         for quantity in asked
     }
     return Found({"position": solved.position, **numbers}, solved.accuracy)
@@ -93,7 +94,10 @@ def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | 
         return np.asarray(sum(moves[1:], moves[0])) if moves else None
 
 
-def effects_in(asked: Mapping[str, Sequence[str]]) -> tuple[str, ...]:
-    """What is asked for and the model calls effects, which are numbers of the whole car."""
-    wanted = (name for quantity, names in asked.items() if QUANTITIES[quantity].of == "car" for name in names)
-    return tuple(name for name in wanted if name in absolute.EFFECTS)
+def effects_in(scene: Scene, model: absolute.Model) -> dict[str, Any]:
+    """What of a scene's effects the model is asked for, as arguments of `absolute.solve`."""
+    known = absolute.effect_names(model)
+    return {
+        "effects": [name for name in asked_of_the_car(scene) if name in known],
+        "loads": any(map(is_force, asked_numbers(scene))),
+    }

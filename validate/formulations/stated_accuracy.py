@@ -50,7 +50,7 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
 from math import sqrt
@@ -58,11 +58,14 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene
+from pointcoord import Scene, simulate
+from pointcoord.bounds.proof import Reported, prove
+from pointcoord.bounds.solved_coordinates import SolvedCoordinates, Summed
+from pointcoord.effects.registry import EFFECTS as OURS
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, per_second
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Accuracy, Numbers
@@ -70,10 +73,10 @@ from validate.reference import Design
 from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
-from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
-from validate.reference.effects.car import KNUCKLE, Car, DrawnCar
+from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
+from validate.reference.effects.car import KNUCKLE, Car
 from validate.reference.effects.effect import RACK
-from validate.reference.effects.registry import EFFECTS, available
+from validate.reference.effects.registry import EFFECTS
 from validate.reference.in_doubles import (
     inverse_of,
     jacobian_of,
@@ -99,6 +102,8 @@ MOST_STEPS = 8  # of Newton's method, which doubles its digits
 AT_ONCE = 1024  # instants: a matrix of each row's change of the Jacobian is held for each
 NOTHING = 1e150  # claimed where nothing can be said: wider than any number, and its square is finite
 ROOT_3 = sqrt(3.0)
+Way = tuple[str, str | None]
+"""The prefix of a part, and what derivatives are taken by in it."""
 
 
 def claims_for(scene: Scene, accuracy: float) -> Numbers:
@@ -162,8 +167,69 @@ def accuracy_at(
         q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in of}
         for q, of in parts[0].claims.items()
     }
+    if any(map(is_force, held.asked)):
+        claims |= _of_forces(scene, off)
     blind = np.concatenate([one.blind for one in parts if one.blind is not None])
     return Accuracy(np.concatenate([one.condition for one in parts]), claims, blind=blind)
+
+
+def _of_forces(scene: Scene, off: Array) -> dict[str, dict[str, Array]]:
+    """What points that are off make of forces: as pointcoord expects of poses that are left so far unsolved.
+
+    Args:
+        off: at the first instants of the scene, (N,), mm.
+    """
+    forces = {q: names for q, names in asked_numbers(scene).items() if is_force(q)}
+    motion = simulate(
+        scene.model_copy(update={"effects": tuple(e for e in scene.effects if _gives_forces(e))})
+    )
+    count, solved = len(off), motion.solved
+    if len(motion.times) < count:
+        return {}
+    times = motion.times[:count]
+    # Each coordinate of a point may be off, and each half of a joint for itself.
+    left = 2.0 * off / motion.unit
+    reported = Reported(
+        numbers=motion.part(0, count).numbers,
+        effects=solved.readout.plan.computed,
+        axes=solved.readout.axes,
+        chassis=solved.readout.chassis,
+        laws=solved.functions,
+        solved=_LeftUnsolved(solved, times, left),
+    )
+    expected = prove(solved.readout.mechanism, times, reported, rates=True).expected
+    return {
+        quantity: {name: expected[quantity][name] for name in names} for quantity, names in forces.items()
+    }
+
+
+def _gives_forces(effect: str) -> bool:
+    return any(is_force(quantity.name) for quantity in OURS[effect].quantities)
+
+
+@dataclass(frozen=True)
+class _LeftUnsolved:
+    """A solution whose poses are left off by so much on purpose, in units."""
+
+    solved: SolvedCoordinates
+    times: Array
+    left: Array
+
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """Its own."""
+        return self.solved.coordinates(instants, derivatives)
+
+    def summed(self, instants: Array) -> Sequence[Summed]:
+        """Its own."""
+        return self.solved.summed(instants)
+
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Its own."""
+        return self.solved.pieces(instants)
+
+    def unsolved(self, instants: Array) -> Array:
+        """At these instants."""
+        return np.asarray(self.left[np.searchsorted(self.times, instants)])
 
 
 class _Held:
@@ -179,7 +245,17 @@ class _Held:
         self.unit = float(design.unit)
         self.origin = np.array([float(x) for x in design.origin])
         self.asked = asked_numbers(scene)
-        self.of_car = [name for name in asked_of_the_car(scene) if name in EFFECTS]
+        known = [name for name in asked_of_the_car(scene) if name.rpartition(".")[2] in EFFECTS]
+        self.of_car = [number for number in numbers_of(design, known) if not number.lacks]
+        needs = {(p, need) for number in self.of_car for p in number.corners for need in number.effect.needs}
+        # Each point has columns of its own: only those that a number is made of.
+        whole = {prefix: drawn_car(design, float, prefix) for prefix, _ in sorted(needs)}
+        self.drawn = {
+            prefix: replace(
+                car, ends={role: ends for role, ends in car.ends.items() if (prefix, role) in needs}
+            )
+            for prefix, car in whole.items()
+        }
         drawn = {name: np.array([float(x) for x in place]) for name, place in design.table.items()}
         self.size = float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
         bodies = {name: points for name, points in design.plain["bodies"].items() if name != CHASSIS}
@@ -218,14 +294,15 @@ class _Held:
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
 
-    def _drivers(self) -> dict[str, str]:
+    def _drivers(self) -> dict[Way, str]:
         """By way, the input that numbers along it are derivatives by; of the ways that are asked for."""
-        ways = {EFFECTS[name].along for name in self.of_car}
-        return {way: name for way, name in drivers(self.design).items() if way in ways}
+        ways = {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
+        every = {prefix: drivers(self.design, prefix) for prefix in self.drawn}
+        return {(p, along): every[p][along] for p, along in ways if along in every[p]}
 
-    def _driving(self, way: str, driver: str, laws: Mapping[str, Array]) -> Known:
+    def _driving(self, way: Way, driver: str, laws: Mapping[str, Array]) -> Known:
         """The inputs where they are, and one that moves; a slide by the design's own lengths."""
-        rate = self.unit if way == RACK else 1.0
+        rate = self.unit if way[1] == RACK else 1.0
         held = {n: np.stack([law[:, 0], *np.zeros((2, len(law)))], axis=-1) for n, law in laws.items()}
         held[driver][:, 1] = rate
         return known_in_doubles(self.design, held, len(held[driver]))
@@ -301,7 +378,7 @@ class _Held:
         solved: Sequence[Jet],
         known: Known,
         growth: Sequence[Array],
-        along: Mapping[str, tuple[Sequence[Jet], Known]],
+        along: Mapping[Way, tuple[Sequence[Jet], Known]],
     ) -> dict[str, dict[str, Array]]:
         points = known.points_of(solved)
         turns = body_turns(solved, known)
@@ -315,6 +392,8 @@ class _Held:
         of_car = self._of_car(off, solved, known, growth, along)
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
+            if is_force(quantity):
+                continue  # `_of_forces`
             d, of = per_second(quantity), QUANTITIES[quantity].of
             if of == "point" and d == 0:
                 claims[quantity] = {
@@ -349,46 +428,45 @@ class _Held:
         solved: Sequence[Jet],
         known: Known,
         growth: Sequence[Array],
-        along: Mapping[str, tuple[Sequence[Jet], Known]],
+        along: Mapping[Way, tuple[Sequence[Jet], Known]],
     ) -> dict[str, Array]:
         """Of every number of the car: what the pose makes of it, and the points that it is made of, which are
         off themselves.
         """
-        wanted = available(self.of_car, provided(self.design))
-        needs = {need for effect in wanted.values() for need in effect.needs}
-        whole = drawn_car(self.design, float)
-        # Each point has columns of its own: only those that a number is made of.
-        drawn = replace(whole, ends={role: ends for role, ends in whole.ends.items() if role in needs})
         places = [jet.value for jet in solved]
-        cars: dict[str | None, Car] = {None: self._car(drawn, off, places, known, growth)}
-        for way, (driven, driving) in along.items():
+        cars: dict[Way, Car] = {(p, None): self._car(p, off, places, known, growth) for p in self.drawn}
+        for (prefix, way), (driven, driving) in along.items():
             pose = [Dual(jet.value, jet.rate) for jet in driven]
             points, turns = driving.points_of(driven), body_turns(driven, driving)
             states = {n: [values_of(order_of(p, d), len(off)) for d in range(3)] for n, p in points.items()}
-            cars[way] = self._car(drawn, off, pose, driving, growth, self._per_length(states, turns)[1])
+            moved = self._per_length(states, turns)[1]
+            cars[prefix, way] = self._car(prefix, off, pose, driving, growth, moved)
         found = {}
-        for name, effect in wanted.items():
-            number = effect.evaluate(cars[effect.along])
-            claim = np.abs(slope_of(number)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(number))
+        for number in self.of_car:
+            effect = number.effect
+            value = effect.evaluate(*(cars[prefix, effect.along] for prefix in number.corners))
+            claim = np.abs(slope_of(value)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(value))
             # A number that does not exist here is a rounding over a rounding to a model that gives one.
-            found[name] = np.where(np.isfinite(claim), self.unit**effect.power * claim, NOTHING)
+            found[number.name] = np.where(np.isfinite(claim), self.unit**effect.power * claim, NOTHING)
         return found
 
     def _car(
         self,
-        drawn: DrawnCar,
+        prefix: str,
         off: Array,
         pose: Sequence[Scalar],
         known: Known,
         growth: Sequence[Array],
         per_length: Array | None = None,
     ) -> Car:
-        """The car, each of whose points is off by itself; where it moves, that moves it otherwise too."""
-        placed = known.equations.points_of(pose, drawn.points)
-        body = self.design.role(KNUCKLE)
-        turns = per_length is not None and body in self.design.mechanism.frames
-        frame = known.equations.frame_of(pose, body) if turns else ()
-        count = 3 * (len(placed) + len(frame))
+        """A part's car, each of whose points is off by itself; where it moves, that moves it otherwise too.
+
+        The points of all parts have columns, so that numbers can be made of two.
+        """
+        places = tuple(dict.fromkeys(name for drawn in self.drawn.values() for name in drawn.points))
+        bodies = [self.design.role(f"{one}{KNUCKLE}") for one in self.drawn]
+        placed = known.equations.points_of(pose, places)
+        count = 3 * (len(places) + 2 * len(bodies))
 
         def apart(place: Vector, number: int, off: Array, rate: Array) -> Vector:
             """A point, or a line of a body, off by so much in each coordinate, and its slopes likewise."""
@@ -401,13 +479,17 @@ class _Held:
             return x, y, z
 
         rate = off * (0.0 if per_length is None else per_length)
-        places = {name: apart(p, i, off, rate) for i, (name, p) in enumerate(placed.items())}
-        lines = []
-        for i, line in enumerate(frame, len(placed)):
+        own = self.drawn[prefix].points
+        held = {name: apart(placed[name], places.index(name), off, rate) for name in own}
+        body, lines = self.design.role(f"{prefix}{KNUCKLE}"), []
+        turns = per_length is not None and body in self.design.mechanism.frames
+        first = len(places) + 2 * bodies.index(body)
+        for i, line in enumerate(known.equations.frame_of(pose, body) if turns else (), first):
             # A body turns by what its points are off over its least height, at both ends.
             length = 2.0 * _lengths(values_of(each(value_of, line), len(off))) / self.heights[body]
             lines.append(apart(line, i, off * length, rate * length))
-        return car_at(drawn, known.chassis.still(), places, (lines[0], lines[1]) if lines else None)
+        frame = (lines[0], lines[1]) if lines else None
+        return car_at(self.drawn[prefix], known.chassis.still(), held, frame)
 
 
 def _height(a: Array, b: Array, c: Array) -> float:

@@ -92,7 +92,8 @@ class Wheels:
         if turning is not None:
             turned_points = turning.moved({"position": points})["position"]
             turned_vectors = {ends: turning.directions(vector) for ends, vector in vectors.items()}
-        wanted = [name for name in names if name in EFFECTS and EFFECTS[name].along is None]
+        own = dict.fromkeys(name.rpartition(".")[2] for name in names)
+        wanted = [name for name in own if name in EFFECTS and EFFECTS[name].along is None]
         found = {}
         for prefix, one in self.cars.items():
             car = Car(one, _lines(one, turned_points, turned_vectors), _lines(one, points, vectors))
