@@ -62,7 +62,7 @@ def _agreement(printed: str, folder: Path) -> str:
         column = one["scene"] if one["scene"] in COLUMNS else "the others"
         for row in one["rows"]:
             angle = row["quantity"] == "wheel"
-            name = (row["name"] if angle else row["quantity"]).replace("_", " ")
+            name = (row["name"].rpartition(".")[2] if angle else row["quantity"]).replace("_", " ")
             units[name] = row["unit"]
             before = rows.setdefault(name, {}).get(column, (0.0, 0.0))
             rows[name][column] = (max(before[0], row["difference"]), max(before[1], row["tolerance"]))

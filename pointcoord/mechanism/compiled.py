@@ -243,11 +243,8 @@ class _Compiler:
                 constraints += rows
                 drives += own
         constraints += self._chassis_lines()
-        knuckles = {
-            role: str(body) for role, body in structure.roles.items() if role.rpartition(".")[2] == "knuckle"
-        }
         roles = {role: (who,) if isinstance(who, str) else who for role, who in structure.roles.items()}
-        roles |= {role: self.triangles[body] for role, body in knuckles.items()}
+        roles |= {role: self.triangles[body] for role, body in structure.knuckles.items()}
         along = {name: one["along"] for name, one in structure.inputs.items() if one.kind == "moves"}
         turns = {
             name: (one["along"], one["about"])
@@ -274,7 +271,7 @@ class _Compiler:
             name=structure.name,
             chassis=tuple(chassis),
             moving=moving,
-            bodies={body: self.triangles[body] for body in knuckles.values()},
+            bodies={body: self.triangles[body] for body in structure.knuckles.values()},
             carried=carried,
             directions=tuple(directions),
             constraints=tuple(constraints),
@@ -282,34 +279,12 @@ class _Compiler:
             roles=roles,
             sides=structure.sides,
             rods=structure.rods,
-            joints=self._ball_joints(set(knuckles.values())),
+            joints=structure.ball_joints(self.driven),
             stand_ins=structure.stand_ins,
             chassis_motion=along,
             chassis_turns=turns,
             puts_in_place=puts_in_place,
         )
-
-    def _ball_joints(self, knuckles: Collection[str]) -> dict[str, tuple[str, ...]]:
-        """Points that hold two bodies at each other and nothing else, with those of the body that holds.
-
-        What is held is the knuckle, or the moving body that comes first in the file. Where a rod, a slide or
-        an input takes hold of the point too, nothing says of which of the two halves.
-        """
-        structure = self.structure
-        others = {end for ends in structure.rods.values() for end in ends}
-        others |= {point for slide in structure.slides.values() for point in slide.named}
-        for name in self.driven:
-            one = structure.inputs[name]
-            others |= {*one.named("point")} if one.kind in ("height", "contact", "distance") else set()
-        found = {}
-        for point in structure.points:
-            bodies = structure.bodies_of(point)
-            if len(bodies) != 2 or len(structure.shared(*bodies)) != 1 or point in others:
-                continue
-            held = next((b for b in bodies if b in knuckles), next(b for b in bodies if b != CHASSIS))
-            (holding,) = (b for b in bodies if b != held)
-            found[point] = () if holding == CHASSIS else structure.bodies[holding]
-        return found
 
     @property
     def travels(self) -> dict[str, str]:

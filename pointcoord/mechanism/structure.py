@@ -309,6 +309,31 @@ class Structure:
         """Points of two bodies, as the first lists them."""
         return tuple(point for point in self.bodies[body] if point in self.bodies[other])
 
+    @property
+    def knuckles(self) -> dict[str, str]:
+        """By role, of the whole or of a part, the body that carries a wheel."""
+        return {role: str(who) for role, who in self.roles.items() if role.rpartition(".")[2] == "knuckle"}
+
+    def ball_joints(self, driven: Collection[str]) -> dict[str, tuple[str, ...]]:
+        """Points that hold two bodies at each other and nothing else, with those of the body that holds.
+
+        What is held is the knuckle, or the moving body that comes first; of the chassis no points are named.
+        Where a rod, a slide or an input takes hold of the point too, nothing says of which of the two halves.
+        """
+        others = {end for ends in self.rods.values() for end in ends}
+        others |= {point for slide in self.slides.values() for point in slide.named}
+        for one in (self.inputs[name] for name in driven if not self.inputs[name].moves_the_chassis):
+            others |= set() if one.named("body") else {*one.named("point")}
+        found = {}
+        for point in self.points:
+            bodies, knuckles = self.bodies_of(point), self.knuckles.values()
+            if len(bodies) != 2 or len(self.shared(*bodies)) != 1 or point in others:
+                continue
+            held = next((b for b in bodies if b in knuckles), next(b for b in bodies if b != CHASSIS))
+            (holding,) = (body for body in bodies if body != held)
+            found[point] = () if holding == CHASSIS else self.bodies[holding]
+        return found
+
     def left_out(self, given: Collection[str]) -> dict[str, str]:
         """Points of moving bodies that a drawing leaves out, each with the one that does its work."""
         return {

@@ -19,13 +19,12 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.asked_numbers import asked_numbers
+from validate.formulations.asked_numbers import asked_numbers, is_force
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.exact import as_fraction
-from validate.reference.loads import JOINT_FORCE, ROD_FORCE
 from validate.reference.route import CLEAR
 
 Array = NDArray[np.float64]
@@ -86,6 +85,7 @@ def effects_of(scene: Scene) -> tuple[str, ...]:
 def _numbers_of_the_car(scene: Scene) -> dict[str, tuple[str, ...]]:
     """By quantity, in which angles are though nobody asks for them."""
     asked = {q: names for q, names in asked_numbers(scene).items() if QUANTITIES[q].of == "car"}
+    asked = {quantity: names for quantity, names in asked.items() if not is_force(quantity)}
     quantity = NUMBERS_OF_THE_CAR[ANGLES[0]].quantity.name
     return asked | {quantity: tuple(dict.fromkeys((*ANGLES, *asked.get(quantity, ()))))}
 
@@ -118,13 +118,11 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
         "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
     }
-    for quantity in (ROD_FORCE, JOINT_FORCE):
-        if quantity in asked_numbers(scene):
-            forces = [getattr(instant, quantity) for instant in instants]
-            numbers[quantity] = {n: np.array([_in_doubles(one[n]) for one in forces]) for n in forces[0]}
+    for quantity in filter(is_force, QUANTITIES):
+        rows: list[Mapping[str, Any]] = [getattr(i, quantity) for i in instants]
+        forces = (name for name in rows[0] if all(name in row for row in rows))
+        numbers[quantity] = {n: np.array([row[n] for row in rows], dtype=float) for n in forces}
     for quantity, names in _numbers_of_the_car(scene).items():
-        if quantity == ROD_FORCE:
-            continue
         there = [name for name in names if name in told]
         numbers[quantity] = {n: np.array([float(i.effects[n]) for i in instants]) for n in there}
     dust = {quantity: DUST * scale for quantity, scale in scales(numbers).items()}
@@ -162,11 +160,6 @@ def _largest(vectors: Mapping[str, Array]) -> float:
 
 def _rounded(rows: Sequence[Mapping[str, Any]], names: Iterable[str]) -> Arrays:
     return {n: np.array([[float(x) for x in row[n]] for row in rows]) for n in names}
-
-
-def _in_doubles(force: Any) -> Any:
-    """A force or its components."""
-    return [float(x) for x in force] if isinstance(force, tuple) else float(force)
 
 
 def off_by(found: float, exact: Any) -> float:

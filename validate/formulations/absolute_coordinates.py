@@ -13,10 +13,9 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import MechanismPart, Scene
 from validate.extras import MissingPackage
-from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force
 from validate.formulations.modelled import Found, Problem, require_the_drawn_car
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
-from validate.formulations.stated_accuracy import FORCES
 
 try:
     import absolute
@@ -55,7 +54,7 @@ class AbsoluteCoordinates:
                 {n: law for n, law in problem.laws.items() if n not in part.topology.chassis_motion},
                 chassis=chassis_motion(part, problem.laws),
                 rates=plan_effects(scene.effects).derivative > 0,
-                **what_is_asked(scene, model),
+                **effects_in(scene, model),
             )
             return problem.solution(self.name, found_of(solved, asked))
         except absolute.AbsoluteError as error:
@@ -65,19 +64,10 @@ class AbsoluteCoordinates:
             raise FormulationError(self.name, error) from error
 
 
-def what_is_asked(scene: Scene, model: absolute.Model) -> dict[str, Any]:
-    """What the model is asked for beside poses: numbers that it has, and forces."""
-    known = absolute.effect_names(model)
-    effects = tuple(name for name in asked_of_the_car(scene) if name in known)
-    return {"effects": effects, "loads": not FORCES.isdisjoint(asked_numbers(scene))}
-
-
 def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> Found:
-    """The model's numbers; it calls forces and the quantities of points and bodies as pointcoord does."""
+    """The model's numbers; it calls the quantities of points and bodies as pointcoord does."""
     numbers: Numbers = {
-        quantity: solved.effects
-        if QUANTITIES[quantity].of == "car" and quantity not in FORCES
-        else getattr(solved, quantity, {})
+        quantity: getattr(solved, quantity, solved.effects if QUANTITIES[quantity].of == "car" else {})
         for quantity in asked
     }
     return Found({"position": solved.position, **numbers}, solved.accuracy)
@@ -102,3 +92,12 @@ def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | 
             if name in inputs
         ]
         return np.asarray(sum(moves[1:], moves[0])) if moves else None
+
+
+def effects_in(scene: Scene, model: absolute.Model) -> dict[str, Any]:
+    """What of a scene's effects the model is asked for, as arguments of `absolute.solve`."""
+    known = absolute.effect_names(model)
+    return {
+        "effects": [name for name in asked_of_the_car(scene) if name in known],
+        "loads": any(map(is_force, asked_numbers(scene))),
+    }

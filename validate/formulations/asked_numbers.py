@@ -20,9 +20,14 @@ def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
 
 
 def asked_of_the_car(scene: Scene) -> tuple[str, ...]:
-    """The names of the numbers of the car that it asks for, of all quantities."""
+    """The names of the numbers of the car that it asks for, of all quantities but forces."""
     asked = asked_numbers(scene).items()
-    return tuple(name for quantity, names in asked if QUANTITIES[quantity].of == "car" for name in names)
+    return tuple(n for q, names in asked if QUANTITIES[q].of == "car" and not is_force(q) for n in names)
+
+
+def is_force(quantity: str) -> bool:
+    """Whether it is one of what loads make."""
+    return QUANTITIES[quantity].unit == "N"
 
 
 def per_second(quantity: str) -> int:

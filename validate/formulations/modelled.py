@@ -14,8 +14,8 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
 from validate.formulations.asked_numbers import asked_numbers, per_second
 from validate.formulations.input_rates import rates
-from validate.formulations.protocol import Accuracy, AccuracyError, FormulationError, Numbers, Solution
-from validate.formulations.stated_accuracy import accuracy_at, largest_force, places_in
+from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
+from validate.formulations.stated_accuracy import accuracy_at, places_in
 from validate.reference import NoReferenceError
 from validate.spanning_tree.wheels import OF_CAR
 
@@ -68,14 +68,10 @@ class Problem:
         """
         count = len(found.accuracy)
         laws = {name: law[:count] for name, law in self.laws.items()}
-        numbers = asked_of(found.numbers, self.scene)
-
-        def stated_at(places: Mapping[str, Array]) -> Accuracy:
-            forces = largest_force(numbers)
-            return accuracy_at(self.scene, found.accuracy, places, laws, solves_rates=True, forces=forces)
-
         try:
-            stated = stated_at(found.numbers["position"])
+            stated = accuracy_at(
+                self.scene, found.accuracy, found.numbers["position"], laws, solves_rates=True
+            )
         except NoReferenceError as error:
             raise AccuracyError(
                 "the car", f"has no equations to bound it by: {error}", "another car"
@@ -84,7 +80,7 @@ class Problem:
             # A model at fault may place points where there is no pose: it is held to that of the others.
             places = {name: place[:count] for name, place in self._places().items()}
             if places:
-                stated = stated_at(places)
+                stated = accuracy_at(self.scene, found.accuracy, places, laws, solves_rates=True)
         assert stated.blind is not None  # of a stated accuracy it is known
         if stated.blind.any():
             raise AccuracyError(
@@ -92,6 +88,7 @@ class Problem:
                 "leaves open on which side of a fold it is",
                 "poses that a model's rounding cannot bring to another assembly",
             )
+        numbers = asked_of(found.numbers, self.scene)
         accuracy = replace(stated, claims=self._per_second(stated.claims), blind=None)
         return Solution(who, self.scene.instants[:count], self._per_second(numbers), accuracy)
 

@@ -50,7 +50,7 @@ condition for Newton's method): from LIMIT on the accuracy says nothing of that 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
 from math import sqrt
@@ -58,12 +58,14 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene
-from pointcoord.effects.loads import JOINT_FORCE, ROD_FORCE
+from pointcoord import Scene, simulate
+from pointcoord.bounds.proof import Reported, prove
+from pointcoord.bounds.solved_coordinates import SolvedCoordinates, Summed
+from pointcoord.effects.registry import EFFECTS as OURS
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, per_second
+from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Accuracy, Numbers
@@ -72,7 +74,7 @@ from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
-from validate.reference.effects.car import KNUCKLE, Car, DrawnCar
+from validate.reference.effects.car import KNUCKLE, Car
 from validate.reference.effects.effect import RACK
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.in_doubles import (
@@ -93,9 +95,6 @@ from validate.reference.vectors import Scalar, Vector, each
 
 Array = NDArray[np.float64]
 
-FORCES = {ROD_FORCE.name, JOINT_FORCE.name}
-"""Quantities that are solved from the pose's Jacobian."""
-
 LIMIT = 0.45  # of r: beyond it a first order says nothing of the pose
 FLATTEST = 1e-3  # of the size: beside a triangle that is flatter a solver takes other points of the body
 OFF_THE_POSE = 1e-6  # of the size: a pose that the reference's equations move by more is none of theirs
@@ -103,10 +102,8 @@ MOST_STEPS = 8  # of Newton's method, which doubles its digits
 AT_ONCE = 1024  # instants: a matrix of each row's change of the Jacobian is held for each
 NOTHING = 1e150  # claimed where nothing can be said: wider than any number, and its square is finite
 ROOT_3 = sqrt(3.0)
-
-
-Way = tuple[str, str]
-"""The prefix of a part, and along what its points have derivatives."""
+Way = tuple[str, str | None]
+"""The prefix of a part, and what derivatives are taken by in it."""
 
 
 def claims_for(scene: Scene, accuracy: float) -> Numbers:
@@ -128,12 +125,6 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
     return accuracy_at(scene, accuracy, places_in(scene), laws)
 
 
-def largest_force(numbers: Numbers) -> Array | None:
-    """The largest force of rods and joints at each instant, (N,), N; None where there are none."""
-    forces = [np.abs(array) for q in FORCES for array in numbers.get(q, {}).values()]
-    return np.max([force.reshape(len(force), -1).max(axis=1) for force in forces], axis=0) if forces else None
-
-
 def places_in(scene: Scene) -> Mapping[str, Array]:
     """Where pointcoord places every point of a scene, (N, 3), mm.
 
@@ -151,7 +142,6 @@ def accuracy_at(
     places: Mapping[str, Array],
     laws: Mapping[str, Array],
     solves_rates: bool = False,
-    forces: Array | None = None,
 ) -> Accuracy:
     """The same at poses that are solved already.
 
@@ -161,7 +151,6 @@ def accuracy_at(
         laws: every input with its two time derivatives, (N, 3); of poses alone these are 0.
         solves_rates: whether rates are known to be solved from equations, which are missed as those of the
             pose are.
-        forces: the largest of rods and joints, where it gives such, (N,), N.
     """
     design = Design.from_plain(scene.mechanism.plain(tuple(scene.inputs)))
     held = _Held(scene, design, solves_rates)
@@ -173,14 +162,74 @@ def accuracy_at(
         at = {name: place[some] for name, place in places.items()}
         # At a pose that is none, numbers of which nothing is said may divide by nothing.
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            driving = {name: law[some] for name, law in laws.items()}
-            parts.append(held.at(off[some], at, driving, None if forces is None else forces[some]))
+            parts.append(held.at(off[some], at, {name: law[some] for name, law in laws.items()}))
     claims = {
         q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in of}
         for q, of in parts[0].claims.items()
     }
+    if any(map(is_force, held.asked)):
+        claims |= _of_forces(scene, off)
     blind = np.concatenate([one.blind for one in parts if one.blind is not None])
     return Accuracy(np.concatenate([one.condition for one in parts]), claims, blind=blind)
+
+
+def _of_forces(scene: Scene, off: Array) -> dict[str, dict[str, Array]]:
+    """What points that are off make of forces: as pointcoord expects of poses that are left so far unsolved.
+
+    Args:
+        off: at the first instants of the scene, (N,), mm.
+    """
+    forces = {q: names for q, names in asked_numbers(scene).items() if is_force(q)}
+    motion = simulate(
+        scene.model_copy(update={"effects": tuple(e for e in scene.effects if _gives_forces(e))})
+    )
+    count, solved = len(off), motion.solved
+    if len(motion.times) < count:
+        return {}
+    times = motion.times[:count]
+    # Each coordinate of a point may be off, and each half of a joint for itself.
+    left = 2.0 * off / motion.unit
+    reported = Reported(
+        numbers=motion.part(0, count).numbers,
+        effects=solved.readout.plan.computed,
+        axes=solved.readout.axes,
+        chassis=solved.readout.chassis,
+        laws=solved.functions,
+        solved=_LeftUnsolved(solved, times, left),
+    )
+    expected = prove(solved.readout.mechanism, times, reported, rates=True).expected
+    return {
+        quantity: {name: expected[quantity][name] for name in names} for quantity, names in forces.items()
+    }
+
+
+def _gives_forces(effect: str) -> bool:
+    return any(is_force(quantity.name) for quantity in OURS[effect].quantities)
+
+
+@dataclass(frozen=True)
+class _LeftUnsolved:
+    """A solution whose poses are left off by so much on purpose, in units."""
+
+    solved: SolvedCoordinates
+    times: Array
+    left: Array
+
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """Its own."""
+        return self.solved.coordinates(instants, derivatives)
+
+    def summed(self, instants: Array) -> Sequence[Summed]:
+        """Its own."""
+        return self.solved.summed(instants)
+
+    def pieces(self, instants: Array) -> NDArray[np.intp]:
+        """Its own."""
+        return self.solved.pieces(instants)
+
+    def unsolved(self, instants: Array) -> Array:
+        """At these instants."""
+        return np.asarray(self.left[np.searchsorted(self.times, instants)])
 
 
 class _Held:
@@ -198,6 +247,15 @@ class _Held:
         self.asked = asked_numbers(scene)
         known = [name for name in asked_of_the_car(scene) if name.rpartition(".")[2] in EFFECTS]
         self.of_car = [number for number in numbers_of(design, known) if not number.lacks]
+        needs = {(p, need) for number in self.of_car for p in number.corners for need in number.effect.needs}
+        # Each point has columns of its own: only those that a number is made of.
+        whole = {prefix: drawn_car(design, float, prefix) for prefix, _ in sorted(needs)}
+        self.drawn = {
+            prefix: replace(
+                car, ends={role: ends for role, ends in car.ends.items() if (prefix, role) in needs}
+            )
+            for prefix, car in whole.items()
+        }
         drawn = {name: np.array([float(x) for x in place]) for name, place in design.table.items()}
         self.size = float(np.max(np.ptp(np.array(list(drawn.values())), axis=0)))
         bodies = {name: points for name, points in design.plain["bodies"].items() if name != CHASSIS}
@@ -209,13 +267,7 @@ class _Held:
             for body, points in bodies.items()
         }
 
-    def at(
-        self,
-        accuracy: Array,
-        places: Mapping[str, Array],
-        laws: Mapping[str, Array],
-        forces: Array | None,
-    ) -> Accuracy:
+    def at(self, accuracy: Array, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
         """The claims at some instants, from where every point is, (N, 3), mm, and the inputs, (N, 3)."""
         off = accuracy / self.unit
         known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
@@ -229,14 +281,12 @@ class _Held:
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
         along = {}
-        for way in {(p, n.effect.along) for n in self.of_car for p in n.corners if n.effect.along}:
+        for way, driver in self._drivers().items():
             # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
-            driving = self._driving(way, laws)
+            driving = self._driving(way, driver, laws)
             own = unknown_jets_of(values, inverse, driving)
             along[way] = with_slopes(own, motion_of_a_miss(first, own, inverse, driving)), driving
         claims = self._claims(off, with_slopes(jets, slopes), known, growth, along)
-        if forces is not None:
-            claims |= self._of_forces(off, forces, matrix, inverse)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
             q: {n: np.where(_like(blind, claim), NOTHING, claim) for n, claim in of.items()}
@@ -244,10 +294,15 @@ class _Held:
         }
         return Accuracy(np.nan_to_num(condition, posinf=NOTHING), said, blind=blind)
 
-    def _driving(self, way: Way, laws: Mapping[str, Array]) -> Known:
+    def _drivers(self) -> dict[Way, str]:
+        """By way, the input that numbers along it are derivatives by; of the ways that are asked for."""
+        ways = {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
+        every = {prefix: drivers(self.design, prefix) for prefix in self.drawn}
+        return {(p, along): every[p][along] for p, along in ways if along in every[p]}
+
+    def _driving(self, way: Way, driver: str, laws: Mapping[str, Array]) -> Known:
         """The inputs where they are, and one that moves; a slide by the design's own lengths."""
-        prefix, along = way
-        driver, rate = drivers(self.design, prefix)[along], self.unit if along == RACK else 1.0
+        rate = self.unit if way[1] == RACK else 1.0
         held = {n: np.stack([law[:, 0], *np.zeros((2, len(law)))], axis=-1) for n, law in laws.items()}
         held[driver][:, 1] = rate
         return known_in_doubles(self.design, held, len(held[driver]))
@@ -337,6 +392,8 @@ class _Held:
         of_car = self._of_car(off, solved, known, growth, along)
         claims: dict[str, dict[str, Array]] = {}
         for quantity, names in self.asked.items():
+            if is_force(quantity):
+                continue  # `_of_forces`
             d, of = per_second(quantity), QUANTITIES[quantity].of
             if of == "point" and d == 0:
                 claims[quantity] = {
@@ -361,28 +418,9 @@ class _Held:
                     + UNIT_ROUNDOFF * np.abs(values_of(turns[n][d - 1], count))
                     for n in names
                 }
-            elif quantity not in FORCES:
+            else:
                 claims[quantity] = {n: of_car[n] for n in names if n in of_car}
         return claims
-
-    def _of_forces(
-        self, off: Array, forces: Array, matrix: Array, inverse: Array
-    ) -> dict[str, dict[str, Array]]:
-        """Of forces in rods and joints, N: they solve J^T l = w, w the loads' work.
-
-        Where the entries of J and w are off by a part d of themselves, l is off by s d of the largest, to
-        first order, with s the largest sum of a column of |J| |J^-1| (Skeel; Higham, ch. 7). They are
-        products of lengths in a pose that is off by s e in parts of the car's size, and some sixteen
-        products and sums of each are rounded: d = 4 s e + 16 u.
-        """
-        skeel = (np.abs(matrix) @ np.abs(inverse)).sum(axis=-2).max(axis=-1)
-        part = skeel * (4.0 * skeel * off / self.size + 16.0 * UNIT_ROUNDOFF)
-        claim = np.nan_to_num(forces * part, nan=NOTHING, posinf=NOTHING)
-        return {
-            q: {n: claim if QUANTITIES[q].of == "car" else np.tile(claim[:, None], 3) for n in names}
-            for q, names in self.asked.items()
-            if q in FORCES
-        }
 
     def _of_car(
         self,
@@ -396,24 +434,17 @@ class _Held:
         off themselves.
         """
         places = [jet.value for jet in solved]
-
-        def car(prefix: str, way: str | None, place: int, places_of: int) -> Car:
-            if way is None:
-                return self._car(prefix, off, places, known, growth, None, place, places_of)
-            driven, driving = along[prefix, way]
+        cars: dict[Way, Car] = {(p, None): self._car(p, off, places, known, growth) for p in self.drawn}
+        for (prefix, way), (driven, driving) in along.items():
             pose = [Dual(jet.value, jet.rate) for jet in driven]
             points, turns = driving.points_of(driven), body_turns(driven, driving)
             states = {n: [values_of(order_of(p, d), len(off)) for d in range(3)] for n, p in points.items()}
-            per_length = self._per_length(states, turns)[1]
-            return self._car(prefix, off, pose, driving, growth, per_length, place, places_of)
-
-        cars: dict[tuple[tuple[str, ...], str | None], list[Car]] = {}
+            moved = self._per_length(states, turns)[1]
+            cars[prefix, way] = self._car(prefix, off, pose, driving, growth, moved)
         found = {}
         for number in self.of_car:
-            effect, key = number.effect, (number.corners, number.effect.along)
-            if key not in cars:
-                cars[key] = [car(p, effect.along, i, len(key[0])) for i, p in enumerate(key[0])]
-            value = effect.evaluate(*cars[key])
+            effect = number.effect
+            value = effect.evaluate(*(cars[prefix, effect.along] for prefix in number.corners))
             claim = np.abs(slope_of(value)).sum(axis=0) + 2.0 * UNIT_ROUNDOFF * np.abs(value_of(value))
             # A number that does not exist here is a rounding over a rounding to a model that gives one.
             found[number.name] = np.where(np.isfinite(claim), self.unit**effect.power * claim, NOTHING)
@@ -426,26 +457,20 @@ class _Held:
         pose: Sequence[Scalar],
         known: Known,
         growth: Sequence[Array],
-        per_length: Array | None,
-        number: int,
-        corners: int,
+        per_length: Array | None = None,
     ) -> Car:
-        """A corner, each of whose points is off by itself; where it moves, that moves it otherwise too.
+        """A part's car, each of whose points is off by itself; where it moves, that moves it otherwise too.
 
-        Args:
-            per_length: of points that move. number, corners: its place among those of a number.
+        The points of all parts have columns, so that numbers can be made of two.
         """
-        drawn = self._drawn(prefix)
-        placed = known.equations.points_of(pose, drawn.points)
-        body = self.design.role(prefix + KNUCKLE)
-        turns = per_length is not None and body in self.design.mechanism.frames
-        frame = known.equations.frame_of(pose, body) if turns else ()
-        own_count = 3 * (len(placed) + len(frame))
-        before, count = number * own_count, corners * own_count
+        places = tuple(dict.fromkeys(name for drawn in self.drawn.values() for name in drawn.points))
+        bodies = [self.design.role(f"{one}{KNUCKLE}") for one in self.drawn]
+        placed = known.equations.points_of(pose, places)
+        count = 3 * (len(places) + 2 * len(bodies))
 
         def apart(place: Vector, number: int, off: Array, rate: Array) -> Vector:
             """A point, or a line of a body, off by so much in each coordinate, and its slopes likewise."""
-            own = partial(_with_own, first=before + 3 * number, count=count)
+            own = partial(_with_own, first=3 * number, count=count)
             if per_length is None:
                 return own(place, off, growth=growth[0])
             values = own(each(value_of, place), off, growth=growth[0])
@@ -454,19 +479,17 @@ class _Held:
             return x, y, z
 
         rate = off * (0.0 if per_length is None else per_length)
-        places = {name: apart(p, i, off, rate) for i, (name, p) in enumerate(placed.items())}
-        lines = []
-        for i, line in enumerate(frame, len(placed)):
+        own = self.drawn[prefix].points
+        held = {name: apart(placed[name], places.index(name), off, rate) for name in own}
+        body, lines = self.design.role(f"{prefix}{KNUCKLE}"), []
+        turns = per_length is not None and body in self.design.mechanism.frames
+        first = len(places) + 2 * bodies.index(body)
+        for i, line in enumerate(known.equations.frame_of(pose, body) if turns else (), first):
             # A body turns by what its points are off over its least height, at both ends.
             length = 2.0 * _lengths(values_of(each(value_of, line), len(off))) / self.heights[body]
             lines.append(apart(line, i, off * length, rate * length))
-        return car_at(drawn, known.chassis.still(), places, (lines[0], lines[1]) if lines else None)
-
-    def _drawn(self, prefix: str) -> DrawnCar:
-        """A corner as drawn. Each point has columns of its own: only those that its numbers are made of."""
-        whole = drawn_car(self.design, float, prefix)
-        needs = {need for n in self.of_car if prefix in n.corners for need in n.effect.needs}
-        return replace(whole, ends={role: ends for role, ends in whole.ends.items() if role in needs})
+        frame = (lines[0], lines[1]) if lines else None
+        return car_at(self.drawn[prefix], known.chassis.still(), held, frame)
 
 
 def _height(a: Array, b: Array, c: Array) -> float:

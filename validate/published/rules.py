@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
+from pointcoord.effects.registry import number_called
 
 Array = NDArray[np.float64]
 
@@ -24,21 +24,12 @@ class Solved:
 
     Attributes:
         numbers: numbers of the car, (N,), and places of points, (N, 3), by their names; rad and mm.
-        over: the first column. wheelbase: mm, NaN where the table does not say it.
+        over: the first column.
     """
 
     scene: Scene
     numbers: Mapping[str, Array]
     over: Array
-    wheelbase: float
-
-    def of_the_left(self, number: str) -> Array:
-        """A number of the left wheel in rows of a rack's travel that go evenly both ways.
-
-        The car is its own mirror image, so that the left wheel is at a travel what the right one is at its
-        opposite.
-        """
-        return self.numbers[number][::-1]
 
 
 @dataclass(frozen=True)
@@ -84,20 +75,9 @@ def _wheel_centre_outward(solved: Solved) -> Array:
     return np.asarray(moved @ part.outboard)
 
 
-def _turning_radius(solved: Solved) -> Array:
-    """R = L (cot d_inner + cot d_outer) / 2, printed as 0 straight ahead."""
-    with np.errstate(divide="ignore"):
-        both = 1.0 / np.tan(np.abs([solved.numbers["toe"], solved.of_the_left("toe")]))
-    return np.where(solved.over == 0.0, 0.0, solved.wheelbase * both.mean(axis=0))
-
-
-def _ackermann(solved: Solved) -> Array:
-    """100 (d_i - d_o) / (atan(L / (R - t/2)) - atan(L / (R + t/2))) with t the static track, %."""
-    radius, part = _turning_radius(solved), solved.scene.mechanism
-    half = float(np.array(part.points[part.topology.wheel_centre]) @ part.outboard)
-    turned = np.abs(np.abs(solved.numbers["toe"]) - np.abs(solved.of_the_left("toe")))
-    ideal = np.arctan2(solved.wheelbase, radius - half) - np.arctan2(solved.wheelbase, radius + half)
-    return np.where(solved.over == 0.0, np.nan, 100.0 * turned / ideal)
+def _turning_circle(solved: Solved) -> Array:
+    """The turning radius, printed as 0 straight ahead."""
+    return np.where(solved.over == 0.0, 0.0, solved.numbers["turning_radius"])
 
 
 RULES: Mapping[str, Rule] = {
@@ -108,10 +88,7 @@ RULES: Mapping[str, Rule] = {
     "trail_at_the_axis": Rule("dimension", "mm", _trail_at_the_axis),
     "roll_centre_to_body": Rule("dimension", "mm", _roll_centre_to_body),
     "wheel_centre_outward": Rule("dimension", "mm", _wheel_centre_outward),
-    "toe_of_the_left": Rule("wheel", "rad", lambda solved: solved.of_the_left("toe")),
-    "camber_of_the_left": Rule("wheel", "rad", lambda solved: solved.of_the_left("camber")),
-    "turning_radius": Rule("dimension", "mm", _turning_radius),
-    "ackermann": Rule("", "%", _ackermann),
+    "turning_circle": Rule("dimension", "mm", _turning_circle),
 }
 """Columns that are none of our numbers."""
 
@@ -120,5 +97,7 @@ def rule_of(name: str) -> Rule:
     """A number of ours as it is, or a rule by its name."""
     if name in RULES:
         return RULES[name]
-    quantity = NUMBERS_OF_THE_CAR[name].quantity
+    number = number_called(name)
+    assert number is not None  # a table names what there is
+    quantity = number.quantity
     return Rule(quantity.name, quantity.unit, lambda solved: solved.numbers[name])

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.scene.input_part import InputPart
 from validate.comparison.compare import SMALLEST, Comparison, Outcome
 from validate.formulations.protocol import Accuracy, Solution
@@ -48,7 +48,6 @@ class Table:
     licence: str
     note: str = ""
     left_out: str = ""
-    wheelbase: float = nan
     accuracy: Mapping[str, float] = field(default_factory=dict)
     open: Mapping[str, str] = field(default_factory=dict)
 
@@ -139,7 +138,7 @@ def compare_table(table: Table) -> Published:
     printed = read_columns(str(FOLDER / f"{table.name}.csv"))
     scene, over = table.scene_over(printed), printed.values[0]
     solutions = [formulation(name).solve(scene) for name in MODELS]
-    solved = [_solved(table, over, scene, solution) for solution in solutions]
+    solved = [_solved(over, scene, solution) for solution in solutions]
     columns = tuple(_column(table, printed, i, solutions, solved) for i in range(1, len(printed.names)))
     told = [f"{one.name} decides nothing: {one.open}" for one in columns if one.open]
     notes = tuple(note for note in (table.note, *told) if note)
@@ -153,13 +152,9 @@ def compare_table(table: Table) -> Published:
     return Published(table, f"{printed.names[0]} [{printed.units[0]}]", over, columns, outcomes)
 
 
-def _solved(table: Table, over: Array, scene: Scene, solution: Solution) -> Solved:
-    of_car = {
-        name: solution.numbers[number.quantity.name][name]
-        for name, number in NUMBERS_OF_THE_CAR.items()
-        if name in solution.numbers.get(number.quantity.name, {})
-    }
-    return Solved(scene, {**solution.numbers["position"], **of_car}, over, table.wheelbase)
+def _solved(over: Array, scene: Scene, solution: Solution) -> Solved:
+    named = {q: n for q, n in solution.numbers.items() if q == "position" or QUANTITIES[q].of == "car"}
+    return Solved(scene, {name: array for of in named.values() for name, array in of.items()}, over)
 
 
 def _column(

@@ -20,18 +20,18 @@ Array = NDArray[np.float64]
 def in_bodies(scene: Scene, _: float | None) -> Solve:
     """Poses of rigid bodies in Pinocchio."""
     import absolute
-    from validate.formulations.absolute_coordinates import chassis_motion, found_of, what_is_asked
+    from validate.formulations.absolute_coordinates import chassis_motion, effects_in, found_of
 
     part, asked = scene.mechanism, asked_numbers(scene)
     model = absolute.compile(part.plain(tuple(scene.inputs)))
-    assembled, more = absolute.Assembled(model), what_is_asked(scene, model)
+    assembled, effects = absolute.Assembled(model), effects_in(scene, model)
     moves = plan_effects(scene.effects).derivative > 0
 
     def solve(instants: Array) -> Answer:
         laws = laws_at(scene, instants)
         chassis = chassis_motion(part, laws)
         laws = {name: law for name, law in laws.items() if name not in part.topology.chassis_motion}
-        solved = assembled.solve(laws, chassis, moves, **more)
+        solved = assembled.solve(laws, chassis, moves, **effects)
         return Answer(
             asked_of(found_of(solved, asked).numbers, scene), {"newton_steps": int(solved.iterations.sum())}
         )

@@ -1,0 +1,67 @@
+"""Forces of loads at the wheels by the three mechanics, and faults that they see in each other."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.linkage.car_axes import CarAxes
+from validate.adjudication.reference_solution import reference_solution
+from validate.comparison.compare import Outcome, compare, compare_solutions
+from validate.formulations.registry import formulation
+
+LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
+# With a damper at the wheel, behind a pushrod and driven; without one; rods alone; and two wheels.
+CARS = ("off-axis-strut", "pushrod", "pushrod-by-damper", "double-wishbone", "five-link", "axle-steer")
+
+
+def loaded(name: str, samples: int = 5) -> Scene:
+    content: dict[str, Any] = Scene.load(name).model_dump(exclude_none=True)
+    sides = Scene.load(name).mechanism.topology.sides
+    loads = {"left": LOAD, "right": {"force": [0.0, 200.0, 2500.0]}} if sides else {"": LOAD}
+    content["mechanism"] |= {"loads": loads, "wheel_radius": 300.0}
+    content["time"]["samples"] = samples
+    return Scene.from_mapping({**content, "effects": ["loads"]})
+
+
+def forces(outcome: Outcome) -> dict[tuple[str, str], str]:
+    return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.unit == "N"}
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_three_mechanics_give_the_same_forces(name: str) -> None:
+    scene = loaded(name)
+    gives = EFFECTS["loads"].gives_numbers(scene.mechanism.topology)
+    every = {(quantity, n): "agrees" for quantity, names in gives.items() for n in names or ()}
+    assert len(every) >= 2
+    outcome = compare(scene, "pointcoord", "absolute", name)
+    assert forces(outcome) == every
+    few = loaded(name, 2)
+    ours = formulation("pointcoord").solve(few)
+    assert forces(compare_solutions(few, ours, reference_solution(few), name)) == every
+
+
+@pytest.mark.parametrize("fault", ["no moment", "at the other wheel", "a billionth too much"])
+def test_a_fault_of_one_is_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, right = loaded("axle-steer"), EFFECTS["loads"]
+
+    class Wrong(type(right)):  # type: ignore[misc]
+        def evaluate(self, poses: Any) -> Any:
+            (left, moment), other = poses.axes.loads["left"], poses.axes.loads["right"]
+            loads = {
+                "no moment": {"left": (left, np.zeros(3)), "right": other},
+                "at the other wheel": {"left": other, "right": (left, moment)},
+                "a billionth too much": {
+                    "left": (left * (1.0 + 1e-9), moment),
+                    "right": other,
+                },
+            }[fault]
+            axes: CarAxes = replace(poses.axes, loads=loads)
+            return super().evaluate(replace(poses, axes=axes))
+
+    monkeypatch.setitem(EFFECTS, right.name, Wrong(**vars(right)))
+    verdicts = forces(compare(scene, "pointcoord", "absolute")).values()
+    assert "disagrees" in verdicts
