@@ -1,7 +1,6 @@
 """Mechanisms in absolute coordinates: bodies with poses, joints as rows, Newton on the manifold."""
 
 from absolute.compiler import compile
-from absolute.description import Axis, Corner, Input, Joint, Model
 from absolute.effects import AXLE_EFFECTS, EFFECTS, Effect, effect_names
 from absolute.errors import (
     AbsoluteError,
@@ -13,6 +12,7 @@ from absolute.errors import (
     SingularError,
     UnreachableError,
 )
+from absolute.model import Corner, Model
 from absolute.solution import Solution
 from absolute.solve import Assembled, ClosedDrawing, close_drawing, solve
 
@@ -22,14 +22,11 @@ __all__ = [
     "AbsoluteError",
     "Assembled",
     "AssemblyError",
-    "Axis",
     "ClosedDrawing",
     "Corner",
     "DescriptionError",
     "Effect",
-    "Input",
     "InputError",
-    "Joint",
     "MissingPinocchioError",
     "Model",
     "PoseError",

@@ -1,34 +1,38 @@
-"""A mechanism as plain data becomes a linkage: bodies, joints and inputs.
+"""A mechanism as plain data becomes the rows of a linkage.
 
     one point of two bodies    a ball joint          rod     a distance
     two points of two bodies   a hinge               slide   a point on a line of a body
 
-A free point, of no body, is a body of its own that does not turn against the one in which it slides, or
-against the chassis. A wheel's contact point is the lowest one of a disc that turns about the wheel's axis and
-has a level radius: its height is that of a point of a body.
+Joints are made of two kinds of rows: two points meet along some directions, and directions of two bodies stay
+at right angles. A free point, of no body, is a body of its own that does not turn. A wheel's contact point is
+the lowest of a disc that turns about the wheel's axis and has a level radius: its height is that of a
+body's point.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from absolute.car import car_of
-from absolute.description import Axis, Corner, Input, Joint, Load, Model, Vector
 from absolute.errors import DescriptionError
+from absolute.model import CHASSIS, Corner, Drawing, Input, Load, Model, Row, Turn
 from absolute.solution import Array
+from absolute.vectors import EPS, cross
 
-CHASSIS = "chassis"
-# The product of three vectors between such points, mm^3, is far from the end of the floating-point range.
-LARGEST_COORDINATE = 1e100
+# The product of three vectors between such points, mm^3, and the squares of lengths are normal numbers.
+LARGEST_COORDINATE, SMALLEST_SIZE = 1e100, 1e-100
+# Two points nearer than this to each other, in units of size, share half of their digits: rounding of the
+# coordinates given turns the line between them by as much as half of its digits.
+SHORTEST_AXIS = math.sqrt(EPS)
 # `up` and `right` are axes of one car. 1e-6 rad lets rounded directions pass and stops wrong ones.
 LARGEST_SKEW = 1e-6
-# Which of these directions is outboard.
 SIDES = ("left", "right")
-# Pairs of points that effects ask for.
 ROLES = ("wheel_axis", "steering_axis", "damper")
+INPUTS = ("angle", "travel", "height", "contact", "distance")
+NOTHING, AXES = np.zeros(3), np.eye(3)
 
 
 def compile(mechanism: Mapping[str, Any]) -> Model:
@@ -45,8 +49,8 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
             sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
                 and a dot.
             wheel_radius: of the wheel, mm, or None where nothing needs it.
-            loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
             car: axle, wheelbase, centre_of_gravity_height, brake_share and drive_share, as far as given.
+            loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
             too few rows.
@@ -55,84 +59,95 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
 
 
 class _Compiler:
-    """A mechanism whose joints are being made."""
+    """A mechanism whose rows are being made."""
 
     def __init__(self, mechanism: Mapping[str, Any]) -> None:
         self.of = mechanism
         self.points = {name: point_of(name, value) for name, value in mechanism["points"].items()}
         bodies = mechanism["bodies"]
         _one_of("the ground", bodies, CHASSIS)
-        order = sorted(bodies, key=lambda body: body != CHASSIS)
-        self.bodies = {body: tuple(bodies[body]) for body in order}
-        for body, names in self.bodies.items():
+        for body, names in bodies.items():
             _one_of(f"a point of body {body!r}", self.points, *names)
-        self.rods = {name: tuple(ends) for name, ends in mechanism.get("rods", {}).items()}
+            if not names:
+                raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
+        order = sorted(bodies, key=lambda body: body != CHASSIS)
+        self.named = {body: tuple(bodies[body]) for body in order}
         self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
-        self.joints: dict[str, Joint] = {}
-        self.inputs: dict[str, Input] = {}
-        self.turns: dict[str, Axis] = {}
-        self.aids: set[str] = set()
+        self.joints: list[Row] = []
+        self.senses: list[Row] = []
+        self.inputs: list[Input] = []
+        self.turns: dict[str, Turn] = {}
         self.directions = self._directions()
         self.radius = self._radius()
         self.corners = self._corners()
+        self.middle, self.size = self._extent()
+        # With free points and other aids, which are added as rows need them.
+        self.bodies: dict[str, tuple[str, ...]] = {}
+        self.numbers: dict[str, int] = {}
+        self.anchors: list[Array] = []
+        self.unturned: set[str] = set()
+        for body, names in self.named.items():
+            self._add(body, names)
 
     def model(self) -> Model:
         """All joints, then all inputs."""
         self._shared_points()
-        for name, slide in self.slides.items():
-            self._slide(name, slide)
-        for name, ends in self.rods.items():
-            self._rod(name, ends)
-        drive = {
-            "angle": self._angle,
-            "travel": self._travel,
-            "height": self._height,
-            "contact": self._contact,
-            "distance": self._distance,
-        }
+        for name in self.slides:
+            self._slide(name)
+        for name, ends in self.of.get("rods", {}).items():
+            self._rod(name, tuple(ends))
         for name, given in self.of.get("inputs", {}).items():
             if "turns" in given:
                 _one_of(f"the point of input {name!r}", self.points, given["about"])
                 _one_of(f"`along` of input {name!r}", self.directions, given["along"])
-                self.turns[name] = Axis(given["about"], self.directions[given["along"]])
+                self.turns[name] = Turn(self.points[given["about"]], self.directions[given["along"]])
             elif "moves" not in given:
-                kind = next((kind for kind in drive if kind in given), "")
-                _one_of(f"the kind of input {name!r}", drive, kind or str(list(given)))
-                drive[kind](name, given)
+                kind = next((kind for kind in INPUTS if kind in given), "")
+                _one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))
+                getattr(self, f"_{kind}")(name, given)
         self._check()
+        holders: dict[str, str] = {}
+        for body, names in self.bodies.items():
+            for point in names:
+                holders.setdefault(point, body)
+        anchors = np.array(self.anchors)
+        drawing = Drawing(self.points, self.middle, self.size, self.numbers, anchors, holders)
         return Model(
-            self.points,
-            CHASSIS,
             self.bodies,
-            self.joints,
-            self.inputs,
+            drawing,
+            tuple(self.joints),
+            tuple(self.senses),
+            tuple(self.inputs),
             self.corners,
             self._loads(),
+            self._dampers(),
             self._ball_joints(),
-            frozenset(self.aids),
+            frozenset(self.bodies).difference(self.named),
+            frozenset(self.unturned),
             self.turns,
         )
 
     def _check(self) -> None:
-        for body, names in self.bodies.items():
-            if not names:
-                raise DescriptionError(f"body {body!r} has no points; give it at least one", body)
         if loose := sorted(set(self.points).difference(*self.bodies.values())):
             raise DescriptionError(
                 f"points {loose} belong to no body; add them to one or drop them", loose[0]
             )
-        rows = sum(joint.rows for joint in self.joints.values()) + len(self.inputs)
-        unknowns = 6 * (len(self.bodies) - 1)
+        rows, points = len(self.joints) + len(self.inputs), len(self.unturned)
+        bodies = len(self.bodies) - 1 - points
+        unknowns = 6 * bodies + 3 * points
         if not 0 < unknowns <= rows:
             raise DescriptionError(
                 f"joints and inputs give {rows} rows for {unknowns} unknown velocities (6 for each of "
-                f"{len(self.bodies) - 1} moving bodies), so {unknowns - rows} freedoms are left over: "
+                f"{bodies} moving bodies, 3 for each of {points} points), so {unknowns - rows} freedoms are "
+                "left over: "
                 "add an input or a joint",
                 "rows",
                 rows,
             )
 
-    def _directions(self) -> dict[str, Vector]:
+    # What is given
+
+    def _directions(self) -> dict[str, Array]:
         up, right = (unit_of(name, vector_of(name, name, self.of[name])) for name in ("up", "right"))
         skew = float(up @ right)
         if abs(skew) > LARGEST_SKEW:
@@ -142,55 +157,7 @@ class _Compiler:
                 skew,
             )
         directions = {"up": up, "right": right, "forward": np.cross(up, right)}
-        opposite = {"down": -up, "left": -right, "rearward": np.cross(right, up)}
-        return {name: plain(direction) for name, direction in (directions | opposite).items()}
-
-    def _corners(self) -> dict[str, Corner]:
-        """The wheel of each part, whose names have its own in front; or the only one."""
-        side, car = self.of.get("side"), car_of(self.of.get("car"))
-        sides = self.of.get("sides") or {"": "left" if side is None else side}
-        roles, rearward, up = self.of.get("roles", {}), self.directions["rearward"], self.directions["up"]
-        corners = {}
-        for part, side in sides.items():
-            _one_of(f"side of {part!r}" if part else "side", SIDES, side)
-            prefix = f"{part}." if part else ""
-            own = {role: tuple(roles[prefix + role]) for role in ROLES if prefix + role in roles}
-            for role, ends in own.items():
-                _one_of(f"an end of the {prefix}{role}", self.points, *ends)
-            knuckle = roles.get(f"{prefix}knuckle", "")
-            if knuckle:
-                _one_of(f"the {prefix}knuckle", self.bodies, knuckle)
-            elif "wheel_axis" in own:
-                knuckle = next(iter(self._holders(own["wheel_axis"][1])), "")
-            corners[part] = Corner(side, self.directions[side], rearward, up, own, knuckle, self.radius, car)
-        return corners
-
-    def _loads(self) -> dict[str, Load]:
-        loads = {}
-        for part, given in self.of.get("loads", {}).items():
-            _one_of("the part of a load", self.corners, part)
-            vectors = (given["force"], given.get("moment", (0.0, 0.0, 0.0)))
-            names = (f"{what} of load {part!r}" for what in ("force", "moment"))
-            loads[part] = Load(*(vector_of(n, part, of) for n, of in zip(names, vectors, strict=True)))
-        return loads
-
-    def _ball_joints(self) -> dict[str, str]:
-        """Points of ball joints whose force is determined, and the body on which it is given: the knuckle, or
-        the first that moves."""
-        bodies = {body: names for body, names in self.bodies.items() if body not in self.aids}
-        sliding = {point for slide in self.slides.values() for point in slide["points"]}
-        knuckles = {corner.knuckle for corner in self.corners.values()}
-        reported = {}
-        for point in self.of["points"]:
-            held = [body for body in bodies if point in bodies[body]]
-            if (
-                len(held) == 2
-                and point not in sliding
-                and len(set(bodies[held[0]]) & set(bodies[held[1]])) == 1
-            ):
-                moving = [body for body in held if body != CHASSIS]
-                reported[point] = next((body for body in moving if body in knuckles), moving[0])
-        return reported
+        return directions | {"down": -up, "left": -right, "rearward": np.cross(right, up)}
 
     def _radius(self) -> float | None:
         radius = self.of.get("wheel_radius")
@@ -200,186 +167,97 @@ class _Compiler:
             )
         return radius
 
-    def _shared_points(self) -> None:
-        """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
-        hinges: dict[frozenset[str], list[str]] = {}
-        for first, second in combinations(self.bodies, 2):
-            shared = [point for point in self.bodies[second] if point in self.bodies[first]]
-            if len(shared) > 2:
-                raise DescriptionError(
-                    f"bodies {first!r} and {second!r} share the points {shared}: two make a hinge, "
-                    "and more make the two one body; make them one, or give each points of its own",
-                    second,
-                    shared,
-                )
-            if len(shared) == 2:
-                members = hinges.setdefault(frozenset(shared), [first])
-                if second not in members:
-                    members.append(second)
-                    self._line(*shared)
-                    axis = Axis(*shared)
-                    self.joints[f"hinge of {second} on {members[0]}"] = Joint(
-                        "revolute", members[0], second, axis, axis
-                    )
+    def _corners(self) -> dict[str, Corner]:
+        """The wheel of each part, whose names have its own in front; or the only one."""
+        side, car, roles = self.of.get("side"), car_of(self.of.get("car")), self.of.get("roles", {})
+        sides = self.of.get("sides") or {"": "left" if side is None else side}
+        corners = {}
+        for part, side in sides.items():
+            _one_of(f"side of {part!r}" if part else "side", SIDES, side)
+            prefix = f"{part}." if part else ""
+            own = {role: tuple(roles[prefix + role]) for role in ROLES if prefix + role in roles}
+            for role, ends in own.items():
+                _one_of(f"an end of the {prefix}{role}", self.points, *ends)
+            knuckle = roles.get(f"{prefix}knuckle", "")
+            if knuckle:
+                _one_of(f"the {prefix}knuckle", self.named, knuckle)
+            elif "wheel_axis" in own:
+                knuckle = next((b for b, names in self.named.items() if own["wheel_axis"][1] in names), "")
+            axes = np.array([self.directions[name] for name in (side, "rearward", "up")])
+            corners[part] = Corner(side, axes, own, knuckle, self.radius, car)
+        return corners
+
+    def _loads(self) -> dict[str, Load]:
+        loads = {}
+        for part, given in self.of.get("loads", {}).items():
+            _one_of("the part of a load", self.corners, part)
+            vectors = {"force": given.get("force"), "moment": given.get("moment", NOTHING)}
+            loads[part] = Load(*(vector_of(f"{n} of load {part!r}", part, of) for n, of in vectors.items()))
+        return loads
+
+    def _dampers(self) -> dict[str, Row]:
+        """Rows of the dampers' lengths, where there are loads for them to carry."""
+        rows = {}
+        for part, corner in self.corners.items() if self.of.get("loads") else ():
+            if "damper" in corner.roles:
+                name = f"{part}.damper" if part else "damper"
+                if name in self.of.get("rods", {}):
+                    raise DescriptionError(f"a rod and a role are both called {name!r}: rename the rod", name)
+                rows[part] = self._distance_row(f"rod {name}", *corner.ends("damper"))[0]
+        return rows
+
+    def _ball_joints(self) -> dict[str, str]:
+        """Points of ball joints whose force is determined, and the body on which it is given: the knuckle, or
+        the first that moves."""
+        sliding = {point for slide in self.slides.values() for point in slide["points"]}
+        knuckles = {corner.knuckle for corner in self.corners.values()}
+        reported = {}
         for point in self.points:
-            apart = [[body] for body in self._holders(point)]
-            for line, members in hinges.items():
-                if point in line:
-                    joined = [group for group in apart if set(group) & set(members)]
-                    apart = [group for group in apart if group not in joined] + [
-                        [body for group in joined for body in group]
-                    ]
-            apart.sort(key=lambda group: group[0] != CHASSIS)
-            for number, group in enumerate(apart[1:], 1):
-                name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
-                self.joints[name] = Joint("spherical", apart[0][0], group[0], Axis(point), Axis(point))
+            held = [body for body, names in self.named.items() if point in names]
+            if len(held) != 2 or point in sliding:
+                continue
+            if len({*self.named[held[0]]} & {*self.named[held[1]]}) == 1:
+                moving = [body for body in held if body != CHASSIS]
+                reported[point] = next((body for body in moving if body in knuckles), moving[0])
+        return reported
 
-    def _slide(self, name: str, slide: Mapping[str, Any]) -> None:
-        what, body, points = f"slide {name!r}", slide["body"], tuple(slide["points"])
-        _one_of(f"the body of {what}", self.bodies, body)
-        line, along = self._line_of(name)
-        _one_of(f"a point of {what}", self.points, *points)
-        for point in points:
-            label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
-            held = self._holders(point)
-            if held:
-                second = self._other_than(body, point, what)
-                kind = "on_line"
-            else:
-                second, kind = self._free(point), "prismatic"
-            self.joints[label] = Joint(kind, body, second, line, Axis(point, along))
-        if slide["turns"]:
-            return
-        for second, names in self.bodies.items():
-            guided = [point for point in points if point in names]
-            if second != body and len(guided) > 1:
-                start, end = guided[:2]
-                if float(self._line(start, end) @ np.array(along)) < 0.0:
-                    start, end = end, start
-                self.joints[f"slide {name} of {second}"] = Joint("key", body, second, line, Axis(start, end))
-                return
-        raise DescriptionError(
-            f"{what} has turns = false, and no two of its points {list(points)} are of one body: "
-            "leave `turns` out, or put a second point of the body on the line",
-            name,
-        )
-
-    def _line_of(self, slide: str) -> tuple[Axis, Vector]:
-        """The line of a slide and its direction."""
-        through, along = self.slides[slide]["through"], self.slides[slide]["along"]
-        _one_of(f"the point `through` of slide {slide!r}", self.points, through)
-        _one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
-        if along in self.directions:
-            return Axis(through, self.directions[along]), self.directions[along]
-        return Axis(through, along), plain(self._line(through, along))
-
-    def _rod(self, name: str, ends: Sequence[str]) -> None:
-        if len(ends) != 2:
-            raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
-        _one_of(f"an end of rod {name!r}", self.points, *ends)
-        for end in ends:
-            if not self._holders(end):
-                body = self._free(end)
-                self.joints[f"free point {end}"] = Joint(
-                    "parallel", CHASSIS, body, Axis(self.bodies[CHASSIS][0]), Axis(end)
-                )
-        self._line(*ends)
-        first, second = self._two_bodies(f"rod {name!r}", *ends)
-        self.joints[f"rod {name}"] = Joint("distance", first, second, Axis(ends[0]), Axis(ends[1]))
-
-    def _angle(self, name: str, given: Mapping[str, Any]) -> None:
-        body, start = given["angle"], given["from"]
-        _one_of(f"the body of input {name!r}", self.bodies, body)
-        _one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
-        if start == "drawing":
-            on = given.get("on", CHASSIS)
-            _one_of(f"`on` of input {name!r}", self.bodies, on)
-            shared = [point for point in self.bodies[body] if point in self.bodies[on]]
-            if body == on or len(shared) != 2:
-                raise DescriptionError(
-                    f"input {name!r} turns {body!r} on {on!r}, which share the points {shared}; a hinge "
-                    "of two is needed: name the body that it turns on",
-                    name,
-                    shared,
-                )
-            self.inputs[name] = Input(on, Axis(*shared), body, shared[0], "turn", 1.0, name)
-            return
-        of, about = given["of"], given["about"]
-        _one_of(f"a point of input {name!r}", self.bodies[body], of, about)
-        self._line(about, of)
-        # Without the squares of a norm, which are zero for the smallest numbers.
-        length = math.hypot(*(np.subtract(self.points[of], self.points[about])).tolist())
-        ground = CHASSIS
-        if about not in self.bodies[CHASSIS]:
-            # The direction is the car's: a body that goes with the point and does not turn has it.
-            ground = self._aid(f"{about} in the axes of the car", (about,))
-            at = Axis(about)
-            self.joints[f"place of {ground}"] = Joint("spherical", body, ground, at, at)
-            self.joints[f"axes of {ground}"] = Joint(
-                "parallel", CHASSIS, ground, Axis(self.bodies[CHASSIS][0]), at
-            )
-        axis = Axis(about, self.directions[start])
-        self.inputs[name] = Input(ground, axis, body, of, "cosine", length, name)
-
-    def _travel(self, name: str, given: Mapping[str, Any]) -> None:
-        slides = given["travel"]
-        _one_of(f"a slide of input {name!r}", self.slides, *slides)
-        for slide in slides:
-            body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
-            second = self._other_than(body, point, f"slide {slide!r}")
-            own = name if len(slides) == 1 else f"{name} of {slide}"
-            line = self._line_of(slide)[0]
-            self.inputs[own] = Input(body, line, second, point, "linear", 1.0, name, steers=True)
-
-    def _height(self, name: str, given: Mapping[str, Any]) -> None:
-        point, along = given["height"], given.get("along", "up")
-        _one_of(f"the point of input {name!r}", self.points, point)
-        _one_of(f"`along` of input {name!r}", self.directions, along)
-        body = self._other_than(CHASSIS, point, f"input {name!r}")
-        self._over_drawn(name, body, point, along)
-
-    def _over_drawn(self, name: str, body: str, point: str, along: str) -> None:
-        drawn = self._aid_point(f"{point} as drawn by {name}", self.points[point], CHASSIS)
-        axis = Axis(drawn, self.directions[along])
-        self.inputs[name] = Input(CHASSIS, axis, body, point, "linear", 1.0, name)
-
-    def _contact(self, name: str, given: Mapping[str, Any]) -> None:
-        inner, centre = given["contact"]
-        _one_of(f"a point of input {name!r}", self.points, inner, centre)
-        carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
-        radius = self.radius
-        if carrier is None or radius is None:
-            needed = "two points of one body" if carrier is None else "a wheel_radius above 0"
-            found = [inner, centre] if carrier is None else radius
-            raise DescriptionError(f"input {name!r} needs {needed}, not {found!r}", name, found)
-        axis, up = self._line(inner, centre), np.array(self.directions["up"])
-        level = np.cross(axis, up)
-        if not np.any(level):
+    def _extent(self) -> tuple[Array, float]:
+        """Middle and size of the drawing."""
+        places = np.array(list(self.points.values()))
+        middle = places.mean(axis=0)
+        size, largest = float(np.linalg.norm(places - middle, axis=1).max()), float(np.abs(places).max())
+        if not size >= SMALLEST_SIZE:
             raise DescriptionError(
-                f"input {name!r}: {inner!r} - {centre!r} leads straight up, so the wheel has no lowest point",
-                name,
+                f"the points lie within {size:.3g} mm, too near to zero for their products; a mechanism "
+                f"of at least {SMALLEST_SIZE:g} mm is needed: draw it larger or in a smaller unit of length",
+                "points",
+                size,
             )
-        level = level / np.linalg.norm(level)
-        lowest = np.array(self.points[centre]) - radius * np.cross(level, axis)
-        disc = self._aid(f"disc of {name}", (inner, centre))
-        point = self._aid_point(f"contact of {name}", plain(lowest), disc)
-        line = Axis(inner, centre)
-        self.joints[f"axle of {name}"] = Joint("revolute", carrier, disc, line, line)
-        self.joints[f"level of {name}"] = Joint(
-            "level",
-            CHASSIS,
-            disc,
-            Axis(self.bodies[CHASSIS][0], self.directions["up"]),
-            Axis(centre, plain(level)),
-        )
-        self._over_drawn(name, disc, point, "up")
+        if not size > SHORTEST_AXIS * largest:
+            raise DescriptionError(
+                f"the points lie within {size:.3g} mm at coordinates up to {largest:.3g} mm: "
+                "too few digits tell them apart; draw the mechanism nearer to the origin",
+                "points",
+                size,
+            )
+        return middle, size
 
-    def _distance(self, name: str, given: Mapping[str, Any]) -> None:
-        ends = given["distance"]
-        _one_of(f"a point of input {name!r}", self.points, *ends)
-        self._line(*ends)
-        first, second = self._two_bodies(f"input {name!r}", *ends)
-        self.inputs[name] = Input(first, Axis(ends[0]), second, ends[1], "distance", 1.0, name)
+    # Bodies and lines
+
+    def _add_point(self, body: str, point: str) -> str:
+        """A body that goes with a point and keeps the axes of the car."""
+        self.unturned.add(body)
+        return self._add(body, (point,))
+
+    def _add(self, body: str, points: tuple[str, ...]) -> str:
+        """A body, whose origin is an end of its shortest lines, since rounding would turn these."""
+        places = np.array([self.points[point] for point in points])
+        apart = np.linalg.norm(places[:, None] - places, axis=-1)
+        # A line of no length has no rounding either.
+        nearest = np.log(np.where(apart > 0.0, apart, 1.0)).sum(axis=1).argmin()
+        self.bodies[body], self.numbers[body] = points, len(self.numbers)
+        self.anchors.append(self.middle if body == CHASSIS else places[nearest])
+        return body
 
     def _holders(self, point: str) -> list[str]:
         return [body for body, names in self.bodies.items() if point in names]
@@ -394,41 +272,253 @@ class _Compiler:
             )
         return others[0]
 
-    def _two_bodies(self, what: str, start: str, end: str) -> tuple[str, str]:
-        """Bodies that hold one of two points each."""
+    def _line(self, what: str, start: str, end: str) -> tuple[Array, float]:
+        """Unit vector from one drawn point to another, and their distance, mm."""
+        line = self.points[end] - self.points[start]
+        length = float(np.linalg.norm(line))
+        if not length > SHORTEST_AXIS * self.size:
+            raise DescriptionError(
+                f"{what}: points {start!r} and {end!r} are {length:.3g} mm apart; a line needs more than "
+                f"{SHORTEST_AXIS * self.size:.3g} mm: move one of them",
+                start,
+                length,
+            )
+        return line / length, length
+
+    def _row(
+        self, owner: str, kind: str, first: str, second: str, along: Array, arms: tuple[Array, Array]
+    ) -> Row:
+        return Row(owner, kind, self.numbers[first], self.numbers[second], along, *arms)
+
+    def _arms(self, first: str, one: Array, second: str, other: Array) -> tuple[Array, Array]:
+        """To a place in each of two bodies, from their origins."""
+        from_first = (one - self.anchors[self.numbers[first]]) / self.size
+        return from_first, (other - self.anchors[self.numbers[second]]) / self.size
+
+    # Joints
+
+    def _meet(
+        self, owner: str, first: str, start: str, second: str, end: str, along: Iterable[Array] = AXES
+    ) -> None:
+        """Points of two bodies are in one place, along some directions of the first."""
+        arms = self._arms(first, self.points[start], second, self.points[end])
+        self.joints += [self._row(owner, "offset", first, second, way, arms) for way in along]
+
+    def _across(
+        self,
+        owner: str,
+        first: str,
+        second: str,
+        angles: Iterable[tuple[Array, Array]],
+        kept: Iterable[tuple[Array, Array]] = (),
+    ) -> None:
+        """Directions of two bodies stay at right angles; others keep their sense."""
+        for rows, pairs in ((self.joints, angles), (self.senses, kept)):
+            rows += [self._row(owner, "angle", first, second, one, (NOTHING, other)) for one, other in pairs]
+
+    def _hinge(self, owner: str, first: str, second: str, start: str, end: str) -> None:
+        x, y, z = frame = frame_about(self._line(owner, start, end)[0])
+        # Along its own axes, so that one row at a time follows from others where hinges are parallel.
+        self._meet(owner, first, start, second, start, frame)
+        self._across(owner, first, second, ((y, z), (x, z)), ((z, z),))
+
+    def _distance_row(self, owner: str, start: str, end: str) -> tuple[Row, float]:
+        """The distance of points of two bodies, and how far apart they are drawn, mm."""
         firsts, seconds = self._holders(start), self._holders(end)
         both = set(firsts) & set(seconds)
         if both or not firsts or not seconds:
             raise DescriptionError(
-                f"{what} is between {start!r} and {end!r}, which keep their distance in {sorted(both)}; "
+                f"{owner} is between {start!r} and {end!r}, which keep their distance in {sorted(both)}; "
                 "two points of different bodies are needed",
                 start,
             )
-        return firsts[0], seconds[0]
+        length = self._line(owner, start, end)[1]
+        arms = self._arms(firsts[0], self.points[start], seconds[0], self.points[end])
+        row = self._row(owner, "distance", firsts[0], seconds[0], NOTHING, arms)
+        return row._replace(drawn=length / self.size), length
 
-    def _free(self, point: str) -> str:
-        return self._aid(f"free point {point}", (point,))
+    def _shared_points(self) -> None:
+        """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
+        hinges: dict[frozenset[str], list[str]] = {}
+        for first, second in combinations(self.named, 2):
+            shared = [point for point in self.named[second] if point in self.named[first]]
+            if len(shared) > 2:
+                raise DescriptionError(
+                    f"bodies {first!r} and {second!r} share the points {shared}: two make a hinge, "
+                    "and more make the two one body; make them one, or give each points of its own",
+                    second,
+                    shared,
+                )
+            if len(shared) == 2:
+                members = hinges.setdefault(frozenset(shared), [first])
+                if second not in members:
+                    members.append(second)
+                    self._hinge(f"hinge of {second} on {members[0]}", members[0], second, *shared)
+        for point in self.points:
+            apart = [[body] for body in self._holders(point)]
+            for line, members in hinges.items():
+                if point in line:
+                    joined = [group for group in apart if set(group) & set(members)]
+                    apart = [group for group in apart if group not in joined] + [
+                        [body for group in joined for body in group]
+                    ]
+            apart.sort(key=lambda group: group[0] != CHASSIS)
+            for number, group in enumerate(apart[1:], 1):
+                name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
+                self._meet(name, apart[0][0], point, group[0], point)
 
-    def _aid(self, body: str, points: tuple[str, ...]) -> str:
-        self.bodies[body] = points
-        self.aids.add(body)
-        return body
+    def _line_of(self, slide: str) -> tuple[str, Array]:
+        """A point of the line of a slide, and its direction."""
+        through, along = self.slides[slide]["through"], self.slides[slide]["along"]
+        _one_of(f"the point `through` of slide {slide!r}", self.points, through)
+        _one_of(f"`along` of slide {slide!r}", (*self.directions, *self.points), along)
+        if along in self.directions:
+            return through, self.directions[along]
+        return through, self._line(f"slide {slide!r}", through, along)[0]
 
-    def _aid_point(self, name: str, place: Vector, body: str) -> str:
-        self.points[name] = place
-        self.bodies[body] = (*self.bodies[body], name)
-        self.aids.add(name)
-        return name
-
-    def _line(self, start: str, end: str) -> Array:
-        """Unit vector from one drawn point to another."""
-        where = self.points[start]
-        line = np.subtract(self.points[end], where)
-        if not np.any(line):
-            raise DescriptionError(
-                f"points {start!r} and {end!r} coincide at {where}; move one of them", start, where
+    def _slide(self, name: str) -> None:
+        """Points stay on the line, and a body of two of them does not turn where `turns` is false."""
+        slide, what = self.slides[name], f"slide {name!r}"
+        body, points = slide["body"], tuple(slide["points"])
+        _one_of(f"the body of {what}", self.named, body)
+        through, along = self._line_of(name)
+        _one_of(f"a point of {what}", self.points, *points)
+        frame = frame_about(along)
+        for point in points:
+            label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
+            free = f"free point {point}"
+            held = (
+                self._other_than(body, point, what) if self._holders(point) else self._add_point(free, point)
             )
-        return unit_of(start, plain(line))
+            self._meet(label, body, through, held, point, frame[:2])
+        if slide["turns"]:
+            return
+        for second, names in self.named.items():
+            guided = [point for point in points if point in names]
+            if second != body and len(guided) > 1:
+                own = self._line(what, *guided[:2])[0]
+                own = -own if float(own @ along) < 0.0 else own
+                x = turned_least(f"{what} of {second}", frame, own)[0]
+                self._across(f"slide {name} of {second}", body, second, ((frame[1], x),), ((frame[0], x),))
+                return
+        raise DescriptionError(
+            f"{what} has turns = false, and no two of its points {list(points)} are of one body: "
+            "leave `turns` out, or put a second point of the body on the line",
+            name,
+        )
+
+    def _rod(self, name: str, ends: tuple[str, ...]) -> None:
+        if len(ends) != 2:
+            raise DescriptionError(f"rod {name!r} has {len(ends)} points; two are needed", name, ends)
+        _one_of(f"an end of rod {name!r}", self.points, *ends)
+        for end in ends:
+            if not self._holders(end):
+                self._add_point(f"free point {end}", end)
+        self.joints.append(self._distance_row(f"rod {name}", *ends)[0])
+
+    # Inputs
+
+    def _over(
+        self, name: str, first: str, start: Array, second: str, end: Array, way: Array, **more: Any
+    ) -> None:
+        """How far a place in a body is from one in another, along a direction of that."""
+        row = self._row(name, "offset", first, second, way, self._arms(first, start, second, end))
+        value: dict[str, Any] = {"value": name, "factor": 1.0 / self.size}
+        value["drawn"] = float(way @ (end - start)) + 0.0
+        self.inputs.append(Input(row, **(value | more)))
+
+    def _angle(self, name: str, given: Mapping[str, Any]) -> None:
+        body, start = given["angle"], given["from"]
+        _one_of(f"the body of input {name!r}", self.named, body)
+        _one_of(f"`from` of input {name!r}", (*self.directions, "drawing"), start)
+        if start == "drawing":
+            on = given.get("on", CHASSIS)
+            _one_of(f"`on` of input {name!r}", self.named, on)
+            shared = [point for point in self.named[body] if point in self.named[on]]
+            if body == on or len(shared) != 2:
+                raise DescriptionError(
+                    f"input {name!r} turns {body!r} on {on!r}, which share the points {shared}; a hinge "
+                    "of two is needed: name the body that it turns on",
+                    name,
+                    shared,
+                )
+            x, y, _ = frame_about(self._line(f"input {name!r}", *shared)[0])
+            self.inputs.append(Input(self._row(name, "turn", on, body, x, (NOTHING, -y)), name, 1.0, 0.0))
+            return
+        of, about = given["of"], given["about"]
+        _one_of(f"a point of input {name!r}", self.named[body], of, about)
+        length, ground = self._line(f"input {name!r}", about, of)[1], CHASSIS
+        if about not in self.named[CHASSIS]:
+            # The direction is the car's: a body that goes with the point and does not turn has it.
+            ground = self._add_point(f"{about} in the axes of the car", about)
+            self._meet(f"place of {ground}", body, about, ground, about)
+        way = self.directions[start]
+        cosine = float(way @ (self.points[of] - self.points[about])) / length
+        law = {"factor": length / self.size, "cosine": True, "drawn": math.acos(min(max(cosine, -1.0), 1.0))}
+        self._over(name, ground, self.points[about], body, self.points[of], way, **law)
+
+    def _travel(self, name: str, given: Mapping[str, Any]) -> None:
+        _one_of(f"a slide of input {name!r}", self.slides, *given["travel"])
+        for slide in given["travel"]:
+            body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
+            second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
+            self._over(name, body, self.points[through], second, self.points[point], way, steers=True)
+
+    def _height(self, name: str, given: Mapping[str, Any]) -> None:
+        point, along = given["height"], given.get("along", "up")
+        _one_of(f"the point of input {name!r}", self.points, point)
+        _one_of(f"`along` of input {name!r}", self.directions, along)
+        body, place = self._other_than(CHASSIS, point, f"input {name!r}"), self.points[point]
+        self._over(name, CHASSIS, place, body, place, self.directions[along])
+
+    def _contact(self, name: str, given: Mapping[str, Any]) -> None:
+        inner, centre = given["contact"]
+        _one_of(f"a point of input {name!r}", self.points, inner, centre)
+        carrier = next((body for body in self._holders(centre) if inner in self.bodies[body]), None)
+        if carrier is None or self.radius is None:
+            needed = "two points of one body" if carrier is None else "a wheel_radius above 0"
+            found = [inner, centre] if carrier is None else self.radius
+            raise DescriptionError(f"input {name!r} needs {needed}, not {found!r}", name, found)
+        axis, up = self._line(f"input {name!r}", inner, centre)[0], self.directions["up"]
+        level = np.cross(axis, up)
+        if not np.any(level):
+            raise DescriptionError(
+                f"input {name!r}: {inner!r} - {centre!r} leads straight up, so the wheel has no lowest point",
+                name,
+            )
+        level = level / np.linalg.norm(level)
+        lowest = self.points[centre] - self.radius * np.cross(level, axis)
+        disc = self._add(f"disc of {name}", (inner, centre))
+        self._hinge(f"axle of {name}", carrier, disc, inner, centre)
+        self._across(f"level of {name}", CHASSIS, disc, ((up, level),))
+        self._over(name, CHASSIS, lowest, disc, lowest, up)
+
+    def _distance(self, name: str, given: Mapping[str, Any]) -> None:
+        _one_of(f"a point of input {name!r}", self.points, *given["distance"])
+        row, length = self._distance_row(f"input {name!r}", *given["distance"])
+        self.inputs.append(Input(row, name, 1.0 / self.size, length))
+
+
+def frame_about(z: Array) -> Array:
+    """Right-handed unit axes x, y, z as rows, with z given."""
+    x = cross(AXES[int(np.argmin(np.abs(z)))], z)
+    x = x / np.linalg.norm(x)
+    return np.array([x, cross(z, x), z])
+
+
+def turned_least(what: str, frame: Array, z: Array) -> Array:
+    """Axes x, y, z as rows, turned by the smallest rotation that brings their z into another direction."""
+    cosine = float(frame[2] @ z)
+    if cosine <= 0:
+        raise DescriptionError(
+            f"{what}: its two lines are drawn {np.degrees(np.arccos(max(cosine, -1.0))):.1f} degrees apart; "
+            "they shall become one line of the same sense, so less than 90 degrees is needed: swap the "
+            "points of one line or correct the drawing",
+            what,
+            cosine,
+        )
+    axis = cross(frame[2], z)
+    return np.asarray(frame + cross(axis, frame) + cross(axis, cross(axis, frame)) / (1.0 + cosine))
 
 
 def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
@@ -438,7 +528,7 @@ def _one_of(what: str, allowed: Iterable[str], *values: object) -> None:
             raise DescriptionError(f"{what} is {value!r}; it must be one of {names}", str(value), value)
 
 
-def vector_of(what: str, name: str, value: object) -> Vector:
+def vector_of(what: str, name: str, value: object) -> Array:
     """Three finite floats, or a DescriptionError that says what is wrong with `what`."""
     try:
         array = np.array(value, dtype=float)
@@ -446,33 +536,29 @@ def vector_of(what: str, name: str, value: object) -> Vector:
         array = np.empty(0)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise DescriptionError(f"{what} is {value!r}; three finite numbers are needed", name, value)
-    return plain(array)
+    return array
 
 
-def point_of(name: str, value: object) -> Vector:
+def point_of(name: str, value: object) -> Array:
     """Coordinates of a point, mm, or a DescriptionError that says what is wrong with them."""
     point = vector_of(f"point {name!r}", name, value)
-    if max(map(abs, point)) > LARGEST_COORDINATE:
+    if np.abs(point).max() > LARGEST_COORDINATE:
         raise DescriptionError(
-            f"point {name!r} is {point}; products of such coordinates overflow: correct it or use a larger "
-            f"unit of length, so that all are below {LARGEST_COORDINATE:g} mm",
+            f"point {name!r} is {point.tolist()}; products of such coordinates overflow: correct it or use a "
+            f"larger unit of length, so that all are below {LARGEST_COORDINATE:g} mm",
             name,
-            point,
+            point.tolist(),
         )
     return point
 
 
-def unit_of(name: str, vector: Vector) -> Array:
+def unit_of(name: str, vector: Array) -> Array:
     """The direction of a vector, or a DescriptionError where it is zero."""
-    array = np.array(vector)
-    largest = float(np.abs(array).max())
+    largest = float(np.abs(vector).max())
     if largest == 0:
-        raise DescriptionError(f"{name} is {vector}; a direction must not be zero", name, vector)
+        raise DescriptionError(
+            f"{name} is {vector.tolist()}; a direction must not be zero", name, vector.tolist()
+        )
     # Scaled before the norm: squares of the smallest and largest numbers are lost.
-    array = array / largest
-    return np.asarray(array / np.linalg.norm(array))
-
-
-def plain(vector: Array) -> Vector:
-    """Three numbers."""
-    return (float(vector[0]), float(vector[1]), float(vector[2]))
+    scaled = vector / largest
+    return np.asarray(scaled / np.linalg.norm(scaled))

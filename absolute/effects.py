@@ -25,9 +25,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from absolute.car import needed
-from absolute.description import Model
 from absolute.dual import Dual, arctan2, constant, hypot
 from absolute.errors import DescriptionError, InputError
+from absolute.model import Model
 from absolute.newton import SMALLEST_RCOND
 from absolute.results import Motion
 from absolute.solution import Array
@@ -296,7 +296,7 @@ def contact(motion: Motion, drawn: bool = False) -> Dual:
     inner, centre = motion.corner.ends("wheel_axis")
     spin = motion.drawn(centre) - motion.drawn(inner) if drawn else motion.line(inner, centre)
     normal = spin / hypot(*spin)
-    up = constant(np.array(motion.corner.up)[:, None])
+    up = constant(np.array(motion.corner.axes[UP])[:, None])
     down = normal * motion.components(normal)[UP] - up
     return down * (constant(motion.corner.radius) / hypot(*down))
 

@@ -115,9 +115,9 @@ def follow(
 def _predicted(
     mechanism: Mechanism, pose: Configurations, targets: Array, longest: float
 ) -> tuple[Array, Array, Array]:
-    """Ways of N directions by their targets, (3, N, rows): straight s and curve c, (N, rows), of the step
-    l s + l^2 c along each, and the largest l that is no longer and bends no more than a step may."""
-    straight, second = rates(mechanism, pose, targets[1], targets[2])
+    """Ways of N directions by their targets, (3, N, rows): straight s and curve c, (N, 6 * moving bodies), of
+    the step l s + l^2 c along each, and the largest l that is no longer and bends no more than a step may."""
+    straight, second = map(mechanism.spread, rates(mechanism, pose, targets[1], targets[2]))
     # A step turns with the body, so its curve is o'' - w x o'.
     twist, curve = straight.reshape(len(straight), -1, 2, 3), 0.5 * second
     curve.reshape(twist.shape)[..., 0, :] -= 0.5 * cross(twist[..., 1, :], twist[..., 0, :])

@@ -23,47 +23,47 @@ class Group(NamedTuple):
     columns: Places
 
 
-def groups_of(first: Places, second: Places, bodies: int) -> list[Group]:
-    """Groups of the moving bodies 1 .. bodies - 1, each as small as can be.
+def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
+    """Groups of the moving bodies, each as small as can be.
 
-    Six rows are matched with each body. A body then waits for all others in its own rows, and bodies that
-    wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be matched, all are one
-    group: some body can still move.
+    With each body as many rows are matched as it has freedoms. A body then waits for all others in its own
+    rows, and bodies that wait for each other are a group (Dulmage and Mendelsohn, 1958). Where rows cannot be
+    matched, all are one group: some body can still move.
 
     Args:
-        first, second: the two bodies of each row.
+        first, second: the two bodies of each row. sizes: freedoms of each body, none of the chassis.
     """
-    pairs, freedoms = list(zip(first.tolist(), second.tolist(), strict=True)), 6 * (bodies - 1)
-    own = _matched(pairs, bodies) if len(pairs) == freedoms else None
+    pairs, ends = list(zip(first.tolist(), second.tolist(), strict=True)), np.cumsum(sizes)
+    own = _matched(pairs, sizes.tolist()) if len(pairs) == ends[-1] else None
     if own is None:
-        return [Group(np.arange(len(pairs)), np.arange(freedoms))]
-    waits = np.eye(bodies, dtype=np.bool_)
+        return [Group(np.arange(len(pairs)), np.arange(ends[-1]))]
+    waits = np.eye(len(sizes), dtype=np.bool_)
     for body, rows in enumerate(own):
         waits[body, [each for row in rows for each in pairs[row]]] = True
     waits[:, 0] = False
-    for _ in range(bodies.bit_length()):  # also for those that these wait for
+    for _ in range(len(sizes).bit_length()):  # also for those that these wait for
         waits = waits @ waits
     group = (waits & waits.T).argmax(axis=1)
     together = [np.flatnonzero(group == one) for one in np.unique(group[1:])]
     return [
         Group(
             np.sort(np.concatenate([own[body] for body in some])),
-            np.add.outer(6 * (some - 1), np.arange(6)).ravel(),
+            np.concatenate([np.arange(ends[body] - sizes[body], ends[body]) for body in some]),
         )
         for some in together
     ]
 
 
-def _matched(pairs: Sequence[tuple[int, int]], bodies: int) -> list[list[int]] | None:
-    """Six rows of each body that they touch, each row once, by augmenting paths; None if there are none."""
-    own: list[list[int]] = [[] for _ in range(bodies)]
+def _matched(pairs: Sequence[tuple[int, int]], sizes: Sequence[int]) -> list[list[int]] | None:
+    """Rows of each body, so many as its size, each row once, by augmenting paths; None if there are none."""
+    own: list[list[int]] = [[] for _ in sizes]
 
     def placed(row: int, tried: set[int]) -> bool:
         """Whether a body of the row has a place for it, or one of its rows can go to another body."""
         for body in pairs[row]:
             if body and body not in tried:
                 tried.add(body)
-                if len(own[body]) < 6:
+                if len(own[body]) < sizes[body]:
                     own[body].append(row)
                     return True
                 for place, other in enumerate(own[body]):

@@ -46,16 +46,12 @@ def assemble(mechanism: Mechanism) -> Configurations:
 
 def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
-    drawing, model = mechanism.drawing, mechanism.model
-    furthest, moved = "", 0.0
-    for body, index in drawing.bodies.items():
-        for point in model.bodies[body]:
-            arm = drawing.arm(body, point)
-            there = pose.origin[0, index] + pose.rotation[0, index] @ arm
-            distance = float(np.linalg.norm(there - drawing.origins[index] - arm))
-            if distance > moved:
-                furthest, moved = point, distance
+    drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
+    there = pose.origin[0, body] + np.matvec(pose.rotation[0, body], arms)
+    distances = np.linalg.norm(there - drawing.origins[body] - arms, axis=1)
+    moved = float(distances.max())
     if moved > FURTHEST:
+        furthest = list(drawing.points)[int(distances.argmax())]
         raise AssemblyError(
             f"closing the drawing moves {furthest!r} by {moved * drawing.size:.3g} mm; beyond "
             f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
@@ -81,7 +77,7 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
         read = stack.jacobian(stack.read_at_foot(drawn.placed, gaps))
         return bool((mechanism.signs(read) != drawn.signs).any())
 
-    if not other_side(gap):
+    if (np.abs(gap) <= stack.rounding(drawn.placed)[0]).all() or not other_side(gap):
         return
     of = np.array(stack.owners)
     alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]

@@ -41,7 +41,7 @@ def limiting_input(mechanism: Mechanism, jacobian: Array, change: Array) -> str:
     """
     left = np.linalg.svd(jacobian)[0]
     blocked = np.abs(left[mechanism.joint_rows :, -1] * change)
-    return list(mechanism.model.inputs.values())[int(np.argmax(blocked))].value
+    return mechanism.model.inputs[int(np.argmax(blocked))].value
 
 
 def limited_by(limits: tuple[str, ...]) -> str:

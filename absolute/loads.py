@@ -22,7 +22,7 @@ from absolute.errors import DescriptionError
 from absolute.mechanism import Mechanism
 from absolute.newton import SMALLEST_RCOND, solved
 from absolute.results import Motion
-from absolute.rows import Row, RowStack
+from absolute.rows import RowStack
 from absolute.solution import Array
 from absolute.vectors import cross
 
@@ -44,23 +44,21 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
     stack, bodies = mechanism.stack, mechanism.drawing.bodies
     placed = stack.place(motion.instants.rotation, motion.instants.origin)
     jacobian, owners = stack.jacobian(placed), list(stack.owners)
-    for part, corner in model.corners.items():
-        if "damper" in corner.roles:
-            name = f"{part}.damper" if part else "damper"
-            moving = model.input_of(part, "travel", f"the load of {name!r}")
-            values = [drive.value for drive in model.inputs.values()]
-            row = mechanism.joint_rows + values.index(moving)
-            held = RowStack([_damper(mechanism, name, *corner.ends("damper"))], (), len(bodies))
-            jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]
-            owners[row] = f"rod {name}"
+    for part, damper in model.dampers.items():
+        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
+        row = mechanism.joint_rows + [drive.value for drive in model.inputs].index(moving)
+        held = RowStack([damper], mechanism.columns)
+        jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]
+        owners[row] = damper.owner
     work = np.zeros((len(jacobian), len(bodies), 2, 3))
     for part in model.loads:
         try:
             work[:, bodies[model.corners[part].carrier]] += _on_knuckle(replace(motion, part=part))
         except DescriptionError as error:
             raise DescriptionError(f"the load of the wheel {error}", error.name) from None
+    acting = work[:, 1:].reshape(len(work), 6 * (len(bodies) - 1)).take(mechanism.columns, 1)[..., None]
     with np.errstate(all="ignore"):
-        found = solved(jacobian.swapaxes(1, 2), work[:, 1:].reshape(*jacobian.shape[:2], 1))[..., 0]
+        found = solved(jacobian.swapaxes(1, 2), acting)[..., 0]
         found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
     joints = {}
     for point, body in model.ball_joints.items():
@@ -86,25 +84,6 @@ def _require_determined(mechanism: Mechanism) -> None:
             names[0],
             names,
         )
-
-
-def _damper(mechanism: Mechanism, name: str, start: str, end: str) -> Row:
-    """The row of a damper's length."""
-    drawing, bodies = mechanism.drawing, mechanism.model.bodies
-    if any({start, end} <= set(points) for points in bodies.values()):
-        raise DescriptionError(
-            f"{name} is between {start!r} and {end!r}, which keep their distance in one body; two points of "
-            "different bodies are needed",
-            name,
-        )
-    if f"rod {name}" in mechanism.stack.owners:
-        raise DescriptionError(
-            f"a rod and the role are both called {name!r}: give the rod another name", name
-        )
-    holders = [next(body for body in drawing.bodies if point in bodies[body]) for point in (start, end)]
-    first, second = (drawing.bodies[body] for body in holders)
-    one, other = (drawing.arm(body, point) for body, point in zip(holders, (start, end), strict=True))
-    return Row(name, "distance", first, second, np.zeros(3), one, other, drawing.length(name, start, end))
 
 
 def _on_knuckle(motion: Motion) -> Array:

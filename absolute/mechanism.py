@@ -7,11 +7,10 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
 from absolute.backend import pin
-from absolute.description import Model
-from absolute.drawing import Drawing
 from absolute.errors import DescriptionError
 from absolute.groups import groups_of, signs_of
-from absolute.rows import RowStack, rows_of
+from absolute.model import Model
+from absolute.rows import RowStack
 from absolute.solution import Array
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
@@ -39,6 +38,7 @@ class Mechanism:
         model, drawing, stack: what was described, its lengths, its rows.
         redundant: rows that depend on others in the drawing, so that they are left out and only held to;
             None where there are no such.
+        columns: of [o', w] of all moving bodies, which are unknown: points do not turn.
         groups: bodies that their rows fix one after the other.
         joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
@@ -47,19 +47,19 @@ class Mechanism:
     """
 
     def __init__(self, model: Model) -> None:
-        self.model = model
-        self.drawing = drawing = Drawing(model)
-        bodies, inputs = len(drawing.bodies), len(model.inputs)
-        rows, senses = rows_of(model, drawing)
-        still = np.broadcast_to(np.eye(3), (bodies, 3, 3)), drawing.origins
-        left_out = _left_out(RowStack(rows, senses, bodies), inputs, *still)
-        self.stack = RowStack(
-            [row for number, row in enumerate(rows) if number not in left_out], senses, bodies
-        )
-        self.redundant = (
-            RowStack([rows[number] for number in sorted(left_out)], (), bodies) if left_out else None
-        )
-        self.groups = groups_of(self.stack.first, self.stack.second, bodies)
+        self.model, self.drawing = model, model.drawing
+        bodies, inputs = len(model.bodies), len(model.inputs)
+        sizes = np.array([0, *(3 if body in model.unturned else 6 for body in model.moving)])
+        freedoms = np.arange(6) < sizes[1:, None]
+        self.columns = np.flatnonzero(freedoms)
+        rows, senses = [*model.joints, *(drive.row for drive in model.inputs)], model.senses
+        self.stack, self.redundant = RowStack(rows, self.columns, senses), None
+        still = np.broadcast_to(np.eye(3), (bodies, 3, 3)), self.drawing.origins
+        if left_out := _left_out(self.stack, inputs, *still):
+            kept = [row for number, row in enumerate(rows) if number not in left_out]
+            self.stack = RowStack(kept, self.columns, senses)
+            self.redundant = RowStack([rows[number] for number in sorted(left_out)], self.columns)
+        self.groups = groups_of(self.stack.first, self.stack.second, sizes)
         self.joint_rows = self.stack.count - inputs
         self.pin_model = pin.Model()
         for body in model.moving:
@@ -67,24 +67,15 @@ class Mechanism:
         # After the last joint and frame: data made earlier would be too small.
         self.pin_data = self.pin_model.createData()
         self.drawn = pin.neutral(self.pin_model)
-        self.drawn.reshape(-1, 7)[:, :3] = drawing.origins[1:]
+        self.drawn.reshape(-1, 7)[:, :3] = self.drawing.origins[1:]
         # Pinocchio keeps the placements one after the other, the universe first, each a rotation and the
         # translation after it, column by column: a view reaches them all, and `poses` copies it out.
         first, second = (placement.rotation for placement in list(self.pin_data.oMi)[:2])
         apart = address(second) - address(first)
         self._placements = as_strided(first, (bodies, 12), (apart, first.itemsize))
-        # Of turns the factor is no length.
-        drives = list(model.inputs.values())
-        self._factors = np.array([of.factor / (1.0 if of.law == "turn" else drawing.size) for of in drives])
-        self._cosines = np.array([of.law == "cosine" for of in drives], dtype=np.bool_)
-        values = self.stack.place(*still).values[self.joint_rows :]
-        for number, drive in enumerate(drives):
-            # From the coordinates given: the places of bodies have been rounded before.
-            if drive.law in ("linear", "cosine"):
-                along = drawing.direction("input", drive.axis)
-                values[number] = along @ drawing.line(drive.axis.through, drive.point)
-        ratios = values / self._factors
-        self.drawn_inputs = np.where(self._cosines, np.arccos(np.clip(ratios, -1.0, 1.0)), ratios)
+        self._factors = np.array([drive.factor for drive in model.inputs])
+        self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
+        self.drawn_inputs = np.array([drive.drawn for drive in model.inputs])
 
     def signs(self, jacobian: Array) -> Array:
         """(..., groups) signs of the determinants of Jacobians (..., rows, rows), group by group."""
@@ -101,9 +92,15 @@ class Mechanism:
         rotation = held[..., :9].reshape(*held.shape[:-1], 3, 3).swapaxes(-1, -2)
         return Poses(rotation.copy(), held[..., 9:].copy())
 
+    def spread(self, step: Array) -> Array:
+        """(..., 6 * moving bodies) of unknowns (...): what is known is zero."""
+        every = np.zeros((*step.shape[:-1], 6 * len(self.model.moving)))
+        every[..., self.columns] = step
+        return every
+
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
-        """Configurations (..., 7 * moving bodies) after steps [o', w] per body in world axes (..., rows), of
-        bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
+        """Configurations (..., 7 * moving bodies) after steps [o', w] per body in world axes, all of
+        them, of bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
         local = step.reshape(*step.shape[:-1], rotation.shape[-3] - 1, 2, 3) @ rotation[..., 1:, :, :]
         moved, model = np.empty_like(q), self.pin_model
         each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
@@ -114,7 +111,7 @@ class Mechanism:
     def named(self, values: Sequence[float]) -> dict[str, float]:
         """Values by name; of inputs that take the same one, that of the first."""
         named: dict[str, float] = {}
-        for drive, value in zip(self.model.inputs.values(), values, strict=True):
+        for drive, value in zip(self.model.inputs, values, strict=True):
             named.setdefault(drive.value, value)
         return named
 
@@ -148,7 +145,7 @@ def _left_out(stack: RowStack, inputs: int, rotation: Array, origin: Array) -> s
     Those rows whose parts in the linear combinations of rows that vanish in the drawing are largest. Whether
     they do follow from the others is seen when the drawing is closed.
     """
-    many = stack.count - 6 * (len(origin) - 1)
+    many = stack.count - stack.unknowns
     if many <= 0:
         return set()
     joints = stack.jacobian(stack.place(rotation, origin))[: stack.count - inputs]

@@ -130,7 +130,7 @@ def newton(
             more, rotation, step, size = more[:few], rotation[:few], step[:few], size[:few]
         if not more.size:
             break
-        q[more] = mechanism.moved(q[more], rotation, step)
+        q[more] = mechanism.moved(q[more], rotation, mechanism.spread(step))
         corrections[more] += 1
         # What is not a number is not corrected any more.
         again = (size * size * condition > EPS) & (size <= 0.5 * previous[more])
@@ -165,7 +165,7 @@ def solved(matrices: Array, right_hand: Array) -> Array:
 
 
 def rates(mechanism: Mechanism, at: Configurations, first: Array, second: Array) -> tuple[Array, Array]:
-    """Velocities and accelerations (N, rows), [o', w] and [o'', w'] of the moving bodies.
+    """Velocities and accelerations (N, rows), unknowns of [o', w] and [o'', w'] of the moving bodies.
 
     J v = first,  J a = second - drift(v):  one matrix serves both.
 
@@ -174,7 +174,7 @@ def rates(mechanism: Mechanism, at: Configurations, first: Array, second: Array)
     """
     velocity = velocities(at, first)
     moving = np.zeros((len(first), at.origin.shape[1], 2, 3))
-    moving[:, 1:] = velocity.reshape(len(first), -1, 2, 3)
+    moving[:, 1:] = mechanism.spread(velocity).reshape(len(first), -1, 2, 3)
     return velocity, velocities(at, second - mechanism.stack.drift(at.placed, moving))
 
 

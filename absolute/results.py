@@ -1,14 +1,14 @@
 """The points, bodies and lines of a solved motion, from the poses and rates of its bodies."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from absolute.description import Corner
 from absolute.dual import Dual, constant
 from absolute.mechanism import Mechanism
+from absolute.model import Corner
 from absolute.solution import Array, Counts, Solution
 from absolute.turning import Turning
 from absolute.vectors import EPS, cross
@@ -75,13 +75,11 @@ class Motion:
         # Of body rates, angular velocity is the first.
         orders = 3 if rates else 1
         numbers: dict[str, dict[str, Array]] = {kind: {} for kind in (*OF_POINTS, *OF_BODIES)}
-        for name in model.reported:
-            for kind, state in zip(OF_POINTS[:orders], self._point(name), strict=False):
-                numbers[kind][name] = state
-        for body in model.moving:
-            if body not in model.aids:
-                for kind, state in zip(OF_BODIES[: orders - 1], self._body(body), strict=False):
-                    numbers[kind][body] = state
+        for kind, state in zip(OF_POINTS[:orders], self._points(orders), strict=True):
+            numbers[kind] = dict(zip(self.mechanism.drawing.points, state, strict=True))
+        bodies = [name for name in model.moving if name not in model.aids]
+        for kind, state in zip(OF_BODIES[: orders - 1], self._bodies(bodies), strict=False):
+            numbers[kind] = dict(zip(bodies, state, strict=True))
         numbers |= {kind: dict(of) for kind, of in asked.items()}
         iterations, residual = self.instants.corrections, self.instants.residual
         iterations.setflags(write=False)
@@ -124,12 +122,12 @@ class Motion:
         # A turn takes the difference of two places as a vector, and moves the drawn one as well.
         turned = np.zeros((1, *moved.shape[1:]))
         for turn in self.turns:
-            turned = turn.seen_point(turned, np.array(self.mechanism.model.points[point]))
+            turned = turn.seen_point(turned, self.mechanism.drawing.points[point])
         return self._seen(moved) + constant(turned[0].T)
 
     def drawn(self, point: str) -> Dual:
         """(3, 1) where a point is drawn, mm."""
-        return constant(np.array(self.mechanism.model.points[point])[:, None])
+        return constant(self.mechanism.drawing.points[point][:, None])
 
     def riding(self, on: str, arm: Dual) -> Dual:
         """An arm (3, N) that from now on turns with a body."""
@@ -173,40 +171,38 @@ class Motion:
 
     def _holder(self, point: str) -> tuple[int, Array]:
         """The body of a point, and the arm to the point from its origin in the drawing, in units of size."""
-        drawing, bodies = self.mechanism.drawing, self.mechanism.model.bodies
-        body, index = next(of for of in drawing.bodies.items() if point in bodies[of[0]])
-        return index, drawing.arm(body, point)
+        drawing = self.mechanism.drawing
+        body = drawing.bodies[drawing.holders[point]]
+        return body, drawing.arm(body, point)
 
-    def _point(self, name: str) -> Array:
-        """(3, N, 3) a point and its rates, mm and s."""
-        drawing, given = self.mechanism.drawing, np.array(self.mechanism.model.points[name])
-        index, drawn = self._holder(name)
-        arm = self.instants.rotation[:, index] @ drawn
-        state = np.zeros((3, *arm.shape))
-        base = drawing.middle if index or self.turns else given
-        if index:
-            (speed, spin), (second, spin1) = np.moveaxis(self.instants.rates[:, :, index], 0, 2)
+    def _points(self, orders: int) -> Array:
+        """(orders, P, N, 3) all points and as many of their rates, mm and s."""
+        drawing, (body, arms) = self.mechanism.drawing, self.mechanism.drawing.held()
+        arm = np.matvec(self.instants.rotation[:, body].swapaxes(0, 1), arms[:, None])
+        states = [self.instants.origin[:, body].swapaxes(0, 1) + arm]
+        if orders > 1:
+            (speed, spin), (second, spin1) = self.instants.rates[:, :, body].transpose(1, 3, 2, 0, 4)
             # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
             turning = cross(spin, arm)
-            state[0] = self.instants.origin[:, index] + arm
-            state[1] = speed + turning
-            state[2] = second + cross(spin1, arm) + cross(spin, turning)
-            state *= drawing.size
-        else:
-            state[0] = given - base
+            states += [speed + turning, second + cross(spin1, arm) + cross(spin, turning)]
+        state = np.array(states) * drawing.size
+        # What stands is where it is drawn, to the last digit.
+        given, still = np.array(list(drawing.points.values()))[:, None], (body == 0)[:, None, None]
+        base = drawing.middle if self.turns else np.where(still, given, drawing.middle)
+        state[0] = np.where(still, given - base, state[0])
         for turn in self.turns:
             state = turn.seen_point(state, base)
-        state += self.chassis.swapaxes(0, 1)
+        state += self.chassis.swapaxes(0, 1)[:orders, None]
         state[0] += base
         return state
 
-    def _body(self, name: str) -> Array:
-        """(2, N, 3) angular velocity and acceleration of a body, rad and s."""
-        index = self.mechanism.drawing.bodies[name]
-        state = self.instants.rates[:, :, index, 1].swapaxes(0, 1)
+    def _bodies(self, names: Sequence[str]) -> Array:
+        """(2, B, N, 3) angular velocity and acceleration of bodies, rad and s."""
+        indices = [self.mechanism.drawing.bodies[name] for name in names]
+        state = self.instants.rates[:, :, indices, 1].transpose(1, 2, 0, 3)
         for turn in self.turns:
-            state = turn.seen(state) + turn.rates
-        return state.copy()
+            state = turn.seen(state) + turn.rates[:, None]
+        return state
 
     def _condition_numbers(self) -> Array:
         stack = self.mechanism.stack

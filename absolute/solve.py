@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.description import Model
 from absolute.effects import effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
@@ -14,6 +13,7 @@ from absolute.initial_assembly import assemble, locked
 from absolute.input_arrays import chassis_series, input_series
 from absolute.loads import forces
 from absolute.mechanism import Mechanism
+from absolute.model import Model
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates, velocities
 from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
@@ -49,7 +49,8 @@ def close_drawing(model: Model) -> ClosedDrawing:
     inputs = assembled.drawn_inputs
     still = {name: np.array([[value, 0.0, 0.0]]) for name, value in inputs.items()}
     position = {name: place[0] for name, place in assembled.solve(still, rates=False).position.items()}
-    moved = {n: float(np.linalg.norm(place - np.array(model.points[n]))) for n, place in position.items()}
+    drawn = model.drawing.points
+    moved = {name: float(np.linalg.norm(place - drawn[name])) for name, place in position.items()}
     return ClosedDrawing(inputs, position, moved)
 
 
@@ -137,7 +138,7 @@ class Assembled:
         series = input_series(model.values, driving)
         carried, turns = chassis_series(chassis, len(series)), turnings(model, inputs, len(series))
         # Inputs that take the same value have a column each.
-        series = series[..., [model.values.index(drive.value) for drive in model.inputs.values()]]
+        series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
         runs = [Instants.none(len(mechanism.drawing.bodies), len(by))]
 
         def solution(count: int | None = None) -> Solution:
@@ -173,7 +174,7 @@ class Assembled:
         rates of some values."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
-        named = np.array([drive.value for drive in self.model.inputs.values()])
+        named = np.array([drive.value for drive in self.model.inputs])
         units = np.array([mechanism.targets(series[:, 0], 1.0 * (named == value))[1] for value in by])
         for found in through(mechanism, self._drawn, series[:, 0]):
             count, bodies = found.origin.shape[:2]
@@ -181,11 +182,11 @@ class Assembled:
             slopes, held = np.zeros((count, len(by), bodies, 2, 3)), np.ones(count, dtype=np.bool_)
             for number, unit in enumerate(units):
                 velocity = velocities(found, unit[done : done + count])
-                slopes[:, number, 1:] = velocity.reshape(count, -1, 2, 3)
+                slopes[:, number, 1:] = mechanism.spread(velocity).reshape(count, -1, 2, 3)
                 held &= _of_rates(mechanism, found, velocity)[1]
             if rated:
                 both = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
-                moving[:, :, 1:] = both.reshape(count, 2, -1, 2, 3)
+                moving[:, :, 1:] = mechanism.spread(both).reshape(count, 2, -1, 2, 3)
                 residual, followed = _of_rates(mechanism, found, both[:, 0])
                 held &= followed
             good = leading(held)

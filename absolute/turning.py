@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from absolute.description import Model
 from absolute.input_arrays import checked
+from absolute.model import Model
 from absolute.solution import Array
 from absolute.vectors import cross
 
@@ -84,11 +84,7 @@ def turnings(model: Model, inputs: Mapping[str, Array], count: int) -> tuple[Tur
         InputError: one is of another length, or not finite.
     """
     return tuple(
-        Turning(
-            np.array(model.points[axis.through]),
-            np.array(axis.toward),
-            checked(name, inputs[name], (3,), count),
-        )
-        for name, axis in model.turns.items()
+        Turning(turn.about, turn.axis, checked(name, inputs[name], (3,), count))
+        for name, turn in model.turns.items()
         if name in inputs
     )

@@ -5,16 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanism_files import plain_scene
-from one_arm import BY_TRAVEL, CAR, DRAWN, RADIUS, ROLES, plain, solved, written
+from one_arm import CAR, DRAWN, RADIUS, ROLES, plain, solved, written
 from shipped import EPS, Motion, shipped
 
 import absolute
 from absolute.dual import arctan2, constant
 
 EFFECTS = tuple(absolute.EFFECTS)
-NUMBERS = tuple(name for name, effect in absolute.EFFECTS.items() if not effect.by)
-ANGLES = ("camber", "kingpin", "toe", "caster", "steer_angle")
-GRADIENTS = tuple(name for name in EFFECTS if "_by_" in name)
 POSES: tuple[dict[str, float], ...] = (
     {},
     {"turn": 0.2, "steer": 15.0},
@@ -37,18 +34,6 @@ def tolerance(name: str) -> float:
 def assert_close(found: dict[str, float], wanted: dict[str, float], times: float = 1.0) -> None:
     for name, value in wanted.items():
         assert abs(found[name] - value) <= times * tolerance(name), name
-
-
-def test_each_number_has_its_gradients_in_units_of_it() -> None:
-    units = {name: effect.unit for name, effect in absolute.EFFECTS.items()}
-    assert len(NUMBERS) == 16
-    gradients = {f"{name}_by_{by}" for name in NUMBERS for by in ("travel", "rack")}
-    assert set(EFFECTS) == {*NUMBERS, *gradients, *BY_TRAVEL}
-    assert {name for name in NUMBERS if units[name] == "rad"} == {*ANGLES}
-    assert {units[name] for name in NUMBERS} == {"rad", "mm"}
-    assert {name for name in BY_TRAVEL if units[name] != "mm"} == {"anti_brake", "anti_drive"}
-    assert units["anti_brake"] == units["anti_drive"] == "%"
-    assert all(units[name] == units[name.partition("_by_")[0]] + "/mm" for name in GRADIENTS)
 
 
 @pytest.mark.parametrize("values", POSES)
@@ -189,19 +174,6 @@ def test_a_trailing_link_lifts_its_wheel_along_a_circle(angle: float) -> None:
         "roll_centre_height": 0.0,
     }
     assert_close(solved(wanted, {"turn": -angle}, LINK), wanted)
-
-
-def test_a_swing_axle_has_its_roll_centre_on_the_line_from_the_contact_point_to_its_hinge() -> None:
-    # The hinge is 150 mm high and 600 mm inboard of the contact point; the middle plane is 700 mm inboard.
-    points = {**UPRIGHT, "pivot": (-50.0, -100.0, 150.0), "pivot_end": (50.0, -100.0, 150.0)}
-    wanted = {
-        "roll_centre_height": 150.0 * 700.0 / 600.0,
-        # Turned by d the wheel is 600 d higher and its top leans in; its lowest point, 150 mm below the
-        # hinge, goes out.
-        "camber_by_travel": -1.0 / 600.0,
-        "half_track_change_by_travel": 150.0 / 600.0,
-    }
-    assert_close(solved(wanted, {}, points, wheel_radius=300.0), wanted)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Instant centres and anti-features of linkages whose centres are known, and what they ask of the car."""
+"""Instant centres at infinity or known by hand, anti-features, and what these ask of the car."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -65,60 +65,9 @@ def moved(model: absolute.Model, names: Sequence[str], travels: Sequence[float])
     return absolute.solve(model, inputs, conditions=True, effects=names)
 
 
-def arms_meet(motion: absolute.Solution, view: str, out: float) -> tuple[Array, Array]:
-    """Outboard or rearward, and up, (2, N): the contact point, and where the lines of the two arms meet."""
-    axes = [[0.0, out, 0.0], [0.0, 0.0, 1.0]] if view == "front_view" else [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
-    at = {name: axes @ place.T for name, place in motion.position.items()}
-    p, q = at["lower_arm_front"], at["upper_arm_front"]
-    d, e = at["lower_ball_joint"] - p, at["upper_ball_joint"] - q
-    share = ((q - p)[0] * e[1] - (q - p)[1] * e[0]) / (d[0] * e[1] - d[1] * e[0])
-    spin = at["wheel_centre"] - at["wheel_axis_inner"]
-    if view == "side_view":
-        down = np.stack([np.zeros_like(share), -np.ones_like(share)])
-    else:
-        down = np.stack([spin[1], -spin[0]]) / np.hypot(*spin)
-    return at["wheel_centre"] + 300.0 * down, p + share * d
-
-
 def allowed_at(motion: absolute.Solution, far: float) -> float:
     """How far off the meeting of two lines is that are fixed by points 250 mm apart, so many mm away."""
     return 2.0 * (1.0 + far / 250.0) ** 2 * float(off(motion).max())
-
-
-@both_views
-@both_sides
-def test_arms_in_a_plane_turn_the_wheel_about_where_their_lines_meet(view: str, side: str, out: int) -> None:
-    names = [f"{view}_{centre}" for centre in CENTRES]
-    motion = moved(planar(view, side), names, [0.0, -40.0, 15.0, 35.0])
-    contact, meeting = arms_meet(motion, view, out)
-    # Outboard is minus inboard.
-    sense = -1.0 if view == "front_view" else 1.0
-    wanted = (meeting - contact) * np.array([[sense], [1.0]])
-    # By hand: the upper arm falls by 30 mm over 300 mm and so by 250 mm over 2500 mm.
-    assert np.allclose(wanted[:, 0], [-sense * 2610.0, 150.0], rtol=1e-12)
-    allowed = allowed_at(motion, float(np.abs(wanted).max()))
-    for name, number in zip(names, wanted, strict=True):
-        assert np.abs(motion.effects[name] - number).max() <= allowed, name
-
-
-@pytest.mark.parametrize(("axle", "sign"), [("front", -1.0), ("rear", 1.0)])
-@both_sides
-def test_anti_features_are_the_steepness_of_the_line_to_the_side_view_centre(
-    axle: str, sign: float, side: str, out: int
-) -> None:
-    # The contact point goes at a right angle to the line from the centre to it, and so does the wheel centre.
-    motion = moved(planar("side_view", side, axle=axle), ANTI, [0.0, -40.0, 15.0, 35.0])
-    contact, meeting = arms_meet(motion, "side_view", out)
-    centre = contact + np.array([[0.0], [300.0]])
-    height = 500.0 - contact[1]
-    by_hand = {"anti_brake": 40.0 * 150.0 / 2610.0 * 5.4, "anti_drive": 90.0 * -150.0 / 2610.0 * 5.4}
-    for name, point, share in (("anti_brake", contact, 0.4), ("anti_drive", centre, 0.9)):
-        rearward, up = meeting - point
-        wanted = sign * 100.0 * share * (up / -rearward) * 2700.0 / height
-        assert abs(wanted[0] - sign * by_hand[name]) < 1e-12 * abs(wanted[0])
-        far = float(np.abs(rearward).max())
-        allowed = 500.0 * allowed_at(motion, far) / far
-        assert np.abs(motion.effects[name] - wanted).max() <= allowed, name
 
 
 @both_sides

@@ -14,6 +14,9 @@ from test_branch import STRUT, short_lower_arm
 from written import cross, dot, vector
 
 import absolute
+from absolute.follow import BlockedError, follow
+from absolute.initial_assembly import assemble
+from absolute.mechanism import Mechanism
 
 ARM, UPPER, ROD = "hinge of lower_arm on chassis", "hinge of upper_arm on chassis", "rod tie_rod"
 
@@ -245,14 +248,10 @@ def test_jumping_about_gives_the_pose_that_going_there_directly_gives(
 
 
 def test_where_the_straight_way_is_blocked_inputs_go_one_by_one() -> None:
-    # Straight from the drawing to such a pose the tie rod locks; with one input after the other it does not.
+    # Straight from the drawing to this pose the tie rod locks; with one input after the other it does not.
     motion = shipped("steer")
-    direct = None
-    for angle in np.linspace(0.57, 0.62, 26):
-        goal = at(arm_angle=float(angle), rack=-27.6)
-        try:
-            direct = Motion(motion.plain, goal).solve(rates=False)
-        except absolute.UnreachableError:
-            continue
-        check_closed(direct)
-    assert direct is not None
+    mechanism = Mechanism(absolute.compile(motion.plain))
+    begin, goals = mechanism.drawn_inputs, np.array([[0.57, -27.6]])
+    with pytest.raises(BlockedError):
+        list(follow(mechanism, assemble(mechanism), begin, goals, mechanism.targets))
+    check_closed(Motion(motion.plain, at(arm_angle=0.57, rack=-27.6)).solve(rates=False))

@@ -55,8 +55,8 @@ def refused(described: dict[str, Any], words: str, kind: type[Exception] = Descr
             {"inputs": TURN | {"in": {"turns": "chassis", "about": "c", "along": "up"}}},
             "point of input 'in' is 'c'",
         ),
-        ({"inputs": {}}, "11 rows for 12.*add an input or a joint"),
-        ({"inputs": TURN | {"in": {"travel": ["bore"]}}}, "13 rows for 12.*remove an input"),
+        ({"inputs": {}}, "8 rows for 9.*add an input or a joint"),
+        ({"inputs": TURN | {"in": {"travel": ["bore"]}}}, "10 rows for 9.*remove an input"),
         ({"side": "top"}, r"side is 'top'.*'left', 'right'"),
         ({"right": (0.0, 1.0, 0.1)}, "84.2894 degrees apart; a right angle"),
         ({"up": (0, 0, 0)}, "up is"),
@@ -96,7 +96,7 @@ def test_a_point_needs_three_finite_numbers(bad: Any) -> None:
     ],
 )
 def test_points_of_a_line_that_coincide_or_nearly_do_are_refused(moved: str, onto: str) -> None:
-    refused(STRUT | {"points": POINTS | {moved: POINTS[onto]}}, f"{moved}|{onto}.*coincide")
+    refused(STRUT | {"points": POINTS | {moved: POINTS[onto]}}, f"{moved}|{onto}.* are 0 mm apart")
     if moved != "lower_ball_joint":
         near = tuple(np.add(POINTS[onto], [0.0, 0.0, 1e-7]))
         refused(STRUT | {"points": POINTS | {moved: near}}, "apart")
@@ -145,15 +145,13 @@ def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warni
 
 @pytest.mark.parametrize("factor", [5e-324, 1e-310, 1e-200, 1e-110, 0.0])
 def test_a_car_too_small_for_products_of_its_lengths_is_refused(factor: float) -> None:
-    refused(
-        STRUT | {"points": {n: tuple(factor * x for x in p) for n, p in POINTS.items()}}, "1e-100 mm|coincide"
-    )
+    refused(STRUT | {"points": {n: tuple(factor * x for x in p) for n, p in POINTS.items()}}, "1e-100 mm")
 
 
 def test_points_too_near_each_other_for_their_coordinates_are_refused() -> None:
     # Half of the digits is the least: 500 mm at 3e10 mm and less have fewer.
     far = {name: tuple(np.add(place, 1e11)) for name, place in POINTS.items()}
-    refused(STRUT | {"points": far}, "nearer to the origin|coincide|apart")
+    refused(STRUT | {"points": far}, "nearer to the origin|apart")
 
 
 @pytest.mark.parametrize("value", [-0.0, 5e-324, -1e-110])

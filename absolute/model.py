@@ -1,0 +1,219 @@
+"""A linkage as `compile` makes it: bodies and their places in the drawing, rows, wheels."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from absolute.errors import DescriptionError
+from absolute.solution import Array
+
+CHASSIS = "chassis"
+
+
+class Row(NamedTuple):
+    """A row of bodies `first` and `second` (indices), by vectors in their axes, units of size (see `rows`).
+
+    Attributes:
+        kind: "angle", "offset", "distance" or "turn".
+        along: a; of a turn x; nothing of a distance.
+        first_arm, second_arm: r1 and r2; nothing and the partner direction, of a turn -y.
+        drawn: what joints hold it to: 0, or the drawn distance.
+    """
+
+    owner: str
+    kind: str
+    first: int
+    second: int
+    along: Array
+    first_arm: Array
+    second_arm: Array
+    drawn: float = 0.0
+
+
+@dataclass(frozen=True)
+class Input:
+    """A driven row: it is factor * value, or factor * cos(value).
+
+    Attributes:
+        value: name of the value, which several rows may take; mm or rad.
+        drawn: the value in the drawing.
+        steers: whether it is the travel of a slide.
+    """
+
+    row: Row
+    value: str
+    factor: float
+    drawn: float
+    cosine: bool = False
+    steers: bool = False
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Bodies as drawn, in units of the mechanism's size; their frames are parallel to that of the points.
+
+    Coordinates as given subtract with one rounding of the difference, however close the points are; from the
+    middle they have been rounded before. So the origin of a moving body is one of its points.
+
+    Attributes:
+        points: name -> (3,), mm.
+        middle: mean of the points, mm. Positions are measured from here, so that numbers do not depend on the
+            distance of the car from its origin.
+        size: largest distance of a point from the middle, mm: the unit of length.
+        bodies: name -> index; the chassis is 0.
+        anchors: (bodies, 3) origin of each body, mm: the middle for the chassis.
+        holders: name of a point -> the first body that has it.
+    """
+
+    points: Mapping[str, Array]
+    middle: Array
+    size: float
+    bodies: Mapping[str, int]
+    anchors: Array
+    holders: Mapping[str, str]
+
+    @property
+    def origins(self) -> Array:
+        """(bodies, 3) of the body frames, from the middle."""
+        return np.asarray((self.anchors - self.middle) / self.size)
+
+    def line(self, start: str, end: str) -> Array:
+        """From one drawn point to another."""
+        return np.asarray((self.points[end] - self.points[start]) / self.size)
+
+    def arm(self, body: int, point: str) -> Array:
+        """From the origin of a body to a point."""
+        return np.asarray((self.points[point] - self.anchors[body]) / self.size)
+
+    def held(self) -> tuple[NDArray[np.intp], Array]:
+        """Bodies of all points, (P,), and the arms from their origins, (P, 3)."""
+        body = np.array([self.bodies[self.holders[point]] for point in self.points], dtype=np.intp)
+        return body, (np.array(list(self.points.values())) - self.anchors[body]) / self.size
+
+
+@dataclass(frozen=True)
+class Load:
+    """What the ground does to a wheel at its contact point: N and N mm, in the frame of the points."""
+
+    force: Array
+    moment: Array
+
+
+@dataclass(frozen=True)
+class Corner:
+    """A wheel: what of a linkage carries it, and which way the car points.
+
+    Attributes:
+        side: of the car, "left" or "right".
+        axes: (3, 3) outboard, rearward and up in the frame of the points, unit vectors as rows; outboard
+            leads from the car's middle to the wheel: right or minus right.
+        roles: the two points each of `wheel_axis` (inner point, wheel centre), `steering_axis` (lower, upper)
+            and `damper`, as far as the linkage has them.
+        knuckle: the body that carries the wheel, "" if there is none.
+        wheel_radius: of the wheel, mm, if it is given.
+        car: numbers of the car, as far as they are given (see `car_of`).
+    """
+
+    side: str
+    axes: Array
+    roles: Mapping[str, tuple[str, str]]
+    knuckle: str
+    wheel_radius: float | None
+    car: Mapping[str, float]
+
+    def ends(self, role: str) -> tuple[str, str]:
+        """The two points of a role; DescriptionError where the mechanism has none."""
+        if role not in self.roles:
+            raise _lacking(f"the role {role!r}", f"the two points of {role} in [roles]", role)
+        return self.roles[role]
+
+    @property
+    def carrier(self) -> str:
+        """The knuckle; DescriptionError where there is none."""
+        if not self.knuckle:
+            raise _lacking("the role 'knuckle'", "the body that carries the wheel in [roles]", "knuckle")
+        return self.knuckle
+
+    @property
+    def radius(self) -> float:
+        """The wheel's radius, mm; DescriptionError where it is not given."""
+        if self.wheel_radius is None:
+            raise _lacking("wheel_radius", "it in [mechanism], in mm", "wheel_radius")
+        return self.wheel_radius
+
+
+def _lacking(what: str, where: str, name: str) -> DescriptionError:
+    return DescriptionError(f"needs {what}, and there is none: write {where}, or ask for other effects", name)
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A line through the drawn place of a point, mm, about which an input turns the whole car."""
+
+    about: Array
+    axis: Array
+
+
+@dataclass(frozen=True)
+class Model:
+    """A linkage, as `compile` makes it of names that it has checked.
+
+    Attributes:
+        bodies: name -> names of its points; the chassis is one of them.
+        drawing: their places.
+        joints, inputs: rows.
+        senses: pairs of directions whose product must stay positive, since a right angle alone also allows
+            the reversed joint.
+        corners: part -> its wheel; "" for a mechanism without parts.
+        loads: part -> what acts on its wheel.
+        dampers: part -> row of the length of its damper, where there are loads.
+        ball_joints: point that two bodies share, and no other -> the one whose force is reported.
+        aids: bodies that are there for the equations only and are not reported.
+        unturned: those of them that are a point with the axes of the car.
+        turns: by which inputs of these names turn the whole car, one after the other; their lines stand.
+    """
+
+    bodies: Mapping[str, tuple[str, ...]]
+    drawing: Drawing
+    joints: tuple[Row, ...]
+    senses: tuple[Row, ...]
+    inputs: tuple[Input, ...]
+    corners: Mapping[str, Corner]
+    loads: Mapping[str, Load]
+    dampers: Mapping[str, Row]
+    ball_joints: Mapping[str, str]
+    aids: frozenset[str]
+    unturned: frozenset[str]
+    turns: Mapping[str, Turn]
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Names of the bodies that move, in the order given."""
+        return tuple(name for name in self.bodies if name != CHASSIS)
+
+    @property
+    def values(self) -> tuple[str, ...]:
+        """Names of the values that the inputs take, each once."""
+        return tuple(dict.fromkeys(drive.value for drive in self.inputs))
+
+    def input_of(self, part: str, by: str, what: str) -> str:
+        """The one driven input of a part, or of all, that is the travel of a slide ("rack") or is not.
+
+        Raises:
+            DescriptionError: there is none, or another; `what` needs it.
+        """
+        others = tuple(f"{other}." for other in self.corners if other != part)
+        own = {drive.value: drive.steers for drive in self.inputs if not drive.value.startswith(others)}
+        found = [value for value, steers in own.items() if steers == (by == "rack")]
+        if len(found) != 1:
+            kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
+            raise DescriptionError(
+                f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
+                f"{found} of {list(own)}; drive other inputs, or ask for other effects",
+                what,
+                found,
+            )
+        return found[0]
