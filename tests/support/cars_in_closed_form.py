@@ -411,7 +411,6 @@ class WishboneForm(ClosedForm):
 FORMS: Mapping[str, type[ClosedForm]] = {"macpherson": StrutForm, "double_wishbone": WishboneForm}
 VARIANTS: tuple[Variant, ...] = tuple(one for one in variants() if one.suspension in FORMS)
 DRAWN = tuple(one for one in VARIANTS if one.closure == "drawn")
-PUT_IN_PLACE = tuple(one for one in VARIANTS if one.closure != "drawn")
 
 
 def cars_of(these: Sequence[Variant] = VARIANTS) -> st.SearchStrategy[Car]:

@@ -11,7 +11,7 @@ from flint import arb
 from validate.reference.design import Known
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball
-from validate.reference.krawczyk import Contraction, column, largest, less, middle_inverse
+from validate.reference.krawczyk import Contraction, column, largest, less, middle_inverse, sizes
 from validate.reference.vectors import minus, plus
 
 
@@ -24,12 +24,14 @@ class Certificate:
         radius: half the box's width in each coordinate of the points.
         enclosure: balls that contain the zero, far inside the box.
         shift: its points are at most so far from the centre's.
+        condition: of the Jacobian in the maximum norm, each row scaled to unit absolute sum.
     """
 
     centre: Sequence[arb]
     radius: Fraction
     enclosure: Sequence[arb]
     shift: arb
+    condition: float
 
 
 def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificate:
@@ -46,7 +48,8 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     near = {name: place if name in fixed else plus(place, off) for name, place in there.items()}
     values = known.mechanism.unknown_of(near, as_ball)
     room = [abs(value - number).upper() for number, value in zip(centre, values, strict=True)]
-    inverse = middle_inverse(known.matrix(centre))
+    matrix = known.matrix(centre)
+    inverse = middle_inverse(matrix)
     proof = Contraction.at(known.system, centre, inverse)
     image = proof.image(room)
     if not less(image, room):
@@ -61,4 +64,7 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     shift = largest([x for n, p in found.items() for x in minus(p, there[n])])
     if not shift < width:
         raise NotDecidedError("the points of the zero within the radius of the centre's", shift, width)
-    return Certificate(centre, radius, enclosure, shift)
+    # |D C'| |C'^-1 D^-1| with D such that the rows of D C' have unit absolute sum.
+    sums = sizes(matrix.mid()) * column([arb(1)] * len(centre))
+    condition = max(float(x.mid()) for x in (sizes(inverse) * sums).entries())
+    return Certificate(centre, radius, enclosure, shift, condition)

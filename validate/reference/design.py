@@ -286,7 +286,7 @@ def _loads(plain: Mapping[str, Any], corners: Collection[str]) -> dict[str, tupl
         prefix, what = f"{part}." if part else "", f"loads[{part!r}]"
         if prefix not in corners:
             raise BadInputError(what, load, f"a load of a part: {', '.join(corners).replace('.', '')}")
-        force, moment = load["force"], load.get("moment", (0, 0, 0))
+        force, moment = load["force"], load.get("moment") or (0, 0, 0)
         found[prefix] = exact_vector(force, f"{what}.force"), exact_vector(moment, f"{what}.moment")
     return found
 

@@ -47,6 +47,7 @@ class Instant:
             infinity, wheels that are steered apart).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
         error_bound: proven bound on the error of each quantity above, in its unit.
+        condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
         digits: how many digits it took.
     """
 
@@ -61,6 +62,7 @@ class Instant:
     left_out: Mapping[str, str]
     radius: Fraction
     error_bound: Mapping[str, Fraction]
+    condition: float
     digits: int
 
     def effect(self, name: str) -> Fraction:
@@ -150,6 +152,7 @@ def prove_instant(
         left_out={**left_out, **statics.left_out},
         radius=radius,
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
+        condition=certificate.condition,
         digits=working,
     )
 

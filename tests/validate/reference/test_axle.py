@@ -10,18 +10,21 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from lotus_front import POINTS as LOTUS
 from mechanism_drawings import described, joined
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 from reference_cars import CARS
 
-from validate.reference import BadInputError, Design, Instant, closed_drawing, solve_reference
+from validate.published.tables import FOLDER
+from validate.reference import BadInputError, Design, Instant, closed_drawing, instants_of, solve_reference
 from validate.reference.dual import Dual
 from validate.reference.effects.car import WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import EFFECTS
 
 WITHIN = mpf("1e-55")
+LOTUS_STEERING = FOLDER / "lotus-steering.csv"
 OF_A_WHEEL = tuple(n for n, one in EFFECTS.items() if PAIR not in one.needs and not n.startswith("damper"))
 TOGETHER = tuple(name for name, one in EFFECTS.items() if PAIR in one.needs)
 
@@ -137,6 +140,23 @@ def test_parallel_wheels_have_nothing_of_ackermann_and_steer_the_outer_one_too_m
     assert abs(found["turning_radius"] - abs(2600 * mpmath.cot(angle))) < WITHIN * 10
     too_much = abs(angle) - mpmath.acot(mpmath.cot(abs(angle)) + mpf(1400) / 2600)
     assert abs(found["ackermann_error"] - too_much) < WITHIN
+
+
+def test_the_axle_of_lotus_turns_on_its_printed_radius_and_with_nearly_its_ackermann() -> None:
+    mirrored = {name: (x, -y, z) for name, (x, y, z) in LOTUS.items()}
+    driven, car = ["contact_travel"], {"wheelbase": 1600}
+    parts = {
+        side: plain_mechanism("double_wishbone", points, driven, side=side, wheel_radius=270, car=car)
+        for side, points in (("left", mirrored), ("right", LOTUS))
+    }
+    axle = Design.from_plain(joined(parts, rack={"travel": ["left.rack", "right.rack"]}))
+    printed = [row.split(",") for row in LOTUS_STEERING.read_text().splitlines()[1::7]]
+    # The printed rack travel is positive to the right, S to the left. The contact points keep their height.
+    still = {f"{side}.contact_travel": (0, 0, 0) for side in parts}
+    inputs = [{**still, "rack": (-Fraction(row[0]), 0, 0)} for row in printed]
+    for row, instant in zip(printed, instants_of(axle, inputs, 20, effects=TOGETHER), strict=True):
+        assert float(instant.effects["turning_radius"]) == pytest.approx(float(row[6]), abs=0.005)
+        assert float(instant.effects["ackermann"]) == pytest.approx(float(row[5]), abs=0.04)
 
 
 @pytest.mark.parametrize("angles", [(0, 0), (Fraction(1, 10), Fraction(-1, 20)), (0, Fraction(1, 10))])
