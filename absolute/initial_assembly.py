@@ -27,8 +27,12 @@ def assemble(mechanism: Mechanism) -> Configurations:
         AssemblyError: the drawing stands for two assemblies; closing it locks the mechanism.
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
-    drawn = _drawn_pose(mechanism)
-    gap = mechanism.stack.gap(drawn.placed, mechanism.targets(mechanism.drawn_inputs)[0])[0]
+    target = mechanism.targets(mechanism.drawn_inputs[None])[0]
+    drawn = _drawn_pose(mechanism, target)
+    if drawn.closed[0]:
+        _require_redundant(mechanism, drawn)
+        return drawn
+    gap = mechanism.stack.gap(drawn.placed, target)[0]
 
     def closing(share: Array, rate: Array) -> Array:
         values, rates = np.broadcast_arrays(drawn.placed.values[0] + share * gap, rate * gap)
@@ -77,7 +81,7 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
         read = stack.jacobian(stack.read_at_foot(drawn.placed, gaps))
         return bool((mechanism.signs(read) != drawn.signs).any())
 
-    if (np.abs(gap) <= stack.rounding(drawn.placed)[0]).all() or not other_side(gap):
+    if not other_side(gap):
         return
     of = np.array(stack.owners)
     alone = [owner for owner in dict.fromkeys(stack.owners) if other_side(np.where(of == owner, gap, 0.0))]
@@ -149,8 +153,8 @@ def locked(
     )
 
 
-def _drawn_pose(mechanism: Mechanism) -> Configurations:
-    drawn = configurations_at(mechanism, mechanism.drawn[None])
+def _drawn_pose(mechanism: Mechanism, target: Array) -> Configurations:
+    drawn = configurations_at(mechanism, mechanism.drawn[None], target)
     if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
         limits = limits_at(mechanism, drawn.jacobian[0])
         raise SingularError(

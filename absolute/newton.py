@@ -64,9 +64,9 @@ def rounding_of(condition: Array) -> Array:
 
 
 def configurations_at(
-    mechanism: Mechanism, q: Array, target: Array | None = None, corrections: Counts | None = None
+    mechanism: Mechanism, q: Array, target: Array, corrections: Counts | None = None
 ) -> Configurations:
-    """Configurations (N, nq) with their rows, against targets (N, rows), or their own values if None."""
+    """Configurations (N, nq) with their rows, against targets (N, rows)."""
     stack = mechanism.stack
     rotation, origin = mechanism.poses(q)
     placed = stack.place(rotation, origin)
@@ -75,7 +75,6 @@ def configurations_at(
     with np.errstate(over="ignore", invalid="ignore"):
         condition = np.abs(jacobian).sum(axis=1).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1)
     condition[np.isnan(condition)] = np.inf
-    target = placed.values if target is None else target
     gap = stack.gap(placed, target)
     small = lengths(np.matvec(inverse, gap)) <= rounding_of(condition)
     residual, held = np.abs(gap).max(axis=1), np.ones(len(q), dtype=np.bool_)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_files import plain_scene
+from mechanism_files import plain_scene, renamed
 from shipped import EPS, Array, Motion
 from test_mechanisms import four_bar
 
@@ -111,13 +111,13 @@ def test_the_force_of_a_ball_joint_is_the_work_of_the_load_as_its_halves_part(na
         for axis, way in zip("xyz", UNITS, strict=True):
             others = {f"out {o}": [f"out {o}", point] for o in "xyz" if o != axis}
             apart = holding(described) | {"apart": {"distance": [f"out {axis}", point]}}
-            named = renamed(apart, "half", point, arm)
+            named = by_own_half(apart, "half", point, arm)
             work = work_of(described | {"rods": rods | others, "points": points, "bodies": bodies}, named)
             # The distance grows as the knuckle goes against the direction.
             assert abs(force[0] @ way - work) <= 4 * OFF, (point, axis)
 
 
-def renamed(inputs: dict[str, Any], half: str, point: str, arm: str) -> dict[str, Any]:
+def by_own_half(inputs: dict[str, Any], half: str, point: str, arm: str) -> dict[str, Any]:
     """Inputs that measure an arm by its own half of the joint."""
     return {
         name: {
@@ -200,6 +200,18 @@ def test_a_damper_above_a_link_carries_what_the_lever_says(load: dict[str, Any],
     found = solve(trailing_link(loads={"": load}), {"turn": 0.0}, loads=True)
     assert abs(found.rod_force["damper"][0] - tension) <= OFF
     assert found.joint_force == {}
+    # As a part of a mechanism.
+    words = {"chassis", "drawing", "angle", "from", "on", *trailing_link()["roles"]}
+
+    def put(name: str) -> str:
+        return name if name in words else f"left.{name}"
+
+    tables = {key: renamed(trailing_link()[key], put) for key in ("bodies", "inputs", "roles", "points")}
+    tables = {
+        key: {("" if n == "chassis" else "left.") + n: v for n, v in of.items()} for key, of in tables.items()
+    }
+    part = trailing_link(**tables, sides={"left": "left"}, loads={"left": load})
+    assert solve(part, {"left.turn": 0.0}, loads=True).rod_force == {"left.damper": found.rod_force["damper"]}
 
 
 def test_forces_are_in_proportion_to_the_load_and_do_not_depend_on_the_unit_of_length() -> None:
