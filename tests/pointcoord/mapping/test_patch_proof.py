@@ -28,7 +28,6 @@ from pointcoord.patches import patch_proof
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
-from pointcoord.patches.reported_points import moving_points, reported_points
 from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.follower import follow
 
@@ -295,45 +294,3 @@ def test_what_a_series_leaves_is_no_more_than_its_bound_says(doubtful: bool) -> 
             assert left <= Fraction(float(bound)), (seed, d)
             closest[d] = max(closest[d], float(left / Fraction(float(bound))) if bound else 0.0)
     assert (closest > 0.3).all(), closest
-
-
-def standing_series(mechanism: Mechanism) -> tuple[Array, Jet]:
-    """A series of two inputs in which nothing moves, and no error."""
-    count, unknowns = powers(2, 2).count, mechanism.map.unknowns
-    series = np.zeros((1, count, mechanism.map.size))
-    series[0, 0] = mechanism.drawn
-    return series, Jet.constant(np.zeros((1, unknowns)), 2)
-
-
-@by_car
-def test_a_carried_point_is_off_by_what_its_carriers_are_off_at_most(car: SampleCar) -> None:
-    """To first order exactly the sum of what each coordinate of the carriers moves it."""
-    mechanism = car.mechanism()
-    series, _ = standing_series(mechanism)
-    unknowns, names = mechanism.map.unknowns, moving_points(mechanism.topology)
-    generator = np.random.default_rng(4)
-    # Numbers of any size, so that none hides another; so small that their products are nothing.
-    size = 1e-6 * 10.0 ** generator.uniform(-3.0, 0.0, unknowns)
-    error = Jet.constant(size[None], 2)
-    error.first[0] = 1e-6 * 10.0 ** generator.uniform(-3.0, 0.0, (2, unknowns))
-    found, off = reported_points(mechanism, series, error, 2)
-    step = 1e-3
-    gains = []
-    for k in range(unknowns):
-        ahead, behind = series.copy(), series.copy()
-        ahead[0, 0, k] += step
-        behind[0, 0, k] -= step
-        none = Jet.constant(np.zeros((1, unknowns)), 2)
-        ends = [reported_points(mechanism, each, none, 2)[0][0, 0] for each in (ahead, behind)]
-        gains.append(np.abs(ends[0] - ends[1]) / (2.0 * step))
-    table = np.array(gains)
-    here = slice(3 * len(mechanism.topology.moving), None)
-    # A coordinate of the first carrier moves the point and both edges; the bound takes these apart.
-    wanted = size @ table
-    assert (off.value[0, here] >= wanted[here] * (1.0 - 1e-6)).all()
-    assert (off.value[0, here] <= 4.0 * wanted[here].max()).all()
-    for i in range(2):
-        wanted = error.first[0, i] @ table
-        assert (off.first[0, i, here] >= wanted[here] * (1.0 - 1e-6)).all()
-        assert (off.first[0, i, here] <= 4.0 * wanted[here].max()).all()
-    assert found.shape[-1] == 3 * len(names)
