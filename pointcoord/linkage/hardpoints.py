@@ -26,8 +26,7 @@ def build_mechanism(
     """Hardpoints put on a topology, checked.
 
     Args:
-        points: every point of the topology, shape (..., 3), mm; where one of the chassis is left out that may
-            be, the point that stands in for it is taken.
+        points: every point of the topology, shape (..., 3), mm.
         directions: `up` and `right` of the car, unit vectors, shape (..., 3).
     Raises:
         UnknownName: a point or direction is missing or not part of the topology.
@@ -45,11 +44,9 @@ def drawn_mechanism(
     """The same without a check that its equations have one solution."""
     _check_names(points, topology.points, "point")
     _check_names(directions, AXES, "direction")
-    located = _checked(topology.with_defaults(points), topology.points, "point")
-    named = car_directions(**_checked(directions, AXES, "direction"))
-    turned = {name: named[name][0] for name in dict.fromkeys((*AXES, *topology.directions))}
-    batched = any(place.ndim > 1 for place in located.values())
-    stack = np.stack(np.broadcast_arrays(*located.values()), -2) if batched else np.array([*located.values()])
+    located = _checked(points, topology.points, "point")
+    car = car_directions(**_checked(directions, AXES, "direction"))
+    stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):
         extent = (stack.max(axis=-2) - stack.min(axis=-2)).max(axis=-1)
     if not (np.isfinite(extent).all() and (extent > 1e-100).all() and (extent < 1e100).all()):
@@ -61,12 +58,13 @@ def drawn_mechanism(
     # never less than three quarters of a nonzero origin's, and never on the other side of zero.
     grid = 4.0 * unit[..., None]
     origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
-    if batched:
-        vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
-    else:
-        vectors = dict(zip(located, (stack - origin) / unit, strict=True)) | turned
-    lows = {name: named[name][1] for name in turned if named[name][1].any()}
-    drawing = Drawing(vectors, unit, lows)
+    scaled = (stack - origin[..., None, :]) / unit[..., None, None]
+    vectors = {name: np.ascontiguousarray(scaled[..., i, :]) for i, name in enumerate(located)}
+    vectors |= {name: car[name][0] for name in AXES}
+    drawing = Drawing(vectors, unit)
+    along = {n: drawing.axis(*ends) if ends[0] else car[ends[1]] for n, ends in topology.directions.items()}
+    vectors |= {name: high for name, (high, _) in along.items()}
+    drawing = Drawing(vectors, unit, {name: low for name, (_, low) in along.items() if low.any()})
     drawn, lacks, doubt = _drawn(topology, drawing)
     return Mechanism(
         topology=topology,
@@ -112,16 +110,13 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     for name in (*layout.moving, *layout.chassis, *layout.directions):
         y[..., layout.span(name)] = drawing.vectors[name]
         if name in drawing.lacks:
-            # Two products and their difference, taken twice as exactly.
+            # Two products and their difference, taken twice as exactly, or a difference of points.
             lacks[..., layout.span(name)] = drawing.lacks[name]
             doubt[..., layout.span(name)] = PAIRS
-    for kind in topology.kinds:
-        for own in type(kind[0]).placed_together(kind, layout, drawing):
-            places = list(own.places)
-            y[..., places] = own.values
-            for table, values in ((lacks, own.lacks), (doubt, own.doubt)):
-                if not isinstance(values, float) or values:
-                    table[..., places] = values
+    for constraint in topology.constraints:
+        for name, own in constraint.placed(drawing).items():
+            place = layout.place(name)
+            y[..., place], lacks[..., place], doubt[..., place] = own
     for drive, place in zip(topology.drives, topology.driven, strict=True):
         y[..., place] = drive.drawn(drawing)
     return y, lacks, doubt

@@ -9,7 +9,7 @@ no link of its own: so a hinge of two shared points takes no row too many.
 from __future__ import annotations
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -20,7 +20,7 @@ from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.on_line import HeldOnAxis, OnAxis, OnChassisLine, OnLine
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.directions import DIRECTIONS, car_directions
@@ -252,29 +252,28 @@ class _Compiler:
             for name, one in structure.inputs.items()
             if one.kind == "turns"
         }
-        directions = dict.fromkeys((*along.values(), *(line[0] for line in turns.values())))
-        directions |= dict.fromkeys(
-            one[key]
-            for name, one in structure.inputs.items()
-            if name in self.driven
-            for key, kind in (("from", "arm"), ("along", "height"))
-            if one.kind == kind
-        )
-        directions |= dict.fromkeys(
-            slide.along for slide in structure.slides.values() if slide.along in DIRECTIONS
-        )
-        if any(structure.inputs[name].kind == "contact" for name in self.driven):
-            directions["up"] = None
-        directions |= dict.fromkeys(
-            head for edges in self.choices.edges.values() for head, tail in edges if not tail
-        )
+        directions = [*along.values(), *(line[0] for line in turns.values())]
+        for name in self.driven:
+            one = structure.inputs[name]
+            directions += [
+                one[key] for key in ("from", "along") if one.kind in ("arm", "height") and key in one.table
+            ]
+            directions += ["up"] if one.kind == "contact" else []
+        directions += [slide.along for slide in structure.slides.values() if slide.along in DIRECTIONS]
+        directions += [head for edges in self.choices.edges.values() for head, tail in edges if not tail]
+        known = {name: ("", name) for name in directions}
+        known |= {
+            f"line of the {name}": (slide.through, slide.along)
+            for name, slide in structure.slides.items()
+            if slide.body == CHASSIS and slide.along not in DIRECTIONS
+        }
         return Topology(
             name=structure.name,
             chassis=tuple(chassis),
             moving=moving,
             bodies={str(knuckle): body} if body else {},
             carried=carried,
-            directions=tuple(directions),
+            directions=known,
             constraints=tuple(constraints),
             drives=tuple(drives),
             knuckle=str(knuckle),
@@ -345,10 +344,6 @@ class _Compiler:
     def _by_two_points(self, slide: Slide) -> bool:
         return slide.along in self.structure.bodies[slide.body]
 
-    def _line(self, name: str, slide: Slide) -> tuple[str, str]:
-        """Tail and head that the line's direction is drawn by; no tail for a direction of the car."""
-        return ("", slide.along) if slide.along in DIRECTIONS else (slide.through, slide.along)
-
     def _slides(self, held: _Rods) -> Iterator[Constraint]:
         """Lines of moving bodies, and what keeps bodies from turning about a line."""
         for name, slide in self.structure.slides.items():
@@ -361,40 +356,46 @@ class _Compiler:
         if name in held.collinear:
             start, end = slide.points
             for point in (slide.through, slide.along):
-                yield OnLine(point, start, end, f"place of {point} on the {name}")
+                yield OnLine(
+                    point,
+                    start,
+                    f"line {start} - {end}",
+                    end,
+                    f"place of {point} on the {name}",
+                    between=True,
+                )
             return
         axis = self._axis(name, slide)
         if axis is not None:
             yield axis
         for point in slide.points:
-            if point in held.by_point:
-                assert axis is not None  # only on axes is a point held at a rod's length
-                place = f"place of {point} on the {axis.axis}"
-                yield HeldOnAxis(point, held.by_point[point], axis, place)
-            else:
-                yield self._sliding(name, slide, point)
+            line = self._sliding(name, slide, point)
+            at = held.by_point.get(point)
+            yield line if at is None else replace(line, origin=at, at="held")
 
     def _axis(self, name: str, slide: Slide) -> AxisInBody | None:
-        if self._by_two_points(slide):
+        """The axis of a body that a slide runs along, unless the line is one of two of the body's points."""
+        if slide.body == CHASSIS or self._by_two_points(slide):
             return None
-        return AxisInBody(f"{name} axis", *self._line(name, slide), self._normal(slide.body))
+        tail, head = ("", slide.along) if slide.along in DIRECTIONS else (slide.through, slide.along)
+        return AxisInBody(f"{name} axis", tail, head, self._normal(slide.body))
 
-    def _sliding(self, name: str, slide: Slide, point: str) -> OnAxis | OnLine | OnChassisLine:
+    def _sliding(self, name: str, slide: Slide, point: str) -> OnLine:
         """The rows of one point of a slide; the place of the first is what a travel drives."""
         input = self.travels.get(name) if point == slide.points[0] else None
-        if slide.body == CHASSIS:
+        axis, line, between = self._axis(name, slide), name, False
+        if axis is not None:
+            line = head = axis.axis
+        elif slide.body != CHASSIS:
+            line, head, between = f"line {slide.through} - {slide.along}", slide.along, True
+        else:
+            head = slide.along if slide.along in DIRECTIONS else f"line of the {name}"
+        place = f"place of {point} on the {line if axis is not None else name}"
+        if input:
             # Slides along directions of the car have one travel in one coordinate.
-            own = f"{input} travel" if slide.along in DIRECTIONS else f"{input} travel along the {name}"
-            place = own if input else f"place of {point} on the {name}"
-            line = self._line(name, slide)
-            return OnChassisLine(point, slide.through, name, *line, place, input is not None)
-        driven = f"{input} travel along the {name}"
-        axis = self._axis(name, slide)
-        if axis is None:
-            place = driven if input else f"place of {point} on the {name}"
-            return OnLine(point, slide.through, slide.along, place, input is not None)
-        place = driven if input else f"place of {point} on the {axis.axis}"
-        return OnAxis(point, slide.through, axis, place, input is not None)
+            of_the_car = slide.body == CHASSIS and slide.along in DIRECTIONS
+            place = f"{input} travel" if of_the_car else f"{input} travel along the {name}"
+        return OnLine(point, slide.through, line, head, place, "driven" if input else "free", between, axis)
 
     def _chassis_lines(self) -> Iterator[Constraint]:
         for name, slide in self.structure.slides.items():
@@ -403,7 +404,8 @@ class _Compiler:
 
     def _kept_from_turning(self, name: str, slide: Slide) -> Constraint:
         """The pair of edges of the two bodies that change most by a turn about the line."""
-        return ScalarProduct.kept_from_turning(name, *self.choices.edges[name])
+        edges = self.choices.edges[name]
+        return ScalarProduct(f"turn about the {name}", *edges, f"product of edges across the {name}")
 
     def _input(self, name: str, one: Input) -> tuple[list[Constraint], list[Drive]]:
         """Rows and drives of an input."""
@@ -411,20 +413,22 @@ class _Compiler:
         if one.kind == "arm":
             of, about, up = one["of"], one["about"], one["from"]
             value = f"{name} rise"
-            return [ScalarProduct.rise(of, about, up, value)], [ArmAngle(value, name, about, of, up)]
+            rise = ScalarProduct(f"rise of {of} over {about}", (of, about), (up, ""), "", value)
+            return [rise], [ArmAngle(value, name, about, of, up)]
         if one.kind == "height":
             point, along = one["height"], one["along"]
-            return [ScalarProduct.height(point, along, value)], [
-                Travel(value, name, point, point, along, False)
-            ]
+            drawn = f"drawn height of {point} {along}"
+            height = ScalarProduct(f"height of {point}", (point, ""), (along, ""), drawn, value)
+            return [height], [Travel(value, name, point, point, along, False)]
         if one.kind == "contact":
             inner, centre = one["contact"]
             assert self.wheel_radius is not None  # the scene is refused without
             rows = ContactHeight(inner, centre, "up", value, self.wheel_radius)
             return [rows], [Travel(value, name, centre, centre, "up", False)]
         if one.kind == "distance":
-            start, end = one["distance"]
-            return [ScalarProduct.distance(start, end, value)], [DistanceOf(value, name, start, end)]
+            start, end = ends = one["distance"]
+            square = ScalarProduct(f"distance of {start} and {end}", ends, ends, "", value)
+            return [square], [DistanceOf(value, name, start, end)]
         if one.kind == "turn":
             return self._turn(name, one)
         drives: list[Drive] = []
@@ -433,10 +437,10 @@ class _Compiler:
             line = self._sliding(slide_name, slide, slide.points[0])
             if any(drive.coordinate == line.place for drive in drives):
                 continue
-            if isinstance(line, OnChassisLine) and slide.along in DIRECTIONS:
+            if slide.body == CHASSIS and slide.along in DIRECTIONS:
                 drives.append(Travel(line.place, name, slide.through, slide.points[0], slide.along))
             else:
-                drives.append(TravelAlong(line.place, name, slide.points[0], line))
+                drives.append(TravelAlong(line.place, name, line))
         return [], drives
 
     def _turn(self, name: str, one: Input) -> tuple[list[Constraint], list[Drive]]:

@@ -42,7 +42,7 @@ CASES: dict[str, tuple[Drive, Equation, tuple[float, float, float]]] = {
     "arm": (ARM, lambda x: length_of(DRAWING) * mpmath.cos(x), (0.6, 2.5, 0.5)),
     "travel": (RACK, lambda x: x / UNIT, (-90.0, 90.0, 8.0)),
     "travel along a line": (
-        TravelAlong("place", "strut", "inner", OnLine("inner", "pivot", "ball", "place")),
+        TravelAlong("place", "strut", OnLine("inner", "pivot", "line", "ball", "place", between=True)),
         lambda x: x / (UNIT * length_of(DRAWING)),
         (200.0, 400.0, 8.0),
     ),

@@ -60,34 +60,26 @@ def test_doubled_link_is_over_determined_and_both_rows_are_named(car: SampleCar,
     assert set(caught.value.names) == {f"link {link.start} - {link.end}", f"link {link.end} - {link.start}"}
 
 
-@by_link
-def test_link_without_length_is_refused_by_name(car: SampleCar, link: Link) -> None:
+def test_a_point_that_is_missing_or_no_number_is_refused_by_name(table: Points) -> None:
+    for place in ((1.0, np.nan, 2.0), (1.0, 2.0)):
+        with pytest.raises(MechanismError, match=r"point 'strut_top'.*three finite numbers") as caught:
+            build_mechanism(COLLINEAR, table | {"strut_top": place}, AXES)
+        assert caught.value.names == ("strut_top",)
+    without = {name: place for name, place in table.items() if name != "strut_top"}
+    with pytest.raises(MechanismError, match="point 'strut_top' is missing; needed: "):
+        build_mechanism(COLLINEAR, without, AXES)
+
+
+@by_car
+def test_a_link_without_length_is_refused_by_name(car: SampleCar) -> None:
+    link = next(c for c in car.topology.constraints if isinstance(c, Link))
     points = {**car.points, link.start: car.points[link.end]}
     with pytest.raises(MechanismError, match=r"no length|lie in one line") as caught:
         build_mechanism(car.topology, points, AXES)
     assert {link.start, link.end} <= set(caught.value.names)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("name", ["strut_top", "tie_rod_outer", "wheel_centre"])
-def test_number_that_is_not_finite_is_refused_by_name(table: Points, name: str, bad: float) -> None:
-    with pytest.raises(MechanismError, match=f"point '{name}'.*three finite numbers") as caught:
-        build_mechanism(COLLINEAR, table | {name: (1.0, bad, 2.0)}, AXES)
-    assert caught.value.names == (name,)
-
-
-@by_car
-def test_missing_point_is_refused_by_name(car: SampleCar) -> None:
-    for name in car.topology.required_points:
-        points = {other: place for other, place in car.points.items() if other not in (name, "rack_centre")}
-        if name == car.topology.stand_ins["rack_centre"]:
-            points["rack_centre"] = car.points[name]
-        with pytest.raises(MechanismError, match=f"point '{name}' is missing; needed: ") as caught:
-            build_mechanism(car.topology, points, AXES)
-        assert all(point in str(caught.value) for point in car.topology.required_points)
-
-
-@pytest.mark.parametrize("size", [0.0, 1e-110, 1e110, 1e308])
+@pytest.mark.parametrize("size", [0.0, 1e-110, 1e308])
 def test_car_without_a_usable_size_is_refused(table: Points, size: float) -> None:
     points = {name: tuple(size * np.sign(place)) for name, place in table.items()}
     with pytest.raises(MechanismError, match="the points span"):
@@ -119,7 +111,7 @@ def test_origin_and_size_are_taken_off_without_rounding(
         assert np.abs(own).max() < 8.0  # the origin lies near the car, within four of its sizes
 
 
-@pytest.mark.parametrize("power", [-300, -40, -1, 1, 10, 300])
+@pytest.mark.parametrize("power", [-300, 1, 300])
 @pytest.mark.parametrize("method", [SERIES, NEWTON], ids=str)
 @by_car
 def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(

@@ -66,7 +66,7 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
     given = np.isin(instants, np.concatenate([model.times for model in models])) if models else [True]
     reached = np.flatnonzero(given)
     at = instants[reached[:: max(-(-len(reached) // run.frames), 1)]]
-    known = topology.with_defaults({name: np.array(p) for name, p in scene.mechanism.points.items()})
+    known = {name: np.array(p) for name, p in scene.mechanism.points.items()}
     points = [name for name in topology.points if name in known]
     number = {name: i for i, name in enumerate(points)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
