@@ -11,7 +11,7 @@ from pointcoord.errors import SweepError
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
-from pointcoord.sweeping.solving import Course, require_room
+from pointcoord.sweeping.solving import Course
 from pointcoord.sweeping.swept import Sweep
 
 MEMORY = 256e6  # bytes
@@ -69,15 +69,12 @@ def sweep_blocks(
     offsets: Mapping[str, ArrayLike] | None = None,
     grid: bool = False,
     memory: float = MEMORY,
-    reuse: bool = False,
 ) -> Iterator[Sweep]:
     """The same in blocks of consecutive designs: any number of them, in a block's memory.
 
     Args:
         memory: bytes that a block and solving it take at most; one that is still held when the next is asked
             for comes to that.
-        reuse: whether the numbers of a block are written over those of the block before: the quickest, for
-            who is done with a block when asking for the next.
     Raises:
         SweepError: as `sweep`; or one design takes more memory than that.
 
@@ -87,13 +84,18 @@ def sweep_blocks(
     2
     """
     course = Course.of(_designs(designs, points, offsets, grid))
-    require_room(course, memory)
+    needed = course.bytes_of_a_design + course.bytes_on_the_way
+    if needed > memory:
+        raise SweepError(
+            "memory",
+            f"is {memory / 1e6:.4g} MB, where one design of {len(course.scene.instants)} instants takes "
+            f"{needed / 1e6:.4g} MB",
+            "more memory, or fewer instants",
+        )
     # Half for the numbers of a block and half for what is solved together.
     solving = max(0.5 * memory, course.bytes_on_the_way)
-    left = memory - solving
-    size, count = int(max(left // course.bytes_of_a_design, 1)), course.designs.count
-    room = course.room(min(size, count)) if reuse else None
-    return (course.solve(first, min(first + size, count), solving, room) for first in range(0, count, size))
+    size, count = int(max((memory - solving) // course.bytes_of_a_design, 1)), course.designs.count
+    return (course.solve(first, min(first + size, count), solving) for first in range(0, count, size))
 
 
 def _designs(
