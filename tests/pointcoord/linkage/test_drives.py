@@ -156,18 +156,6 @@ def test_a_coordinate_tells_its_input(kind: str) -> None:
             assert told[0] == pytest.approx(x, rel=1e-13)
 
 
-def test_an_arm_turns_from_straight_up_to_straight_down() -> None:
-    arm = float(length_of(DRAWING))
-    for angle, rise in ((0.0, arm), (np.pi / 2, 0.0), (np.pi, -arm)):
-        (found,) = ARM.series(np.array([angle]), DRAWING)
-        assert found == pytest.approx(rise, abs=4.0 * U)
-    assert [float(x) for x in ARM.extremes(DRAWING)] == pytest.approx([arm, -arm], rel=4.0 * U)
-    # A rounding beyond the end is the end.
-    assert ARM.input_value(np.array([1.0001, -1.0001]) * arm, DRAWING).tolist() == [0.0, np.pi]
-    height = DRAWING.vectors["ball"][2] - DRAWING.vectors["pivot"][2]
-    assert float(ARM.drawn(DRAWING)) == height
-
-
 @pytest.mark.parametrize("angle", [-1e-3, 3.2, 90.0, 180.0, 181.0, 6.0, np.nan])
 def test_an_angle_that_no_rise_tells_is_refused_and_degrees_are_seen(angle: float) -> None:
     for law in (np.array([angle, 1.0]), np.array([[1.0, 2.0], [angle, 1.0], [-5.0, 0.0]])):

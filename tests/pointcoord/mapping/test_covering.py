@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from sample_cars import PAPER_STRUT, SampleCar, by_car
 
-from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, standing
+from pointcoord import NotCovered, Scene, kinematic_map, standing
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
@@ -139,10 +139,3 @@ def test_only_what_is_wanted_of_a_range_is_covered_and_all_of_that() -> None:
     assert wanted.any_in(cover.patches.low, cover.patches.high).all()
     assert (cover.patches.lookup.table[marks] >= 0).all()
     assert (cover.patches.lookup.table < 0).any()
-
-
-def test_a_range_that_the_drawing_cannot_reach_is_refused_with_what_stops_it() -> None:
-    scene = scene_of(PAPER_STRUT)
-    last = standing(scene).reach["rack"][1].value
-    with pytest.raises(AssemblyError, match=r"wanted .*rack"):
-        kinematic_map(scene, {"arm_angle": (1.6, 1.7), "rack": (last + 50.0, last + 60.0)})

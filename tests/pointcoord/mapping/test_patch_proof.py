@@ -72,33 +72,6 @@ def test_errors_of_a_root_are_within_their_bounds() -> None:
     assert all((np.abs(e - s) <= bound[0, ..., 0]).all() for e, s, bound in parts)
 
 
-def doubts() -> tuple[Array, Jet, Array]:
-    """What the centre lacks, (1, 5); what the series of w and v are off beside, and that by coefficients."""
-    off = np.zeros((1, EVERY.count, 5))
-    off[0, :, [W, V]] = 0.01 * np.random.default_rng(1).uniform(1.0, 2.0, (2, EVERY.count))
-    low = np.array([[0.0, 0.01, 0.02, 0.0, 0.0]])
-    return low, Jet.of(off, EVERY.exponents), off
-
-
-def test_what_is_left_of_data_that_are_off_as_far_as_they_may_be_is_bounded_and_hardly_less() -> None:
-    """Here w and v grow with the inputs, so that no term of the two is of another sign."""
-    low, data, off = doubts()
-    series = np.zeros((1, EVERY.count, 5))
-    series[0, 0] = CENTRE
-    series[0, 1:3, W], series[0, 1:3, V] = SLOPES, SLOPES[::-1]
-    factors = factorise(SQUARE.jacobian(series[:, 0]))
-    found = patch_proof._remaining(SQUARE, factors, series, LOW_ORDER, low, data)
-    whole = series[0] + off[0]
-    whole[0] += low[0]
-    w, v = (in_the_corner(whole[:, place]) for place in (W, V))
-    mixed = np.outer(w[1], v[1])
-    exact = w[0] * v[0] - 1.0, w[1] * v[0] + w[0] * v[1], w[2] * v[0] + mixed + mixed.T + w[0] * v[2]
-    # X = 1 / 2. What the centre lacks of both is taken twice, which is below one part in a thousand.
-    parts = list(zip(exact, found.parts, strict=True))
-    assert all((b[0, ..., 0] <= 0.501 * e).all() for e, b in parts)
-    assert all((0.5 * e <= b[0, ..., 0] * INFLATION).all() for e, b in parts)
-
-
 def test_how_far_the_jacobian_changes_is_bounded() -> None:
     """Whether I - X C_u is no more than is said where p, which is 0, is as far below as it may be."""
     factors, series = root()

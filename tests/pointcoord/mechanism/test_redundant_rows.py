@@ -17,7 +17,6 @@ from pointcoord import (
     solve_poses,
     sweep,
 )
-from pointcoord.mechanism.file import mechanism_file
 from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.simulation import scene_mechanism
 
@@ -196,8 +195,3 @@ def test_three_inputs_of_one_corner_are_named_before_anything_is_solved(driven: 
     assert "the inputs left.arm_angle, left.wheel_travel, rack drive more" in words
     assert "z of right.lower_ball_joint" in words.partition("leave free")[2]
     assert "right.wheel_travel" in words.partition("instead one of")[2]
-
-
-def test_the_first_inputs_of_an_axle_do_not_drive_one_corner_three_times() -> None:
-    driven = mechanism_file("axle").topology().required_inputs
-    assert driven == ("left.arm_angle", "left.rack", "right.arm_angle", "right.rack")

@@ -125,7 +125,10 @@ def _places(
     origin, still = readout.mechanism.origin, np.zeros((len(model.times), 3))
     drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
     shift = origin + sum(readout.chassis.states(model.times, 0), np.zeros(3))
-    held = {name: place + shift for name, place in readout.chassis.turned(model.times, [drawn])[0].items()}
+    held = {
+        name: place + shift
+        for name, place in readout.chassis.turned_by(readout.laws(model.times), [drawn])[0].items()
+    }
     return {**held, **model.numbers.get(PLACE, {})}
 
 
