@@ -70,15 +70,13 @@ class Course:
     """Designs ready to be solved: what they share is checked.
 
     Attributes:
-        laws: scenes with the laws of some designs each. which: by design, the number of its laws; None where
-            all designs share them.
+        scene: what the designs share, checked.
     """
 
     designs: Designs
+    scene: Scene
     plan: Plan
     axes: CarAxes
-    laws: tuple[Scene, ...]
-    which: Numbers | None
 
     @classmethod
     def of(cls, designs: Designs) -> Course:
@@ -87,31 +85,24 @@ class Course:
         Raises:
             SceneError: the scene was made wrong after it was read.
         """
-        if designs.scenes:
-            checked = [Scene.checked(scene, f"design {i}") for i, scene in enumerate(designs.scenes)]
-            by_text: dict[str, int] = {}
-            own = [by_text.setdefault(str(sorted(scene.inputs.items())), len(by_text)) for scene in checked]
-            laws = tuple(checked[own.index(i)] for i in range(len(by_text)))
-            which = np.array(own) if len(laws) > 1 else None
-        else:
-            laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
-        plan = plan_effects(laws[0].effects, None, laws[0].unreported_points)
+        scene = Scene.checked(designs.scene, designs.scene.title or "scene")
+        plan = plan_effects(scene.effects, None, scene.unreported_points)
         for effect in plan.computed:
             if effect.way:
                 problem = f"has {effect.name!r}, and a sweep takes no derivatives by an input"
-                raise SceneError(laws[0].title or "scene", "effects", problem, "effects without gradients")
-        return cls(designs, plan, laws[0].mechanism.axes, laws, which)
-
-    @property
-    def scene(self) -> Scene:
-        """What the designs share."""
-        return self.laws[0]
+                raise SceneError(scene.title or "scene", "effects", problem, "effects without gradients")
+        return cls(designs, scene, plan, scene.mechanism.axes)
 
     @cached_property
     def table(self) -> Table:
         """Where the numbers of a design are."""
         topology = self.scene.mechanism.topology
         return Table.of(self.plan, topology, self.plan.derivatives(topology))
+
+    def readout(self, mechanism: Mechanism) -> Readout:
+        """How the numbers of designs are read."""
+        chassis = ChassisMotion.of(mechanism, self.scene.functions)
+        return Readout(mechanism=mechanism, plan=self.plan, chassis=chassis, axes=self.axes)
 
     @property
     def bytes_of_a_design(self) -> int:
@@ -132,22 +123,13 @@ class Course:
         Args:
             memory: bytes for solving, beside the numbers.
         Raises:
-            InputOutOfRange, InputNotKnown: a law that all designs share.
+            InputOutOfRange: a law that has no meaning, whatever the design.
         """
         rows = np.empty((last - first, self.table.height, len(self.scene.instants)))
         block = _Block.empty(self, first, rows)
         together = max(int(min(TOGETHER, memory // self.bytes_on_the_way)), 1)
         for low in range(first, last, together):
-            numbers = np.arange(low, min(low + together, last))
-            which = np.zeros(len(numbers)) if self.which is None else self.which[numbers]
-            for law in np.unique(which).astype(int).tolist():
-                members = numbers[which == law]
-                try:
-                    block.solve(self.laws[law], members)
-                except PointcoordError as error:
-                    if self.which is None:
-                        raise
-                    block.fail(members, error)
+            block.solve(np.arange(low, min(low + together, last)))
         return block.sweep()
 
 
@@ -190,7 +172,7 @@ class _Block:
         assert (self.filled | ~solved).all()  # no failure is lost; what was not filled holds anything
         self.rows[~solved] = np.nan
         # Where no design has a mechanism, the scene's own must do to name what would have been computed.
-        readouts = self.readouts or [_readout(course, scene, scene_mechanism(scene))]
+        readouts = self.readouts or [course.readout(scene_mechanism(scene))]
         samples = readouts[0].named(scene.instants, self.rows)
         return Sweep(
             times=samples.times,
@@ -214,9 +196,10 @@ class _Block:
         """Which of them have not failed."""
         return ~np.isin(members, list(self.failures))
 
-    def solve(self, scene: Scene, members: Numbers) -> None:
-        """Solve designs, by their numbers, that share the laws of a scene."""
-        designs, topology = self.course.designs, scene.mechanism.topology
+    def solve(self, members: Numbers) -> None:
+        """Solve designs by their numbers."""
+        designs, scene = self.course.designs, self.course.scene
+        topology = scene.mechanism.topology
         points = designs.points(members)
         for place in np.flatnonzero(_suspicious(designs, points)).tolist():
             try:
@@ -237,7 +220,7 @@ class _Block:
             own = {name: place[places] for name, place in points.items()}
             for i, doubt in enumerate(doubts_of_drawings(topology, own, self.course.axes)):
                 self._note(f"doubt {i}", some, doubt.where, _of_a_drawing(doubt))
-            self._move(scene, some, mechanism)
+            self._move(some, mechanism)
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
         """The mechanism of all that have one, found in halves where some have none."""
@@ -271,18 +254,19 @@ class _Block:
             weight = 0.0 if weights is None else float(weights[place])
             self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
 
-    def _move(self, scene: Scene, members: Numbers, mechanism: Mechanism) -> None:
+    def _move(self, members: Numbers, mechanism: Mechanism) -> None:
         """Close, assemble and move designs, and read their numbers."""
-        course, time = self.course, scene.time
+        course, scene = self.course, self.course.scene
+        time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
         # Which values have a meaning is the same for every design.
         check_range(mechanism.taken(0), functions, scene.instants)
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
         solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
-        self._look_at_closing(scene, members, mechanism, solved.closed)
+        self._look_at_closing(members, mechanism, solved.closed)
         for each in solved.followed:
-            readout = _readout(course, scene, mechanism.taken(each.numbers))
+            readout = course.readout(mechanism.taken(each.numbers))
             self._fill(ByChain(readout, functions, each.chain), scene.instants, members[each.numbers])
         moved = members[solved.solved]
         if len(moved):
@@ -298,7 +282,7 @@ class _Block:
             else:
                 self.fail([members[place]], error)
 
-    def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
+    def _look_at_closing(self, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
         """Refuse drawings whose closing makes another car of them, and note how far the others move."""
         moved = np.max(list(movements(mechanism, closed).values()), axis=0)
         size, places = car_size(mechanism), members - self.first
@@ -309,7 +293,7 @@ class _Block:
         far = (moved > (1.0 - SLACK) * ALLOWED * size) & (not mechanism.topology.puts_in_place)
         for place in np.flatnonzero(far).tolist():
             try:
-                require_the_drawn_car(scene, closing(mechanism.taken(place), closed[place]))
+                require_the_drawn_car(self.course.scene, closing(mechanism.taken(place), closed[place]))
             except SceneError as error:
                 said = SceneError(f"design {members[place]}", error.key, error.problem, error.allowed)
                 self.fail([members[place]], said)
@@ -393,11 +377,6 @@ def _of_a_drawing(doubt: Doubt) -> Callable[[int], str]:
 
 def _always(words: str) -> Callable[[int], str]:
     return lambda place: words
-
-
-def _readout(course: Course, scene: Scene, mechanism: Mechanism) -> Readout:
-    chassis = ChassisMotion.of(mechanism, scene.functions)
-    return Readout(mechanism=mechanism, plan=course.plan, chassis=chassis, axes=course.axes)
 
 
 def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:

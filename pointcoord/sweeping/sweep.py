@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 from numpy.typing import ArrayLike
 
 from pointcoord.errors import SweepError
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
+from pointcoord.sweeping.designs import Designs, designs_of, grid_of
 from pointcoord.sweeping.solving import Course
 from pointcoord.sweeping.swept import Sweep
 
@@ -18,7 +18,7 @@ MEMORY = 256e6  # bytes
 
 
 def sweep(
-    designs: Scene | Sequence[Scene] | Designs,
+    designs: Scene | Designs,
     points: Mapping[str, ArrayLike] | None = None,
     *,
     offsets: Mapping[str, ArrayLike] | None = None,
@@ -27,8 +27,7 @@ def sweep(
     """Solve many designs of one suspension by point coordinates, at the instants of their scene.
 
     Args:
-        designs: the scene whose points vary; or scenes of one suspension, which may differ in their points
-            and in the laws of their inputs.
+        designs: the scene whose points vary, or designs of `designs_of` or `grid_of`.
         points: by point where each design draws it, (D, 3), mm, or by coordinate, such as lower_ball_joint.z,
             (D,). What is given once holds for all designs. A rack_centre that is drawn where tie_rod_inner is
             goes along with it.
@@ -63,7 +62,7 @@ def sweep(
 
 
 def sweep_blocks(
-    designs: Scene | Sequence[Scene] | Designs,
+    designs: Scene | Designs,
     points: Mapping[str, ArrayLike] | None = None,
     *,
     offsets: Mapping[str, ArrayLike] | None = None,
@@ -99,15 +98,15 @@ def sweep_blocks(
 
 
 def _designs(
-    designs: Scene | Sequence[Scene] | Designs,
+    designs: Scene | Designs,
     points: Mapping[str, ArrayLike] | None,
     offsets: Mapping[str, ArrayLike] | None,
     grid: bool,
 ) -> Designs:
-    if isinstance(designs, Designs | Sequence):
+    if isinstance(designs, Designs):
         if points or offsets or grid:
             raise SweepError("points", "are given beside designs that have their own", "a scene with these")
-        return designs if isinstance(designs, Designs) else designs_of_scenes(designs)
+        return designs
     require_scene(designs)
     return (grid_of if grid else designs_of)(designs, points, offsets)
 

@@ -11,7 +11,6 @@ from pointcoord import (
     MechanismError,
     Scene,
     SceneError,
-    SweepError,
     kinematic_map,
     simulate,
     solve_poses,
@@ -124,14 +123,6 @@ def test_a_violated_row_is_named_by_maps_poses_and_sweeps() -> None:
     assert list(swept.solved) == [True, False, False]
     reasons = [failure.reason for failure in swept.failures.values()]
     assert reasons == ["the mechanism locks", "the drawing is refused"]
-
-
-def test_scenes_of_other_tables_are_no_designs_of_one_sweep() -> None:
-    # Without a type their tables alone tell them apart.
-    other = four_bar().model_dump(exclude_none=True)
-    other["mechanism"]["inputs"]["reach"] = {"distance": ["a", "c"]}
-    with pytest.raises(SweepError, match="design 1: mechanism"):
-        sweep([four_bar(), Scene.from_mapping(other)])
 
 
 AXLE = """

@@ -227,18 +227,6 @@ def test_blocks_take_no_more_memory_than_is_stated(samples: int, count: int, mem
     assert peak <= 2.0 * memory
 
 
-def test_scenes_with_laws_of_their_own_are_one_sweep() -> None:
-    laws = ({"constant": 1.5}, {"polynomial": (1.5, 0.05)}, {"constant": 9.0}, {"constant": 1.5})
-    scenes = [STRUT.model_copy(update={"inputs": {**STRUT.inputs, "arm_angle": law}}) for law in laws]
-    found = sweep(scenes)
-    assert set(found.failures) == {2}
-    assert isinstance(found.failures[2].error, InputOutOfRange)
-    for number in (0, 1, 3):
-        assert_same_as_alone(found.of(number), scenes[number])
-    with pytest.raises(SweepError, match="design 1: tolerance is 1e-06"):
-        sweep([STRUT, STRUT.model_copy(update={"tolerance": 1e-6})])
-
-
 def test_a_law_that_all_share_is_refused_as_alone() -> None:
     scene = STRUT.model_copy(update={"inputs": {**STRUT.inputs, "arm_angle": {"constant": 9.0}}})
     with pytest.raises(InputOutOfRange, match="arm_angle"):
@@ -258,8 +246,6 @@ def test_what_makes_no_designs_is_said() -> None:
     ):
         with pytest.raises(SweepError, match=problem):
             sweep(STRUT, points, offsets=offsets)
-    with pytest.raises(SweepError, match="the list of scenes is empty"):
-        sweep([])
     with pytest.raises(SweepError, match="is no axis of a grid"):
         sweep(STRUT, {"strut_top": [[1.0, 2.0, 3.0]]}, grid=True)
     with pytest.raises(SweepError, match="use sweep_blocks"):
