@@ -30,8 +30,8 @@ def build_mechanism(
         directions: `up` and `right` of the car, unit vectors, shape (..., 3).
     Raises:
         UnknownName: a point or direction is missing or not part of the topology.
-        MechanismError: a coordinate is not finite, a link has no length, or the mechanism is under- or
-            over-determined; the message names the free direction or the redundant rows.
+        MechanismError: a coordinate is not finite, a link has no length, or the equations lose rank at the
+            drawing; the message names the free direction and the redundant rows.
     """
     mechanism = drawn_mechanism(topology, points, directions)
     _check_determined(mechanism)
@@ -124,43 +124,34 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
 
 def _check_determined(mechanism: Mechanism) -> None:
     topology, layout, system = mechanism.topology, mechanism.layout, mechanism.map
-    equations, unknowns = len(system.rows), system.unknowns
-    jacobian = system.jacobian(mechanism.drawn).reshape(-1, equations, unknowns)
-    worst = 0
-    if equations == unknowns:
-        singular = np.ravel(mechanism.drawn_factors.singular)
-        if not singular.any():
-            return
-        worst = int(np.argmax(singular))
-    jacobian = jacobian[worst]
-    free, redundant = null_directions(jacobian)
-    problems = []
-    names: list[str] = []
-    if len(free):
-        names = [layout.describe(i) for i in dominant(free)]
-        problems.append(f"free at the drawing: {', '.join(names)}")
-    if len(redundant):
-        rows = [topology.labels[i] for i in dominant(redundant)]
-        names += rows
-        problems.append(f"redundant or contradictory at the drawing: {', '.join(rows)}")
-    lost = dominant(redundant) if len(redundant) else []
-    inputs = [
+    assert len(system.rows) == system.unknowns  # a scene has as many inputs as freedoms
+    singular = np.ravel(mechanism.drawn_factors.singular)
+    if not singular.any():
+        return
+    jacobian = system.jacobian(mechanism.drawn).reshape(-1, system.unknowns, system.unknowns)
+    free, lost = (dominant(each) for each in null_directions(jacobian[int(np.argmax(singular))]))
+    coordinates, rows = [layout.describe(i) for i in free], [topology.labels[i] for i in lost]
+    driving = [
         drive.input
         for drive in topology.drives
         if any(layout.scalar(drive.coordinate) in system.reads[row] for row in lost)
     ]
-    if len(set(inputs)) > 1:
-        problems.append(f"these inputs may fight: {', '.join(dict.fromkeys(inputs))}")
-    advice = "; draw the points named here apart, and off one line or plane" if equations == unknowns else ""
-    state = "over" if equations > unknowns else "under" if equations < unknowns else "not"
+    inputs = list(dict.fromkeys(driving))
+    problems = [
+        *([f"free at the drawing: {', '.join(coordinates)}"] if free else []),
+        *([f"redundant or contradictory at the drawing: {', '.join(rows)}"] if lost else []),
+        *([f"these inputs may fight: {', '.join(inputs)}"] if len(inputs) > 1 else []),
+    ]
     raise MechanismError(
-        f"{topology.name} is {state}{'-' if state != 'not' else ' '}determined: {unknowns} unknowns, "
-        f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}{advice}",
-        names,
+        f"{topology.name} is not determined: {'; '.join(problems) or 'its equations lose rank there'}; "
+        "draw the points named here apart, and off one line or plane",
+        [*coordinates, *rows],
     )
 
 
 def dominant(directions: Array) -> list[int]:
     """Indices of the components that take part in null directions, at least a tenth of the largest."""
+    if not len(directions):
+        return []
     weight = np.abs(directions).max(axis=0)
     return [int(i) for i in np.flatnonzero(weight > 0.1 * weight.max())]
