@@ -14,7 +14,6 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, StrictBool, TypeAdapter, ValidationError
 
-from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.mechanism.faults import TableFault, fault_of, known_keys, no_such
 from pointcoord.mechanism.inputs import CHASSIS, Distinct, Input, Name, Names, Pair, Role, input_of, renamed
 
@@ -50,11 +49,6 @@ class Slide:
     along: Name
     body: Name = CHASSIS
     turns: StrictBool = True
-
-    @property
-    def named(self) -> tuple[str, ...]:
-        """Every point that it names."""
-        return (*self.points, self.through, *(() if self.along in DIRECTIONS else (self.along,)))
 
 
 def _slide(table: object) -> object:
@@ -138,17 +132,21 @@ class Structure:
         points: Mapping[str, str] | None = None,
         bodies: Mapping[str, str] | None = None,
         slides: Mapping[str, str] | None = None,
+        prefix: str = "",
     ) -> Structure:
-        """With other names; a name that comes twice in a body comes once then."""
+        """With other names; a name that comes twice in a body comes once then.
+
+        Args:
+            prefix: before the names of rods, inputs and roles.
+        """
         p, b, s = points or {}, bodies or {}, slides or {}
-        every = {**p, **b}
         return replace(
             self,
             bodies={
                 b.get(body, body): tuple(dict.fromkeys(renamed(names, p)))
                 for body, names in self.bodies.items()
             },
-            rods={rod: renamed(ends, p) for rod, ends in self.rods.items()},
+            rods={prefix + rod: renamed(ends, p) for rod, ends in self.rods.items()},
             slides={
                 s.get(name, name): replace(
                     slide,
@@ -160,25 +158,21 @@ class Structure:
                 for name, slide in self.slides.items()
             },
             inputs={
-                name: one.renamed({"point": p, "body": b, "slide": s}) for name, one in self.inputs.items()
+                prefix + name: one.renamed({"point": p, "body": b, "slide": s})
+                for name, one in self.inputs.items()
             },
-            roles={role: renamed(who, every) for role, who in self.roles.items()},
-            stand_ins={p.get(a, a): p.get(z, z) for a, z in self.stand_ins.items() if a not in p},
+            roles={prefix + role: renamed(who, {**p, **b}) for role, who in self.roles.items()},
+            # A point that another takes the place of is gone.
+            stand_ins={p.get(a, a): p.get(z, z) for a, z in self.stand_ins.items() if prefix or a not in p},
         )
 
     def prefixed(self, prefix: str) -> Structure:
         """With a prefix before every name but the chassis'."""
-        own = self.renamed(
+        return self.renamed(
             {n: prefix + n for n in self.points},
             {n: prefix + n for n in self.bodies if n != CHASSIS},
             {n: prefix + n for n in self.slides},
-        )
-        return replace(
-            own,
-            rods={prefix + n: ends for n, ends in own.rods.items()},
-            inputs={prefix + n: one for n, one in own.inputs.items()},
-            roles={prefix + n: who for n, who in own.roles.items()},
-            stand_ins={prefix + a: prefix + z for a, z in self.stand_ins.items()},
+            prefix,
         )
 
     def joined(self, other: Structure) -> Structure:
