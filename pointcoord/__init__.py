@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from pointcoord.results.samples import Samples
     from pointcoord.scene.scene_file import Scene, built_in_scenes
     from pointcoord.simulation import simulate
-    from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
+    from pointcoord.sweeping.designs import Designs, designs_of, grid_of
     from pointcoord.sweeping.sensitivity import Sensitivity, sensitivity
     from pointcoord.sweeping.sweep import sweep, sweep_blocks
     from pointcoord.sweeping.swept import Sweep
@@ -74,7 +74,6 @@ __all__ = [
     "WrongArgument",
     "built_in_scenes",
     "designs_of",
-    "designs_of_scenes",
     "grid_of",
     "kinematic_map",
     "sensitivity",
@@ -98,7 +97,6 @@ _MODULES = {
     "Sweep": "sweeping.swept",
     "built_in_scenes": "scene.scene_file",
     "designs_of": "sweeping.designs",
-    "designs_of_scenes": "sweeping.designs",
     "grid_of": "sweeping.designs",
     "kinematic_map": "mapping.kinematic_map",
     "sensitivity": "sweeping.sensitivity",

@@ -118,30 +118,22 @@ class ChassisMotion:
             )
         return np.moveaxis(series, -1, 0)
 
-    def turned(self, instants: Array, states: Sequence[Mapping[str, Array]]) -> Sequence[Mapping[str, Array]]:
-        """States of points after the turns of the car.
-
-        Args:
-            states: by time derivative, of points in the chassis' frame, each (..., N, 3), mm from the
-                mechanism's origin; those of a point up to its highest.
-        Raises:
-            InputOutOfRange: as `states`.
-        """
-        laws = {name: list(self.law(name, instants, len(states) - 1)) for name in self.turning}
-        return self.turned_by(laws, states)
-
     def turned_by(
         self, laws: Mapping[str, Sequence[Array]], states: Sequence[Mapping[str, Array]]
     ) -> Sequence[Mapping[str, Array]]:
-        """The same by inputs whose values and time derivatives are given, each (N,), rad; in their order."""
+        """States of points after the turns of the car, in their order.
+
+        Args:
+            laws: by input its value and its time derivatives, each (N,), rad.
+            states: by time derivative, of points in the chassis' frame, each (..., N, 3), mm from the
+                mechanism's origin; those of a point up to its highest.
+        """
         for name in (name for name in self.centres if name in laws):
             vectors = self.directions[name], self.centres[name]
             k, about = (v if v.ndim == 1 else v[..., None, :] for v in vectors)
             angle, *rates = (law[..., None] for law in laws[name])
             slopes = _slopes(np.cos(angle), np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2, rates)
-            jets = {p: [state[p] for state in states if p in state] for p in states[0]}
-            found = {p: _turned(jet, about, partial(_about, k), slopes) for p, jet in jets.items()}
-            states = [{p: jet[d] for p, jet in found.items() if d < len(jet)} for d in range(len(states))]
+            states = _turned(states, about, partial(_about, k), slopes)
         return states
 
     def taken_back(self, instants: Array, places: Array) -> Array:
@@ -191,10 +183,7 @@ class ChassisMotion:
             angle, *rates = ((-law if back else law).spread_out for law in laws[name])
             cosine, sine = within_a_turn(angle).cosine_sine()
             slopes = _slopes(cosine, sine, Enclosed.of(1.0) - cosine, rates)
-            # Every point has all derivatives here.
-            jets = {p: [state[p] for state in points] for p in points[0]}
-            found = {p: _turned(jet, about, partial(_about_exactly, k), slopes) for p, jet in jets.items()}
-            points = [{p: jet[d] for p, jet in found.items()} for d in range(len(points))]
+            points = _turned(points, about, partial(_about_exactly, k), slopes)
         return points
 
     def _along(self, name: str) -> Enclosed:
@@ -205,27 +194,28 @@ class ChassisMotion:
 
 
 def _turned(
-    jet: Sequence[V],
+    states: Sequence[Mapping[str, V]],
     about: V,
     axes: Callable[[V], tuple[V, V]],
     slopes: Sequence[tuple[V, V]],
-) -> list[V]:
-    """A point and its time derivatives after a turn.
+) -> list[dict[str, V]]:
+    """Points and their time derivatives after a turn.
 
     Args:
         axes: k x v and k (k . v) - v of a vector v.
         slopes: by derivative, those of the angle's sine and versine.
     """
-    arm: list[V] = list(jet)
-    arm[0] = jet[0] - about
-    parts = [axes(v) for v in arm]
-    found: list[V] = []
-    for state, orders in zip(jet, LEIBNIZ, strict=False):
-        total = state
-        for order in orders:
-            (sine, versine), (one, other) = slopes[order], parts[len(found) - order]
-            total = total + one * sine + other * versine
-        found.append(total)
+    found: list[dict[str, V]] = [{} for _ in states]
+    for point, place in states[0].items():
+        jet: list[V] = [state[point] for state in states if point in state]
+        arm = list(jet)
+        arm[0] = place - about
+        parts = [axes(v) for v in arm]
+        for d, (total, orders) in enumerate(zip(jet, LEIBNIZ, strict=False)):
+            for order in orders:
+                (sine, versine), (one, other) = slopes[order], parts[d - order]
+                total = total + one * sine + other * versine
+            found[d][point] = total
     return found
 
 

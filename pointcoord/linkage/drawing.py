@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.double_double import Pair
-from pointcoord.numerics.vectors import lengths
+from pointcoord.errors import MechanismError
+from pointcoord.numerics.double_double import Pair, exact_square, pair_root, two_sum
 
 Array = NDArray[np.float64]
 
@@ -22,26 +23,55 @@ class Drawing:
     Attributes:
         vectors: points, and the car's directions.
         unit: the length that is 1, mm.
-        lacks: what the directions that are products of the user's lack by rounding.
+        lacks: what the directions that are made of the user's numbers lack by rounding.
     """
 
     vectors: dict[str, Array]
     unit: Array
     lacks: dict[str, Array] = field(default_factory=dict)
 
-    def pair(self, name: str) -> Pair:
-        """A point or a direction as high and low."""
-        high = self.vectors[name]
-        return high, self.lacks.get(name, np.zeros_like(high))
+    def edge(self, head: str, tail: str = "") -> Pair:
+        """From the point `tail` to the point `head` as high and low; a direction where there is no tail."""
+        high = self.vectors[head]
+        if tail:
+            return two_sum(high, -self.vectors[tail])
+        return high, self.lacks.get(head, np.zeros_like(high))
+
+    def axis(self, tail: str, head: str) -> Pair:
+        """The drawn direction from tail to head, as high and low, of a length between 1/2 and 1.
+
+        Without a tail, half the unit vector along a direction of the car.
+
+        Raises:
+            MechanismError: both points are in one place.
+        """
+        scale = self.scale(tail, head)[..., None] if tail else 0.5
+        high, low = self.edge(head, tail)
+        return high * scale, low * scale
+
+    def scale(self, tail: str, head: str) -> Array:
+        """The power of two that brings the drawn distance between 1/2 and 1, shape (...,).
+
+        Raises:
+            MechanismError: both points are in one place.
+        """
+        length = self.distance(tail, head)
+        if not (length > 0.0).all():
+            raise no_length(tail, head)
+        return np.ldexp(1.0, -np.frexp(length)[1])
 
     def distance(self, start: str, end: str) -> Array:
         """Drawn distance between two points, shape (...,)."""
-        if (start, end) not in self._distances:
-            self._distances[start, end] = lengths(self.vectors[start] - self.vectors[end])
-        return self._distances[start, end]
+        return self.length(start, end)[0]
+
+    def length(self, start: str, end: str) -> Pair:
+        """The same as high and low."""
+        if (start, end) not in self._lengths:
+            self._lengths[start, end] = pair_root(exact_square(self.vectors[start], self.vectors[end]))
+        return self._lengths[start, end]
 
     @cached_property
-    def _distances(self) -> dict[tuple[str, str], Array]:
+    def _lengths(self) -> dict[tuple[str, str], Pair]:
         return {}
 
     def stacked(self, names: Sequence[str]) -> Array:
@@ -56,19 +86,23 @@ class Drawing:
         return np.asarray(np.sum(difference * self.vectors[direction], axis=-1))
 
 
-@dataclass(frozen=True)
-class Placed:
-    """Coordinates of y that a constraint reads off the drawing.
+class Placed(NamedTuple):
+    """A coordinate, or the three of a vector, that a constraint reads off the drawing: (...,) or (..., 3).
 
     Attributes:
-        places: their indices in y.
-        values: shape (..., len(places)).
-        lacks: what the values lack by rounding, at most 5 u of themselves; zero for unknowns, which the
-            solver improves anyway.
+        values: as computed.
+        lacks: what they lack by rounding, at most 5 u of themselves; zero for unknowns, which the solver
+            improves anyway.
         doubt: how uncertain values + lacks still are.
     """
 
-    places: tuple[int, ...]
     values: Array
     lacks: Array | float = 0.0
     doubt: Array | float = 0.0
+
+
+def no_length(start: str, end: str) -> MechanismError:
+    """The error for two points in one place that a length or a line needs apart."""
+    return MechanismError(
+        f"link {start} - {end} has no length: both points are at the same place; move one", [start, end]
+    )

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
-from pointcoord.linkage.constraints.on_line import Sliding
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.numerics.double_double import Pair, exact_square, pair_quotient, two_product
+from pointcoord.numerics.double_double import Pair, pair_quotient, two_product
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine_and_sine
@@ -35,24 +35,22 @@ class Function:
 
     Attributes:
         rounded: how many units of rounding its computed value is off, at most.
+        of_a_term: by how many more each term of its series over a range is off than the one before.
     """
 
     rounded = 0.0
+    of_a_term = 0.0
 
     def series(self, value: Array) -> Array:
         """The series of f(x) from that of x."""
         return value
 
-    def over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Sequence[Array]]:
-        """Its series for x = middle + half s.
+    def beyond(self, half: Array, order: int) -> Sequence[Array]:
+        """What its series in s up to an order leaves out of f(middle + half s), and of two derivatives by s.
 
-        Returns:
-            The terms, (..., order + 1), how many units of rounding each is off, and what is left out of the
-            value and of its first and second derivative where |s| <= 1, each (...).
+        Each (...), where |s| <= 1.
         """
-        terms = np.zeros((*np.shape(middle), order + 1))
-        terms[..., 0], terms[..., 1] = middle, half
-        return terms, np.zeros(order + 1), [np.zeros(np.shape(middle))] * 3
+        return [np.zeros(np.shape(half))] * 3
 
     def change(self, value: Array, off: Array | float) -> Array:
         """By how much f changes at most where x does by `off`, at a value of f."""
@@ -72,19 +70,14 @@ class Function:
 
 
 class Square(Function):
-    """f = x^2 for x > 0."""
+    """f = x^2 for x > 0; its series over a range has three terms, each rounded once."""
 
     rounded = 1.0
 
     def series(self, value: Array) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):
-            return _product(value, value)
-
-    def over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Sequence[Array]]:
-        """Three terms, each rounded once."""
-        terms = np.zeros((*np.shape(middle), order + 1))
-        terms[..., 0], terms[..., 1], terms[..., 2] = middle * middle, 2.0 * middle * half, half * half
-        return terms, np.ones(order + 1), [np.zeros(np.shape(middle))] * 3
+            terms = [np.sum(value[..., : k + 1] * value[..., k::-1], axis=-1) for k in range(value.shape[-1])]
+        return np.stack(terms, axis=-1)
 
     def change(self, value: Array, off: Array | float) -> Array:
         """(2 x + off) off."""
@@ -108,26 +101,22 @@ class Circle(Function):
 
     quarter: int
     rounded = 2.0  # 1 unit in the last place, at worst
+    of_a_term = 2.0  # of the recursion only half / k times the term before is left: a product and a quotient
 
     def series(self, value: Array) -> Array:
         with np.errstate(over="ignore", invalid="ignore"):
             return cosine_and_sine(value)[self.quarter]
 
-    def over(self, middle: Array, half: Array, order: int) -> tuple[Array, Array, Sequence[Array]]:
-        """Terms half^k / k! cos(middle + k pi / 2 - quarter pi / 2), |half| <= order, order 3 or more.
+    def beyond(self, half: Array, order: int) -> Sequence[Array]:
+        """Of terms half^k / k! cos(middle + k pi / 2), |half| <= order.
 
-        A power, a quotient and two products round one by at most 2 k + 2 units. What is left out falls faster
-        than the powers of half / (order + 1), which is below 1.
+        What is left out falls faster than the powers of half / (order + 1), which is below 1.
         """
-        middle, half, k = np.asarray(middle), np.asarray(half), np.arange(order + 1)
-        turned = np.stack([np.cos(middle), -np.sin(middle), -np.cos(middle), np.sin(middle)], axis=-1)
-        factorials = np.cumprod(np.maximum(k, 1), dtype=float)
-        terms = half[..., None] ** k / factorials * turned[..., (k + 3 * self.quarter) % 4]
-        beyond: list[Array] = []
+        found: list[Array] = []
         for d in range(3):
             first = half ** (order + 1) / float(np.prod(np.arange(1.0, order + 2.0 - d)))
-            beyond.append(1.01 * first / (1.0 - half / (order + 2.0 - d)))
-        return np.asarray(terms), np.asarray(2.0 * k + 2.0), beyond
+            found.append(1.01 * first / (1.0 - half / (order + 2.0 - d)))
+        return found
 
     def enclosed(self, law: Sequence[Enclosed]) -> tuple[Enclosed, Enclosed, Enclosed]:
         """f, f' x' and f' x'' + f'' x'^2."""
@@ -144,12 +133,6 @@ class Circle(Function):
     def extremes(self, farthest: Array) -> tuple[Array, Array]:
         one = np.ones_like(farthest)
         return one, -one
-
-
-def _product(a: Array, b: Array) -> Array:
-    """The series of a product."""
-    terms = [np.sum(a[..., : k + 1] * b[..., k::-1], axis=-1) for k in range(a.shape[-1])]
-    return np.stack(terms, axis=-1)
 
 
 def within_a_turn(angle: Enclosed) -> Enclosed:
@@ -169,7 +152,6 @@ class Drive(ABC):
     Attributes:
         coordinate: name of the known coordinate. input: name of the input.
         unit: of the input, rad or mm.
-        pushes: the point that it slides, inboard of what is linked to it; empty if it slides none.
         function: what the input goes through.
         exact: whether s is a power of two, so that a product with it rounds nothing.
     """
@@ -186,7 +168,7 @@ class Drive(ABC):
 
     @property
     def pushes(self) -> str:
-        """None unless a kind says so."""
+        """The point that it slides, inboard of what is linked to it; empty if it slides none."""
         return ""
 
     @property
@@ -195,12 +177,8 @@ class Drive(ABC):
         """Where the input is positive, in words."""
 
     @abstractmethod
-    def scale(self, drawing: Drawing) -> Array:
-        """s, shape (...)."""
-
-    def scale_lacks(self, drawing: Drawing) -> Array:
-        """What s lacks by rounding, in parts of it, (...)."""
-        return np.zeros_like(drawing.unit)
+    def scale(self, drawing: Drawing) -> Pair:
+        """s as high and low, shape (...)."""
 
     @abstractmethod
     def drawn(self, drawing: Drawing) -> Array:
@@ -212,7 +190,7 @@ class Drive(ABC):
         Raises:
             InputOutOfRange: a value that has no meaning for this kind.
         """
-        return np.asarray(np.asarray(self.scale(drawing))[..., None] * self.function.series(value))
+        return np.asarray(self.scale(drawing)[0][..., None] * self.function.series(value))
 
     def series_over(
         self, middle: Array, half: Array, order: int, drawing: Drawing
@@ -220,24 +198,25 @@ class Drive(ABC):
         """The coordinate's series where the input is middle + half s, for all of |s| <= 1.
 
         Args:
-            middle, half: shape (...).
+            middle, half: shape (...). order: 3 or more.
         Returns:
             The series, shape (..., order + 1), and how far it and its first and second derivative by s may be
             off anywhere there, each (...); what `rounding` says of its first term is lacking apart from that.
         """
-        terms, units, beyond = self.function.over(middle, half, order)
-        scale = np.asarray(self.scale(drawing))
-        series = scale[..., None] * terms
+        value, k = np.zeros((*np.shape(middle), order + 1)), np.arange(order + 1)
+        value[..., 0], value[..., 1] = middle, half
+        series, scale = self.series(value, drawing), self.scale(drawing)[0]
         # s is off by at most 2 units, and the product by one.
-        rounded = _units(units + (0.0 if self.exact else 3.0)) * np.abs(series)
+        first = self.function.rounded + (0.0 if self.exact else 3.0)
+        rounded = _units(first + self.function.of_a_term * k.astype(float)) * np.abs(series)
         rounded[..., 0] = self.rounding(series[..., 0], drawing, 0.0)[1]
-        k = np.arange(order + 1)
-        falling = (np.ones(order + 1), k, k * (k - 1.0))
-        value, rate, bend = (
-            (rounded * weights).sum(axis=-1) + scale * left
-            for weights, left in zip(falling, beyond, strict=True)
+        value_off, rate_off, bend_off = (
+            (rounded * falling).sum(axis=-1) + scale * left
+            for falling, left in zip(
+                (np.ones(order + 1), k, k * (k - 1.0)), self.function.beyond(half, order), strict=True
+            )
         )
-        return series, (value, rate, bend)
+        return series, (value_off, rate_off, bend_off)
 
     def rounding(self, coordinate: Array, drawing: Drawing, law: Array | float) -> tuple[Array, Array]:
         """What the computed coordinate of an input lacks, and how uncertain it is with that added.
@@ -247,12 +226,12 @@ class Drive(ABC):
         Args:
             law: how far the input's value may be off, in its unit.
         """
-        scale = self.scale(drawing)
+        scale, rest = self.scale(drawing)
         change = scale * self.function.change(coordinate / scale, law)
         if self.exact and not self.function.rounded:
             return np.zeros_like(coordinate), change
         units = self.function.rounded + (0.0 if self.exact else 1.0)
-        return coordinate * self.scale_lacks(drawing), _units(units) * np.abs(coordinate) + 1.01 * change
+        return coordinate * (rest / scale), _units(units) * np.abs(coordinate) + 1.01 * change
 
     def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
         """Where the coordinate and its first and second derivative exactly are.
@@ -261,26 +240,21 @@ class Drive(ABC):
             law: the input's value, rate and acceleration, each (N,), in its unit per s^d.
         """
         value, rate, bend = self.function.enclosed(law)
-        scale = self.scale(drawing)
+        scale, rest = self.scale(drawing)
         if self.exact:
             return value.scaled(scale), rate.scaled(scale), bend.scaled(scale)
         # What is left of s is of the order of u^2, and plain doubles round it once or twice.
         size = np.abs(scale)
-        whole = Enclosed.of(
-            scale,
-            scale * self.scale_lacks(drawing),
-            256 * UNIT_ROUNDOFF**2 * size,
-            2 * UNIT_ROUNDOFF * size,
-        )
+        whole = Enclosed.of(scale, rest, 256 * UNIT_ROUNDOFF**2 * size, 2 * UNIT_ROUNDOFF * size)
         return value * whole, rate * whole, bend * whole
 
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The input that gives a coordinate."""
-        return self.function.input_of(coordinate / self.scale(drawing))
+        return self.function.input_of(coordinate / self.scale(drawing)[0])
 
     def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
         """Two values of the coordinate beyond which no input makes sense, each of shape (...)."""
-        scale = self.scale(drawing)
+        scale = self.scale(drawing)[0]
         one, other = self.function.extremes(EXTREME * drawing.unit)
         return scale * one, scale * other
 
@@ -288,6 +262,10 @@ class Drive(ABC):
 def _units(count: Array | float) -> Array:
     """So many roundings in a row; none of none."""
     return np.where(np.asarray(count) > 0.0, np.asarray(count) + 0.01, 0.0) * UNIT_ROUNDOFF
+
+
+def _exactly(scale: Array) -> Pair:
+    return np.asarray(scale), np.zeros_like(scale)
 
 
 @dataclass(frozen=True)
@@ -311,15 +289,8 @@ class ArmAngle(Drive):
     def sign(self) -> str:
         return f"from the arm pointing {self.direction}"
 
-    def scale(self, drawing: Drawing) -> Array:
-        return drawing.distance(self.pivot, self.point)
-
-    def scale_lacks(self, drawing: Drawing) -> Array:
-        """What the root of the exact square is beside it."""
-        length = self.scale(drawing)
-        square, rest = exact_square(drawing.vectors[self.point], drawing.vectors[self.pivot])
-        own, own_rest = two_product(length, length)
-        return np.asarray(((square - own) + (rest - own_rest)) / (2.0 * length * length))
+    def scale(self, drawing: Drawing) -> Pair:
+        return drawing.length(self.pivot, self.point)
 
     def drawn(self, drawing: Drawing) -> Array:
         return drawing.along(self.pivot, self.point, self.direction)
@@ -360,12 +331,11 @@ class Travel(Drive):
 
     @property
     def pushes(self) -> str:
-        """The point that slides."""
         return self.point if self.slides else ""
 
-    def scale(self, drawing: Drawing) -> Array:
+    def scale(self, drawing: Drawing) -> Pair:
         """1 / unit."""
-        return np.asarray(1.0 / drawing.unit)
+        return _exactly(1.0 / drawing.unit)
 
     def drawn(self, drawing: Drawing) -> Array:
         """The travel at which the drawn point stands."""
@@ -381,26 +351,17 @@ class TravelAlong(Drive):
 
     coordinate: str
     input: str
-    point: str
-    line: Sliding
+    line: OnLine
 
     exact = False
 
     @property
     def sign(self) -> str:
-        return f"along the {self.line.name}"
+        return f"along the {self.line.line}"
 
-    def _inverse(self, drawing: Drawing) -> Pair:
-        one = 1.0 / drawing.unit, np.zeros_like(drawing.unit)
-        return pair_quotient(one, self.line.length(drawing))
-
-    def scale(self, drawing: Drawing) -> Array:
+    def scale(self, drawing: Drawing) -> Pair:
         """1 / (unit |d|)."""
-        return self._inverse(drawing)[0]
-
-    def scale_lacks(self, drawing: Drawing) -> Array:
-        inverse, rest = self._inverse(drawing)
-        return np.asarray(rest / inverse)
+        return pair_quotient(_exactly(1.0 / drawing.unit), self.line.length(drawing))
 
     def drawn(self, drawing: Drawing) -> Array:
         return self.line.foot(drawing)
@@ -421,9 +382,9 @@ class DistanceOf(Drive):
     def sign(self) -> str:
         return "apart"
 
-    def scale(self, drawing: Drawing) -> Array:
+    def scale(self, drawing: Drawing) -> Pair:
         """1 / unit^2."""
-        return np.asarray(1.0 / drawing.unit**2)
+        return _exactly(1.0 / drawing.unit**2)
 
     def drawn(self, drawing: Drawing) -> Array:
         return np.asarray(drawing.distance(self.start, self.end) ** 2)
@@ -457,8 +418,8 @@ class TurnedBy(Drive):
     def sign(self) -> str:
         return "right-handed about the hinge"
 
-    def scale(self, drawing: Drawing) -> Array:
-        return np.ones_like(drawing.unit)
+    def scale(self, drawing: Drawing) -> Pair:
+        return _exactly(np.ones_like(drawing.unit))
 
     def drawn(self, drawing: Drawing) -> Array:
         return (0.0 if self.quarter else 1.0) * np.ones_like(drawing.unit)

@@ -26,13 +26,12 @@ def build_mechanism(
     """Hardpoints put on a topology, checked.
 
     Args:
-        points: every point of the topology, shape (..., 3), mm; where one of the chassis is left out that may
-            be, the point that stands in for it is taken.
+        points: every point of the topology, shape (..., 3), mm.
         directions: `up` and `right` of the car, unit vectors, shape (..., 3).
     Raises:
         UnknownName: a point or direction is missing or not part of the topology.
-        MechanismError: a coordinate is not finite, a link has no length, or the mechanism is under- or
-            over-determined; the message names the free direction or the redundant rows.
+        MechanismError: a coordinate is not finite, a link has no length, or the equations lose rank at the
+            drawing; the message names the free direction and the redundant rows.
     """
     mechanism = drawn_mechanism(topology, points, directions)
     _check_determined(mechanism)
@@ -45,11 +44,9 @@ def drawn_mechanism(
     """The same without a check that its equations have one solution."""
     _check_names(points, topology.points, "point")
     _check_names(directions, AXES, "direction")
-    located = _checked(topology.with_defaults(points), topology.points, "point")
-    named = car_directions(**_checked(directions, AXES, "direction"))
-    turned = {name: named[name][0] for name in dict.fromkeys((*AXES, *topology.directions))}
-    batched = any(place.ndim > 1 for place in located.values())
-    stack = np.stack(np.broadcast_arrays(*located.values()), -2) if batched else np.array([*located.values()])
+    located = _checked(points, topology.points, "point")
+    car = car_directions(**_checked(directions, AXES, "direction"))
+    stack = np.stack(np.broadcast_arrays(*located.values()), axis=-2)
     with np.errstate(over="ignore", invalid="ignore"):
         extent = (stack.max(axis=-2) - stack.min(axis=-2)).max(axis=-1)
     if not (np.isfinite(extent).all() and (extent > 1e-100).all() and (extent < 1e100).all()):
@@ -61,12 +58,13 @@ def drawn_mechanism(
     # never less than three quarters of a nonzero origin's, and never on the other side of zero.
     grid = 4.0 * unit[..., None]
     origin = np.trunc(stack.mean(axis=-2) / grid) * grid + 0.0
-    if batched:
-        vectors = {name: (p - origin) / unit[..., None] for name, p in located.items()} | turned
-    else:
-        vectors = dict(zip(located, (stack - origin) / unit, strict=True)) | turned
-    lows = {name: named[name][1] for name in turned if named[name][1].any()}
-    drawing = Drawing(vectors, unit, lows)
+    scaled = (stack - origin[..., None, :]) / unit[..., None, None]
+    vectors = {name: np.ascontiguousarray(scaled[..., i, :]) for i, name in enumerate(located)}
+    vectors |= {name: car[name][0] for name in AXES}
+    drawing = Drawing(vectors, unit)
+    along = {n: drawing.axis(*ends) if ends[0] else car[ends[1]] for n, ends in topology.directions.items()}
+    vectors |= {name: high for name, (high, _) in along.items()}
+    drawing = Drawing(vectors, unit, {name: low for name, (_, low) in along.items() if low.any()})
     drawn, lacks, doubt = _drawn(topology, drawing)
     return Mechanism(
         topology=topology,
@@ -112,16 +110,13 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     for name in (*layout.moving, *layout.chassis, *layout.directions):
         y[..., layout.span(name)] = drawing.vectors[name]
         if name in drawing.lacks:
-            # Two products and their difference, taken twice as exactly.
+            # Two products and their difference, taken twice as exactly, or a difference of points.
             lacks[..., layout.span(name)] = drawing.lacks[name]
             doubt[..., layout.span(name)] = PAIRS
-    for kind in topology.kinds:
-        for own in type(kind[0]).placed_together(kind, layout, drawing):
-            places = list(own.places)
-            y[..., places] = own.values
-            for table, values in ((lacks, own.lacks), (doubt, own.doubt)):
-                if not isinstance(values, float) or values:
-                    table[..., places] = values
+    for constraint in topology.constraints:
+        for name, own in constraint.placed(drawing).items():
+            place = layout.place(name)
+            y[..., place], lacks[..., place], doubt[..., place] = own
     for drive, place in zip(topology.drives, topology.driven, strict=True):
         y[..., place] = drive.drawn(drawing)
     return y, lacks, doubt
@@ -129,43 +124,34 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
 
 def _check_determined(mechanism: Mechanism) -> None:
     topology, layout, system = mechanism.topology, mechanism.layout, mechanism.map
-    equations, unknowns = len(system.rows), system.unknowns
-    jacobian = system.jacobian(mechanism.drawn).reshape(-1, equations, unknowns)
-    worst = 0
-    if equations == unknowns:
-        singular = np.ravel(mechanism.drawn_factors.singular)
-        if not singular.any():
-            return
-        worst = int(np.argmax(singular))
-    jacobian = jacobian[worst]
-    free, redundant = null_directions(jacobian)
-    problems = []
-    names: list[str] = []
-    if len(free):
-        names = [layout.describe(i) for i in dominant(free)]
-        problems.append(f"free at the drawing: {', '.join(names)}")
-    if len(redundant):
-        rows = [topology.labels[i] for i in dominant(redundant)]
-        names += rows
-        problems.append(f"redundant or contradictory at the drawing: {', '.join(rows)}")
-    lost = dominant(redundant) if len(redundant) else []
-    inputs = [
+    assert len(system.rows) == system.unknowns  # a scene has as many inputs as freedoms
+    singular = np.ravel(mechanism.drawn_factors.singular)
+    if not singular.any():
+        return
+    jacobian = system.jacobian(mechanism.drawn).reshape(-1, system.unknowns, system.unknowns)
+    free, lost = (dominant(each) for each in null_directions(jacobian[int(np.argmax(singular))]))
+    coordinates, rows = [layout.describe(i) for i in free], [topology.labels[i] for i in lost]
+    driving = [
         drive.input
         for drive in topology.drives
         if any(layout.scalar(drive.coordinate) in system.reads[row] for row in lost)
     ]
-    if len(set(inputs)) > 1:
-        problems.append(f"these inputs may fight: {', '.join(dict.fromkeys(inputs))}")
-    advice = "; draw the points named here apart, and off one line or plane" if equations == unknowns else ""
-    state = "over" if equations > unknowns else "under" if equations < unknowns else "not"
+    inputs = list(dict.fromkeys(driving))
+    problems = [
+        *([f"free at the drawing: {', '.join(coordinates)}"] if free else []),
+        *([f"redundant or contradictory at the drawing: {', '.join(rows)}"] if lost else []),
+        *([f"these inputs may fight: {', '.join(inputs)}"] if len(inputs) > 1 else []),
+    ]
     raise MechanismError(
-        f"{topology.name} is {state}{'-' if state != 'not' else ' '}determined: {unknowns} unknowns, "
-        f"{equations} equations; {'; '.join(problems) or 'its equations lose rank at the drawing'}{advice}",
-        names,
+        f"{topology.name} is not determined: {'; '.join(problems) or 'its equations lose rank there'}; "
+        "draw the points named here apart, and off one line or plane",
+        [*coordinates, *rows],
     )
 
 
 def dominant(directions: Array) -> list[int]:
     """Indices of the components that take part in null directions, at least a tenth of the largest."""
+    if not len(directions):
+        return []
     weight = np.abs(directions).max(axis=0)
     return [int(i) for i in np.flatnonzero(weight > 0.1 * weight.max())]

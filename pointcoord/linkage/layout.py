@@ -2,8 +2,7 @@
 
 Unknown ones first: three per moving point, three per vector of a body, then one per slide. Known ones after
 them: the constants 0 and 1, three per chassis point, three per direction, one per driven coordinate, one per
-constant of the drawing, one squared length per link. All lengths are in units of the mechanism's size,
-measured from its own origin.
+constant of the drawing. All lengths are in units of the mechanism's size, measured from its own origin.
 """
 
 from __future__ import annotations
@@ -25,7 +24,6 @@ class Layout:
     chassis: tuple[str, ...]
     directions: tuple[str, ...]
     driven: tuple[str, ...]
-    squared_lengths: tuple[tuple[str, str], ...]
     vectors: tuple[str, ...] = ()
     constants: tuple[str, ...] = ()
 
@@ -45,67 +43,63 @@ class Layout:
         return self.unknowns + 1
 
     @cached_property
-    def _vectors(self) -> dict[str, int]:
-        first = {name: 3 * i for i, name in enumerate((*self.moving, *self.vectors))}
-        known = self.unknowns + 2
-        first |= {name: known + 3 * i for i, name in enumerate((*self.chassis, *self.directions))}
-        return first
+    def _places(self) -> tuple[dict[str, slice], dict[str, int], int]:
+        """By name the places of vectors and of scalars, and how many coordinates there are in all."""
+        vectors, scalars, first = dict[str, slice](), dict[str, int](), 0
+        for name in (*self.moving, *self.vectors):
+            vectors[name] = slice(first, first + 3)
+            first += 3
+        for name in self.ratios:
+            scalars[name] = first
+            first += 1
+        first += 2
+        for name in (*self.chassis, *self.directions):
+            vectors[name] = slice(first, first + 3)
+            first += 3
+        for name in (*self.driven, *self.constants):
+            scalars[name] = first
+            first += 1
+        return vectors, scalars, first
 
-    @cached_property
-    def _scalars(self) -> dict[str, int]:
-        slides = 3 * (len(self.moving) + len(self.vectors))
-        first = {name: slides + i for i, name in enumerate(self.ratios)}
-        known = self.unknowns + 2 + 3 * (len(self.chassis) + len(self.directions))
-        return first | {name: known + i for i, name in enumerate((*self.driven, *self.constants))}
-
-    @cached_property
-    def _lengths(self) -> dict[tuple[str, str], int]:
-        first = self.size - len(self.squared_lengths)
-        return {ends: first + i for i, ends in enumerate(self.squared_lengths)}
-
-    @cached_property
+    @property
     def size(self) -> int:
         """How many coordinates there are in all."""
-        vectors = 3 * (len(self.chassis) + len(self.directions))
-        scalars = len(self.driven) + len(self.constants) + len(self.squared_lengths)
-        return self.unknowns + 2 + vectors + scalars
-
-    def vector(self, name: str) -> Triple:
-        """Indices of the three coordinates of a point, a direction or a vector of a body."""
-        if name not in self._vectors:
-            raise UnknownName("point, direction or vector", name, self._vectors)
-        first = self._vectors[name]
-        return first, first + 1, first + 2
+        return self._places[2]
 
     def span(self, name: str) -> slice:
-        """The same three as a slice."""
-        first, _, last = self.vector(name)
-        return slice(first, last + 1)
+        """The three coordinates of a point, a direction or a vector of a body."""
+        vectors = self._places[0]
+        if name not in vectors:
+            raise UnknownName("point, direction or vector", name, vectors)
+        return vectors[name]
+
+    def vector(self, name: str) -> Triple:
+        """The same three as indices."""
+        first = self.span(name).start
+        return first, first + 1, first + 2
 
     def scalar(self, name: str) -> int:
         """Index of a slide's place, of a driven coordinate or of a constant of the drawing."""
-        if name not in self._scalars:
-            raise UnknownName("slide, driven coordinate or constant", name, self._scalars)
-        return self._scalars[name]
+        scalars = self._places[1]
+        if name not in scalars:
+            raise UnknownName("slide, driven coordinate or constant", name, scalars)
+        return scalars[name]
 
-    def squared_length(self, start: str, end: str) -> int:
-        """Index of the squared length of the link from start to end."""
-        if (start, end) not in self._lengths:
-            raise UnknownName("link", f"{start} - {end}", (f"{a} - {b}" for a, b in self.squared_lengths))
-        return self._lengths[start, end]
+    def place(self, name: str) -> slice | int:
+        """Where a vector or a scalar is."""
+        vectors, scalars, _ = self._places
+        return vectors[name] if name in vectors else scalars[name]
 
     def places_in(self, whole: Layout) -> list[int]:
         """Where the coordinates are in a layout that has them all, in this one's order."""
-        scalars = (*self.driven, *self.constants)
-        return [
-            *(i for name in (*self.moving, *self.vectors) for i in whole.vector(name)),
-            *(whole.scalar(name) for name in self.ratios),
-            whole.zero,
-            whole.one,
-            *(i for name in (*self.chassis, *self.directions) for i in whole.vector(name)),
-            *(whole.scalar(name) for name in scalars),
-            *(whole.squared_length(*ends) for ends in self.squared_lengths),
-        ]
+        vectors, scalars, size = self._places
+        found = [whole.zero, whole.one] * (size // 2 + 1)
+        for name, span in vectors.items():
+            found[span] = whole.vector(name)
+        for name, place in scalars.items():
+            found[place] = whole.scalar(name)
+        found[self.zero : self.one + 1] = whole.zero, whole.one
+        return found[:size]
 
     def describe(self, index: int) -> str:
         """An unknown coordinate in words, such as 'y of' a point."""

@@ -84,14 +84,15 @@ class Mechanism:
 
     def taken(self, members: NDArray[np.intp] | int) -> Mechanism:
         """Some members of a batch of one dimension, by number, or one car of it."""
-        vectors = {
-            name: place[members] if place.ndim > 1 else place for name, place in self.drawing.vectors.items()
-        }
+        vectors, lacks = (
+            {name: place[members] if place.ndim > 1 else place for name, place in table.items()}
+            for table in (self.drawing.vectors, self.drawing.lacks)
+        )
         return replace(
             self,
             origin=self.origin[members],
             unit=self.unit[members],
-            drawing=Drawing(vectors, self.unit[members], self.drawing.lacks),
+            drawing=Drawing(vectors, self.unit[members], lacks),
             drawn=self.drawn[members],
             drawn_lacks=self.drawn_lacks[members],
             drawn_doubt=self.drawn_doubt[members],
@@ -121,7 +122,7 @@ class Mechanism:
         """
         topology, layout = self.topology, self.layout
         required = topology.required_inputs
-        if inputs.keys() != topology.required_input_names:
+        if inputs.keys() != set(required):
             for name in inputs:
                 if name not in required:
                     raise UnknownName("driving input", name, required)

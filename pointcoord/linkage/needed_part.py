@@ -88,5 +88,4 @@ def _kept(topology: Topology, unknowns: set[int]) -> tuple[tuple[Constraint, ...
 def _own(constraint: Constraint, layout: Layout) -> set[int]:
     """The coordinates that belong to a constraint alone."""
     vectors = {i for name in constraint.vectors for i in layout.vector(name)}
-    scalars = {layout.scalar(name) for name in (*constraint.slides, *constraint.constants)}
-    return vectors | scalars | {layout.squared_length(*ends) for ends in constraint.squared_lengths}
+    return vectors | {layout.scalar(name) for name in (*constraint.slides, *constraint.constants)}

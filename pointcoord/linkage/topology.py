@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from itertools import combinations
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +17,6 @@ from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
 from pointcoord.numerics.structure import rows_too_many
 
 Array = NDArray[np.float64]
-Place = TypeVar("Place")
 Piece = tuple[str, str]
 
 
@@ -31,7 +29,8 @@ class Topology:
         chassis: points that the chassis carries. moving: points to be solved for.
         bodies: points of each body of three or more points whose rates are of interest.
         carried: points that ride on a body and constrain nothing, with the three points that carry them.
-        directions: unit vectors that the chassis carries.
+        directions: vectors that the chassis carries, each by the points from which and to which it is drawn;
+            where the first is empty, the second is a direction of the car.
         constraints: links, slides, rack, driven heights.
         drives: the inputs that drive a coordinate.
         roles: the points of each role that the mechanism has, of a part's with the part's name and a dot
@@ -57,7 +56,7 @@ class Topology:
     moving: tuple[str, ...]
     bodies: Mapping[str, tuple[str, ...]]
     carried: Mapping[str, tuple[str, str, str]]
-    directions: tuple[str, ...]
+    directions: Mapping[str, Piece]
     constraints: tuple[Constraint, ...]
     drives: tuple[Drive, ...]
     roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
@@ -79,15 +78,6 @@ class Topology:
     def required_points(self) -> tuple[str, ...]:
         """Points that must be given."""
         return tuple(name for name in self.points if name not in self.stand_ins)
-
-    def with_defaults(self, points: Mapping[str, Place]) -> dict[str, Place]:
-        """Points of a car with those of the chassis that it leaves out, where others stand in for them."""
-        taken = {
-            name: points[other]
-            for name, other in self.stand_ins.items()
-            if name in self.chassis and other in points
-        }
-        return taken | dict(points)
 
     def role(self, name: str) -> tuple[str, ...]:
         """The points of a role; empty without such a role."""
@@ -141,11 +131,6 @@ class Topology:
     def turning(self) -> tuple[str, ...]:
         """The inputs that are turns of any size from the drawing on, each with two coordinates."""
         return tuple(dict.fromkeys(drive.input for drive in self.drives if isinstance(drive, TurnedBy)))
-
-    @cached_property
-    def required_input_names(self) -> frozenset[str]:
-        """The same, to be compared with what is given."""
-        return frozenset(self.required_inputs)
 
     @cached_property
     def driven(self) -> tuple[int, ...]:
@@ -217,20 +202,11 @@ class Topology:
             moving=self.moving,
             ratios=tuple(name for c in self.constraints for name in c.slides),
             chassis=self.chassis,
-            directions=self.directions,
+            directions=tuple(self.directions),
             driven=tuple(dict.fromkeys(drive.coordinate for drive in self.drives)),
-            squared_lengths=tuple(ends for c in self.constraints for ends in c.squared_lengths),
             vectors=tuple(name for c in self.constraints for name in c.vectors),
             constants=tuple(name for c in self.constraints for name in c.constants),
         )
-
-    @cached_property
-    def kinds(self) -> tuple[tuple[Constraint, ...], ...]:
-        """The constraints, those of a kind together, in the order in which the kinds come."""
-        kinds: dict[type[Constraint], list[Constraint]] = {}
-        for constraint in self.constraints:
-            kinds.setdefault(type(constraint), []).append(constraint)
-        return tuple(tuple(same) for same in kinds.values())
 
     @property
     def pieces(self) -> dict[Piece, tuple[Piece, ...]]:

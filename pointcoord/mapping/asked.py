@@ -69,15 +69,6 @@ def columns_of(
     return columns, laws, shape
 
 
-def require_finite_rates(domain: Domain, states: Sequence[Array]) -> None:
-    """Refuse rates and accelerations, each (..., p), that are not finite."""
-    for what, state in zip(STATES[1:], states[1:], strict=False):
-        if not np.isfinite(state).all():
-            place = tuple(np.argwhere(~np.isfinite(state))[0])
-            name, wrong = domain.free[place[-1]], float(state[place])
-            raise InputOutOfRange(name, wrong, f"{what} that are finite")
-
-
 def numbers_of(what: str, value: ArrayLike) -> Array:
     """Numbers as doubles."""
     try:

@@ -20,12 +20,10 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import Numbers, bounds_of_numbers
-from pointcoord.effects.effect import Effect
-from pointcoord.linkage.car_axes import CarAxes
-from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.patches.patches import Patches
 from pointcoord.patches.reported_points import moving_points
+from pointcoord.results.readout import Readout
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -39,25 +37,23 @@ class Evaluated:
     """Poses that a map gave.
 
     Attributes:
-        patch: of each pose, (N,).
+        readout: by which they were read. patch: of each pose, (N,).
         inputs: rates and accelerations of the map's inputs as far as they were given, each (N, p).
         moving: by derivative the sums of the patches' series, each (3 points, N), mm per s^d.
-        chassis: how it moves. laws: what moves it as far as it was given, by input and by derivative, each
-            (N,).
+        laws: what moves the chassis as far as it was given, by input and by derivative, each (N,).
         numbers: what was reported, by quantity and name, each (N, 3) or (N,).
     """
 
     patches: Patches
-    axes: CarAxes
+    readout: Readout
     patch: Whole
     inputs: Sequence[Array]
     moving: Sequence[Array]
-    chassis: ChassisMotion
     laws: Mapping[str, Sequence[Array]]
     numbers: Numbers
 
-    def bounds(self, effects: Sequence[Effect], shape: tuple[int, ...]) -> dict[str, dict[str, Array]]:
-        """Proven error of every number of some effects for poses of a shape; infinite where none is known."""
+    def bounds(self, shape: tuple[int, ...]) -> dict[str, dict[str, Array]]:
+        """Proven error of every number for poses of a shape; infinite where none is known."""
         found = {
             q: {n: np.empty_like(a) for n, a in part.items()} for q, part in self.numbers.items() if part
         }
@@ -67,7 +63,7 @@ class Evaluated:
             with np.errstate(all="ignore"):  # what overflows comes out infinite, which bounds nothing
                 poses = self._enclosed(here)
             numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
-            proven, _ = bounds_of_numbers(poses, effects, numbers)
+            proven, _ = bounds_of_numbers(poses, self.readout.plan.computed, numbers)
             for quantity, bounds in proven.items():
                 for name, bound in bounds.items():
                     found[quantity][name][here] = bound
@@ -77,7 +73,7 @@ class Evaluated:
 
     def _enclosed(self, here: slice) -> EnclosedPoses:
         """Where the points of some poses are."""
-        mechanism = self.patches.domain.mechanism
+        mechanism, chassis = self.readout.mechanism, self.readout.chassis
         topology, vectors, unit = mechanism.topology, mechanism.drawing.vectors, float(mechanism.unit)
         count = len(self.patch[here])
         found: list[dict[str, Enclosed]] = []
@@ -91,9 +87,10 @@ class Evaluated:
                 points[name] = sums.take([3 * i, 3 * i + 1, 3 * i + 2])
             found.append(points)
         laws = {name: [Enclosed.of(rate[here]) for rate in law] for name, law in self.laws.items()}
-        turned = self.chassis.turned_exactly(laws, found, unit)
-        added = self.chassis.enclosed(laws, mechanism.origin)
-        return EnclosedPoses(mechanism, self.axes, turned, found[0], added, [np.ones(count)] * len(found))
+        turned = chassis.turned_exactly(laws, found, unit)
+        added = chassis.enclosed(laws, mechanism.origin)
+        ones = [np.ones(count)] * len(found)
+        return EnclosedPoses(mechanism, self.readout.axes, turned, found[0], added, ones)
 
     def _radii(self, here: slice) -> list[Array]:
         """How far the sums are off, by derivative, each (N, 3 points)."""

@@ -14,11 +14,15 @@ outwards from the closed drawing (see `flood`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import chain
+from math import isfinite
 from os import PathLike, fspath
 from types import MappingProxyType
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,15 +32,7 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.mapping.asked import (
-    STATES,
-    Ranges,
-    checked_ranges,
-    columns_of,
-    common_shape,
-    numbers_of,
-    require_finite_rates,
-)
+from pointcoord.mapping.asked import STATES, Ranges, checked_ranges, columns_of, numbers_of
 from pointcoord.mapping.effect_bounds import Evaluated
 from pointcoord.mapping.stored import ALLOWED, Gaps, packed, unpacked
 from pointcoord.mechanism.freedoms import held_rows
@@ -44,11 +40,11 @@ from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.evaluation import sum_one, table_of_exponents
 from pointcoord.patches.flood import Limits, flood_from_drawing, place_of_drawing
-from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Lookup, part_of
 from pointcoord.patches.patches import Patches, ProvenPatches
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.results.closing import closing
+from pointcoord.results.read_only import ReadOnly
 from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Channel, Named
 from pointcoord.scene.scene_file import Scene
@@ -57,6 +53,7 @@ from pointcoord.solve.assembly import close_drawing
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
+T = TypeVar("T")
 
 HALVINGS = 6
 MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
@@ -83,37 +80,6 @@ class Bound:
     velocity: Mapping[str, float]
     acceleration: Mapping[tuple[str, str], float]
 
-    @classmethod
-    def of(cls, off: Jet, half: Array, names: Sequence[str], shifted: float) -> Bound:
-        """The largest of some patches, from derivatives by parts of their half widths (P, p).
-
-        Args:
-            shifted: what adding the user's origin rounds, mm.
-        """
-        first = (off.first.max(axis=-1) / half).max(axis=0)
-        second = (off.second.max(axis=-1) / (half[:, :, None] * half[:, None])).max(axis=0)
-        return cls(
-            float(off.value.max()) + shifted,
-            {name: float(first[i]) for i, name in enumerate(names)},
-            {(a, b): float(second[i, j]) for i, a in enumerate(names) for j, b in enumerate(names)},
-        )
-
-
-@dataclass(frozen=True)
-class Patch:
-    """A part of a map: a box of inputs with one series, and what is proven of it.
-
-    Attributes:
-        ranges: of the inputs, rad or mm.
-        condition: condition number of the Jacobian in its middle.
-        contraction: at most this of an error is left by each step of the proof's map, below 1.
-    """
-
-    ranges: Ranges
-    bound: Bound
-    condition: float
-    contraction: float
-
 
 @dataclass(frozen=True)
 class Uncovered:
@@ -138,7 +104,7 @@ class MappedPoses(Named):
 
 
 @dataclass(frozen=True, repr=False)
-class KinematicMap:
+class KinematicMap(ReadOnly):
     """A scene's suspension as a function of its inputs; make one with `kinematic_map`.
 
     It can be pickled, and saved to a file that another program reads.
@@ -153,10 +119,6 @@ class KinematicMap:
     tolerance: float
     series: Patches
     gaps: Gaps
-
-    def __post_init__(self) -> None:
-        for array in (self.series.coefficients, *self.series.off.parts):
-            array.setflags(write=False)
 
     @property
     def ranges(self) -> Ranges:
@@ -191,30 +153,28 @@ class KinematicMap:
     @cached_property
     def bound(self) -> Bound:
         """What is proven of all that it covers."""
-        return Bound.of(self.series.off, self.series.boxes[1], self.inputs, self._shifted)
-
-    @cached_property
-    def _shifted(self) -> float:
-        """Rounding of a sum with the mechanism's origin, mm; none where that is zero."""
+        off, half, names = self.series.off, self.series.boxes[1], self.inputs
+        # Derivatives by parts of the half widths, as those by the inputs; the largest of all patches.
+        first = (off.first.max(axis=-1) / half).max(axis=0)
+        second = (off.second.max(axis=-1) / (half[:, :, None] * half[:, None])).max(axis=0)
+        # A sum with the mechanism's origin is rounded; where that is zero there is none.
         origin = float(np.abs(self.mechanism.origin).max())
         reach = float(np.abs(self.series.coefficients).sum(axis=1).max())
-        return 1.01 * UNIT_ROUNDOFF * (origin + reach) if origin > 0.0 else 0.0
-
-    @property
-    def patches(self) -> tuple[Patch, ...]:
-        """Its patches."""
-        found = []
-        for place in range(len(self.series.low)):
-            one = self.series.taken(np.array([place]))
-            bound = Bound.of(one.off, one.boxes[1], self.inputs, self._shifted)
-            ranges = self._ranges_of(one.low[0], one.high[0])
-            found.append(Patch(ranges, bound, float(one.condition[0]), float(one.contraction[0])))
-        return tuple(found)
+        return Bound(
+            float(off.value.max()) + (1.01 * UNIT_ROUNDOFF * (origin + reach) if origin > 0.0 else 0.0),
+            {name: float(first[i]) for i, name in enumerate(names)},
+            {(a, b): float(second[i, j]) for i, a in enumerate(names) for j, b in enumerate(names)},
+        )
 
     @property
     def uncovered(self) -> tuple[Uncovered, ...]:
         """Where nothing is proven."""
-        return tuple(Uncovered(self._ranges_of(*map(np.array, key)), reason) for key, reason in self.gaps)
+        found = []
+        for key, reason in self.gaps:
+            ends = self.domain.inputs_at(2 * np.array(key)).T.tolist()
+            ranges = {name: (low, high) for name, (low, high) in zip(self.inputs, ends, strict=True)}
+            found.append(Uncovered(ranges, reason))
+        return tuple(found)
 
     @cached_property
     def share_covered(self) -> float:
@@ -255,12 +215,9 @@ class KinematicMap:
             NotComputed: accelerations without rates.
             MapError: what is no number, or shapes that do not broadcast.
         """
-        if rates is None and accelerations is not None:
-            raise _needs_rates()
-        given = [state for state in (inputs, rates, accelerations) if state is not None]
+        given = _states(inputs, rates, accelerations)
         states, laws, shape = columns_of(self.domain, given)
-        require_finite_rates(self.domain, states)
-        readout, patch = self._readouts[len(states) - 1], self._patches_of(states[0])
+        readout, patch = self._readouts[len(states) - 1], self._patches_of(states)
         rows, tables = readout.room(len(patch)), [self.series.coefficients] * len(states)
         places = readout.places(rows)
         # Positions alone are the first rows of the table.
@@ -275,53 +232,60 @@ class KinematicMap:
         numbers = samples.shaped(shape).numbers
         if not bounds:
             return MappedPoses(numbers)
-        evaluated = Evaluated(
-            self.series, readout.axes, patch, states[1:], moving, readout.chassis, laws, samples.numbers
-        )
-        return MappedPoses(numbers, evaluated.bounds(readout.plan.computed, shape))
+        evaluated = Evaluated(self.series, readout, patch, states[1:], moving, laws, samples.numbers)
+        return MappedPoses(numbers, evaluated.bounds(shape))
 
     def evaluate(
-        self, values: ArrayLike, rates: ArrayLike | None = None, accelerations: ArrayLike | None = None
+        self,
+        values: Sequence[float] | Array,
+        rates: Sequence[float] | Array | None = None,
+        accelerations: Sequence[float] | Array | None = None,
     ) -> Array:
-        """States of the points that move as one array, for loops that call it often.
+        """States of the points that move at one pose, for loops that call it often; fifty times as fast.
 
         The chassis stands still: nothing is added for what moves it.
 
         Args:
-            values: inputs in the order of `inputs`, shape (..., p), rad or mm.
+            values: inputs in the order of `inputs`, (p,), rad or mm.
             rates, accelerations: their time derivatives, likewise.
         Returns:
-            Shape (1 to 3 derivatives, ..., points, 3), mm from the mechanism's origin (`mechanism.origin`,
-            zero for a car that is drawn near the user's), per s^d.
+            Shape (1 to 3 derivatives, points, 3), mm from the mechanism's origin (`mechanism.origin`, zero
+            for a car that is drawn near the user's), per s^d.
         Raises:
             InputOutOfRange: a value outside the map's range, or a rate that is not finite.
             NotCovered: inputs at which nothing is proven.
-            MapError: an array without a column for each input, or not of numbers.
+            MapError: an array that is not a number for each input.
         """
-        states = [numbers_of(STATES[0], values)]
-        if rates is None and accelerations is None and states[0].shape == self._single_shape:
-            return self._one([states[0].tolist()])
-        if accelerations is not None and rates is None:
-            raise _needs_rates()
-        given = zip(STATES[1:], (rates, accelerations), strict=True)
-        states += [numbers_of(what, state) for what, state in given if state is not None]
-        inputs = len(self.inputs)
-        for d, state in enumerate(states):
-            if state.shape[-1:] != (inputs,):
-                allowed = f"(..., {inputs}), a column for each of {', '.join(self.inputs)}"
-                raise MapError(STATES[d], f"have the shape {state.shape}", allowed)
-        require_finite_rates(self.domain, states)
-        if all(state.ndim == 1 for state in states):
-            return self._one([state.tolist() for state in states])
-        batch = common_shape([state.shape[:-1] for state in states], "arrays")
-        flat = [np.broadcast_to(state, (*batch, inputs)).reshape(-1, inputs) for state in states]
-        coefficients = [self.series.coefficients] * len(states)
-        found = np.stack(self.series.sums(coefficients, flat, self._patches_of(flat[0])))
-        return np.moveaxis(found.reshape(len(states), len(self.points), 3, *batch), (1, 2), (-2, -1))
+        states = []
+        for what, given in zip(STATES, _states(values, rates, accelerations), strict=False):
+            state = numbers_of(what, given)
+            if state.shape != self._shape:
+                allowed = f"{self._shape}, a number for each of {', '.join(self.inputs)}"
+                raise MapError(what, f"have the shape {state.shape}", allowed)
+            states.append(state.tolist())
+        number = self._lookup.at_one(states[0])
+        if number < 0 or not all(map(isfinite, chain(*states[1:]))):
+            self._patches_of([np.array([state]) for state in states])  # says what is wrong
+        ready = self._ready[number]
+        if ready is None:
+            boxes = np.stack(self.series.boxes, axis=-1)[number].tolist()
+            parts = table_of_exponents(self.series.coefficients[number], len(boxes), self.order)
+            ready = self._ready[number] = (boxes, *parts)
+        boxes, first, table = ready
+        local = [[(x - middle) / half for x, (middle, half) in zip(states[0], boxes, strict=True)]]
+        for state in states[1:]:
+            local.append([x / half for x, (_, half) in zip(state, boxes, strict=True)])
+        return sum_one(first, table, local).reshape(len(states), -1, 3)
 
-    def __reduce__(self) -> tuple[object, tuple[bytes]]:
-        """What is made of it for quicker calls is made again."""
-        return _unpickled, (packed((self.scene, self.tolerance, self.series, self.gaps)),)
+    @cached_property
+    def _shape(self) -> tuple[int]:
+        """Of one pose's inputs."""
+        return (len(self.inputs),)
+
+    @cached_property
+    def _ready(self) -> list[tuple[list[list[float]], Array, Array] | None]:
+        """Of each patch that one pose has been on, its box and its table."""
+        return [None] * len(self.series.low)
 
     def covers(self, inputs: Mapping[str, ArrayLike]) -> NDArray[np.bool_]:
         """Whether poses are covered, of the inputs' shape; False outside the ranges too."""
@@ -337,12 +301,9 @@ class KinematicMap:
         Raises:
             MapError: the file cannot be written.
         """
-        what, data = _file(path), packed((self.scene, self.tolerance, self.series, self.gaps))
-        try:
-            with open(path, "wb") as stream:
-                stream.write(data)
-        except OSError as error:
-            raise MapError(what, f"cannot be written: {error.strerror}", "a path to write to") from error
+        data = packed((self.scene, self.tolerance, self.series, self.gaps))
+        with _of_file(path, "written", "a path to write to"), open(path, "wb") as stream:
+            stream.write(data)
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> KinematicMap:
@@ -351,15 +312,9 @@ class KinematicMap:
         Raises:
             MapError: there is no such file, it is another one, of another version, or damaged.
         """
-        what = _file(path)
-        try:
-            with open(path, "rb") as stream:
-                data = stream.read()
-        except FileNotFoundError as error:
-            raise MapError(what, "does not exist", ALLOWED) from error
-        except OSError as error:
-            raise MapError(what, f"cannot be read: {error.strerror or error}", ALLOWED) from error
-        return cls(*unpacked(data, what))
+        with _of_file(path, "read", ALLOWED), open(path, "rb") as stream:
+            data = stream.read()
+        return cls(*unpacked(data, f"file {fspath(path)!r}"))
 
     @cached_property
     def _lookup(self) -> Lookup:
@@ -369,54 +324,26 @@ class KinematicMap:
             table[part_of(low, high)] = -1 - number
         return Lookup(self.domain, table)
 
-    def _ranges_of(self, low: Whole, high: Whole) -> Ranges:
-        """The ranges of a box."""
-        first, last = self.domain.inputs_at(2 * low), self.domain.inputs_at(2 * high)
-        return {name: (float(first[i]), float(last[i])) for i, name in enumerate(self.inputs)}
-
-    def _patches_of(self, values: Array) -> Whole:
-        """The patch of each pose, (N, p) to (N,)."""
+    def _patches_of(self, states: Sequence[Array]) -> Whole:
+        """The patch of each pose, from its inputs and their rates, each (N, p), to (N,)."""
         low, high = self.domain.ends
-        for i, name in enumerate(self.inputs):
-            column = values[:, i]
+        units = self.mechanism.topology.input_units
+        for d, state in enumerate(states):
             # False for what is not a number as well.
-            if column.size and not (column.min() >= low[i] and column.max() <= high[i]):
-                worst = float(column[~((column >= low[i]) & (column <= high[i]))][0])
-                unit = self.mechanism.topology.input_units[name]
-                allowed = f"{low[i]:.10g} to {high[i]:.10g} {unit}, the range of this map"
-                raise InputOutOfRange(name, worst, allowed)
-        number = self._lookup.at(values)
+            good = (state >= low) & (state <= high) if d == 0 else np.isfinite(state)
+            if not good.all():
+                row, i = np.argwhere(~good)[0]
+                name = self.inputs[i]
+                allowed = f"{low[i]:.10g} to {high[i]:.10g} {units[name]}, the range of this map"
+                raise InputOutOfRange(
+                    name, float(state[row, i]), allowed if d == 0 else f"{STATES[d]} that are finite"
+                )
+        number = self._lookup.at(states[0])
         if (number < 0).any():
             gaps = np.flatnonzero(number < 0)
-            inputs = dict(zip(self.inputs, values[gaps[0]].tolist(), strict=True))
-            raise NotCovered(inputs, self.gaps[-1 - number[gaps[0]]][1], len(gaps), len(values))
+            inputs = dict(zip(self.inputs, states[0][gaps[0]].tolist(), strict=True))
+            raise NotCovered(inputs, self.gaps[-1 - number[gaps[0]]][1], len(gaps), len(number))
         return number
-
-    @cached_property
-    def _single_shape(self) -> tuple[int]:
-        """Of one pose's inputs."""
-        return (len(self.inputs),)
-
-    def _one(self, states: Sequence[list[float]]) -> Array:
-        """The states of one pose, (derivatives + 1, points, 3), in a tenth of the time."""
-        number = self._lookup.at_one(states[0])
-        if number < 0:
-            self._patches_of(np.array(states[:1]))  # says why there is none
-        ready = self._ready[number]
-        if ready is None:
-            boxes = np.stack(self.series.boxes, axis=-1)[number].tolist()
-            parts = table_of_exponents(self.series.coefficients[number], len(boxes), self.order)
-            ready = self._ready[number] = (boxes, *parts)
-        boxes, first, table = ready
-        local = [[(x - middle) / half for x, (middle, half) in zip(states[0], boxes, strict=True)]]
-        for state in states[1:]:
-            local.append([x / half for x, (_, half) in zip(state, boxes, strict=True)])
-        return sum_one(first, table, local).reshape(len(states), -1, 3)
-
-    @cached_property
-    def _ready(self) -> list[tuple[list[list[float]], Array, Array] | None]:
-        """Of each patch that one pose has been on, its box and its table."""
-        return [None] * len(self.series.low)
 
     @cached_property
     def _readouts(self) -> tuple[Readout, ...]:
@@ -433,8 +360,11 @@ POINT_STATES = tuple(name for name, effect in EFFECTS.items() if effect.reports_
 """Effects that a map gives wherever it is told the rates."""
 
 
-def _needs_rates() -> NotComputed:
-    return NotComputed("an acceleration of a point", "", "give the rates of the inputs as well")
+def _states(values: T, rates: T | None, accelerations: T | None) -> list[T]:
+    """Those that are given."""
+    if accelerations is not None and rates is None:
+        raise NotComputed("an acceleration of a point", "", "give the rates of the inputs as well")
+    return [state for state in (values, rates, accelerations) if state is not None]
 
 
 def kinematic_map(
@@ -513,16 +443,14 @@ def _hold_rows(patches: ProvenPatches) -> None:
         held_rows(domain.mechanism, y, np.full(len(values), patches.error[number].max()))
 
 
-def _unpickled(data: bytes) -> KinematicMap:
-    return KinematicMap(*unpacked(data, "pickle"))
-
-
-def _file(path: object) -> str:
-    """A file in words.
-
-    Raises:
-        MapError: what is given is no path.
-    """
+@contextmanager
+def _of_file(path: object, done: str, allowed: str) -> Iterator[None]:
+    """What may go wrong with a file, in words."""
     if not isinstance(path, str | PathLike):
         raise MapError(f"path {path!r}", f"is a {type(path).__name__}", "the path of a file")
-    return f"file {fspath(path)!r}"
+    try:
+        yield
+    except OSError as error:
+        raise MapError(
+            f"file {fspath(path)!r}", f"cannot be {done}: {error.strerror or error}", allowed
+        ) from error

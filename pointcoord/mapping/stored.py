@@ -1,8 +1,8 @@
 """The npz file that keeps a kinematic map.
 
-It holds plain arrays and texts, nothing that runs when it is read: `format` and `version`; the scene as JSON;
-ranges, order, halvings and tolerance; of each patch its corners (in parts of the smallest box), its
-coefficients and its bounds; of each gap its corners and its reason; and `digest`, a SHA-256 of all of these.
+It holds plain arrays and texts, nothing that runs when it is read: `format` and `version`; `head`, which is
+the scene, ranges, order, halvings, tolerance and gaps (corners and reason of each) as JSON; of each patch its
+corners (in parts of the smallest box), its coefficients and its bounds; and `digest`, a SHA-256 of these.
 """
 
 from __future__ import annotations
@@ -30,43 +30,32 @@ Gaps = Sequence[tuple[Key, str]]
 Content = tuple[Scene, float, Patches, Gaps]
 """A map: its scene, its tolerance, and its patches and gaps."""
 
-FORMAT, VERSION = "pointcoord kinematic map", 1
+FORMAT, VERSION = "pointcoord kinematic map", 2
+OFF = ("off", "off_first", "off_second")
 ALLOWED = "a map as KinematicMap.save writes it"
 
 
 def packed(content: Content) -> bytes:
     """A map as the bytes of its file."""
     scene, tolerance, patches, gaps = content
-    reasons = list(dict.fromkeys(reason for _, reason in gaps))
-    inputs = len(patches.domain.free)
-    gap_low, gap_high = (
-        np.array([key[end] for key, _ in gaps], dtype=np.int64).reshape(-1, inputs) for end in (0, 1)
-    )
-    arrays: dict[str, NDArray[Any]] = {
+    arrays = {
         "low": patches.low,
         "high": patches.high,
         "coefficients": patches.coefficients,
-        "off": patches.off.value,
-        "off_first": patches.off.first,
-        "off_second": patches.off.second,
-        "condition": patches.condition,
-        "contraction": patches.contraction,
-        "gap_low": gap_low,
-        "gap_high": gap_high,
-        "gap_reason": np.array([reasons.index(reason) for _, reason in gaps], dtype=np.int64),
+        **dict(zip(OFF, patches.off.parts, strict=True)),
     }
     head = json.dumps(
         {
             "scene": scene.model_dump(mode="json", exclude_none=True),
             "tolerance": tolerance,
-            "ranges": {name: list(ends) for name, ends in patches.domain.ranges.items()},
+            "ranges": dict(patches.domain.ranges),
             "order": patches.order,
             "halvings": patches.domain.halvings,
-            "reasons": reasons,
+            "gaps": gaps,
         }
     )
-    stream = BytesIO()
     words: dict[str, Any] = {"format": FORMAT, "version": VERSION, "head": head}
+    stream = BytesIO()
     np.savez(stream, **(words | arrays), digest=_digest(head, arrays))
     return stream.getvalue()
 
@@ -109,20 +98,11 @@ def _content(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], what: 
     wanted = (len(arrays["low"]), powers(len(domain.free), order).count, 3 * len(points))
     if arrays["coefficients"].shape != wanted:
         raise MapError(what, f"has coefficients of shape {arrays['coefficients'].shape}", f"{wanted}")
-    patches = Patches(
-        domain,
-        order,
-        arrays["low"],
-        arrays["high"],
-        arrays["coefficients"],
-        Jet(arrays["off"], arrays["off_first"], arrays["off_second"]),
-        arrays["condition"],
-        arrays["contraction"],
-    )
-    corners = zip(arrays["gap_low"].tolist(), arrays["gap_high"].tolist(), strict=True)
-    reasons = (head["reasons"][place] for place in arrays["gap_reason"])
-    keys = ((tuple(low), tuple(high)) for low, high in corners)
-    return scene, float(head["tolerance"]), patches, tuple(zip(keys, reasons, strict=True))
+    corners = arrays["low"], arrays["high"]
+    off = Jet(*(arrays[name] for name in OFF))
+    patches = Patches(domain, order, *corners, arrays["coefficients"], off)
+    gaps = (((tuple(low), tuple(high)), reason) for (low, high), reason in head["gaps"])
+    return scene, float(head["tolerance"]), patches, tuple(gaps)
 
 
 def _digest(text: str, arrays: Mapping[str, NDArray[Any]]) -> str:

@@ -7,7 +7,8 @@ from itertools import combinations
 
 from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.mechanism.faults import TableFault, no_such
-from pointcoord.mechanism.structure import CHASSIS, Structure
+from pointcoord.mechanism.inputs import CHASSIS
+from pointcoord.mechanism.structure import Structure
 
 
 def check(structure: Structure) -> None:
@@ -139,25 +140,10 @@ def _inputs(structure: Structure) -> None:
                 raise no_such("slide", slide, structure.slides, (*place, "travel"))
         for point in one.named("point"):
             _point(structure, point, place)
-        if one.kind == "arm":
-            if one["of"] == one["about"]:
-                raise TableFault((*place, "of"), f"is {one['of']!r} as about is", "two different points")
-            if one["angle"] == CHASSIS or one["of"] not in structure.bodies[one["angle"]]:
-                raise no_such(
-                    f"point of {one['angle']}",
-                    one["of"],
-                    structure.bodies[one["angle"]],
-                    (*place, "of"),
-                )
-        if one.kind == "turn":
-            shared = structure.shared(one["angle"], one["on"]) if one["angle"] != one["on"] else ()
-            if one["angle"] == CHASSIS or len(shared) != 2:
-                raise TableFault(
-                    place,
-                    f"{one['angle']} and {one['on']} share {', '.join(shared) or 'no point'}, which is no "
-                    "hinge",
-                    "two bodies that share two points",
-                )
+        try:
+            one.check(structure.bodies)
+        except TableFault as fault:
+            raise TableFault((*place, *fault.place), fault.problem, fault.allowed) from None
 
 
 def _roles(structure: Structure) -> None:

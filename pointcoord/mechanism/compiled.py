@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -17,16 +18,15 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
-from pointcoord.linkage.constraints.contact_height import ContactHeight
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.on_line import HeldOnAxis, OnAxis, OnChassisLine, OnLine
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
-from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.directions import DIRECTIONS, car_directions
-from pointcoord.linkage.drives import ArmAngle, DistanceOf, Drive, Travel, TravelAlong, TurnedBy
+from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism.structure import CHASSIS, Ends, Input, Slide, Structure
+from pointcoord.mechanism.inputs import CHASSIS, Ends, Moves, Turn, Turns
+from pointcoord.mechanism.structure import Slide, Structure
 
 Array = NDArray[np.float64]
 Triangle = tuple[str, str, str]
@@ -109,25 +109,17 @@ def _triangles(
     needed = needed_points(structure, driven)
     found: dict[str, Triangle] = {}
     for body, names in structure.moving_bodies():
-        first = [name for name in names if name in needed]
-        paired = [name for pair in _held_pairs(structure, body) for name in pair if name in first]
-        first = list(dict.fromkeys((*paired, *first)))
-        others = [name for name in names if name not in first]
-        if len(first) == 3:
-            found[body] = (first[0], first[1], first[2])
-        elif len(first) < 3:
-            fixed, free = (
-                (first, others) if len(first) == 2 else ([*first, *others][:2], [*first, *others][2:])
-            )
-            found[body] = _best([(fixed[0], fixed[1], third) for third in free], points)
-        else:
-            kept = first[:2] if len(paired) >= 2 else []
-            tried = [
-                (one, two, three)
-                for one, two, three in combinations(first, 3)
-                if not kept or kept == [one, two]
-            ]
-            found[body] = _best(tried, points)
+        joined = [name for name in names if name in needed]
+        paired = [name for pair in _held_pairs(structure, body) for name in pair if name in joined]
+        order = list(dict.fromkeys((*paired, *joined, *names)))
+        # Two are settled where a hinge holds them, or where no more are joined.
+        settled = order[:2] if len(joined) < 3 or len(paired) >= 2 else []
+        tried = [
+            (one, two, three)
+            for one, two, three in combinations(order[: len(joined)] if len(joined) > 2 else order, 3)
+            if not settled or settled == [one, two]
+        ]
+        found[body] = tried[0] if len(joined) == 3 else _best(tried, points)
     return found
 
 
@@ -206,12 +198,9 @@ class _Compiler:
     choices: Choices
     wheel_radius: float | None
 
-    @property
-    def triangles(self) -> Mapping[str, Triangle]:
-        return self.choices.triangles
-
     def topology(self, puts_in_place: bool) -> Topology:
-        structure = self.structure
+        """All of it."""
+        structure, triangles = self.structure, self.choices.triangles
         needed = needed_points(structure, self.driven)
         chassis = dict.fromkeys(structure.bodies[CHASSIS]).keys()
         solved = dict.fromkeys(
@@ -219,61 +208,44 @@ class _Compiler:
             for body, names in structure.moving_bodies()
             for name in names
             # What rides on a body is carried by moving points; on others it is solved for.
-            if name in needed or name in self.triangles[body] or not chassis.isdisjoint(self.triangles[body])
+            if name in needed or name in triangles[body] or not chassis.isdisjoint(triangles[body])
         )
         solved |= dict.fromkeys(name for name in needed if not structure.bodies_of(name))
-        moving = tuple(name for name in solved if name not in chassis)
         carried = {
-            name: self.triangles[body]
+            name: triangles[body]
             for body, names in structure.moving_bodies()
             for name in names
             if name not in solved and name not in chassis
         }
-        held = _Rods.of(structure, self.travels)
-        constraints = [
-            *self._bodies(solved),
-            *(Link(*ends) for rod, ends in structure.rods.items() if rod not in held.on_axes),
-            *self._points_in_bodies(solved),
-            *self._slides(held),
-        ]
+        constraints = [*self._bodies(solved), *self._points_in_bodies(solved), *self._slides()]
         drives: list[Drive] = []
-        for name in structure.inputs:
-            if name in self.driven and not structure.inputs[name].moves_the_chassis:
-                rows, own = self._input(name, structure.inputs[name])
-                constraints += rows
-                drives += own
-        constraints += self._chassis_lines()
+        for name, one in structure.inputs.items():
+            rows, own = one.made(name, self) if name in self.driven else ([], [])
+            constraints += rows
+            drives += own
+        inputs = structure.inputs.items()
         roles = {role: (who,) if isinstance(who, str) else who for role, who in structure.roles.items()}
-        roles |= {role: self.triangles[body] for role, body in structure.knuckles.items()}
-        along = {name: one["along"] for name, one in structure.inputs.items() if one.kind == "moves"}
-        turns = {
-            name: (one["along"], one["about"])
-            for name, one in structure.inputs.items()
-            if one.kind == "turns"
+        roles |= {role: triangles[body] for role, body in structure.knuckles.items()}
+        along = {name: one.along for name, one in inputs if isinstance(one, Moves)}
+        turns = {name: (one.along, one.about) for name, one in inputs if isinstance(one, Turns)}
+        directions = [*along.values(), *(line[0] for line in turns.values())]
+        directions += [way for name in self.driven for way in structure.inputs[name].directions]
+        directions += [slide.along for slide in structure.slides.values() if slide.along in DIRECTIONS]
+        directions += [head for edges in self.choices.edges.values() for head, tail in edges if not tail]
+        known = {name: ("", name) for name in directions}
+        known |= {
+            f"line of the {name}": (slide.through, slide.along)
+            for name, slide in structure.slides.items()
+            if slide.body == CHASSIS and slide.along not in DIRECTIONS
         }
-        directions = dict.fromkeys((*along.values(), *(line[0] for line in turns.values())))
-        directions |= dict.fromkeys(
-            one[key]
-            for name, one in structure.inputs.items()
-            if name in self.driven
-            for key, kind in (("from", "arm"), ("along", "height"))
-            if one.kind == kind
-        )
-        directions |= dict.fromkeys(
-            slide.along for slide in structure.slides.values() if slide.along in DIRECTIONS
-        )
-        if any(structure.inputs[name].kind == "contact" for name in self.driven):
-            directions["up"] = None
-        directions |= dict.fromkeys(
-            head for edges in self.choices.edges.values() for head, tail in edges if not tail
-        )
+
         return Topology(
             name=structure.name,
             chassis=tuple(chassis),
-            moving=moving,
-            bodies={body: self.triangles[body] for body in structure.knuckles.values()},
+            moving=tuple(name for name in solved if name not in chassis),
+            bodies={body: triangles[body] for body in structure.knuckles.values()},
             carried=carried,
-            directions=tuple(directions),
+            directions=known,
             constraints=tuple(constraints),
             drives=tuple(drives),
             roles=roles,
@@ -286,7 +258,7 @@ class _Compiler:
             puts_in_place=puts_in_place,
         )
 
-    @property
+    @cached_property
     def travels(self) -> dict[str, str]:
         """By slide whose travel is driven, the input.
 
@@ -295,9 +267,7 @@ class _Compiler:
         """
         found = dict[str, str]()
         for name, one in self.structure.inputs.items():
-            if name not in self.driven or one.kind != "travel":
-                continue
-            for slide in one["travel"]:
+            for slide in one.named("slide") if name in self.driven else ():
                 if found.setdefault(slide, name) != name:
                     raise MechanismError(
                         f"{found[slide]} and {name} both drive the travel of {slide}; allowed: one input for "
@@ -306,173 +276,97 @@ class _Compiler:
                     )
         return found
 
-    def _normal(self, body: str) -> Normal:
-        return Normal(f"normal of the {body}", *self.triangles[body])
+    def shared(self, body: str, other: str) -> tuple[str, ...]:
+        return self.structure.shared(body, other)
+
+    def driven_line(self, slide: str) -> OnLine:
+        return self._on_line(slide, self.structure.slides[slide].points[0])
+
+    def normal(self, body: str) -> Normal:
+        return Normal(f"normal of the {body}", *self.choices.triangles[body])
 
     def _bodies(self, solved: Collection[str]) -> Iterator[Constraint]:
-        """The sides of each triangle that nothing before holds."""
+        """The sides of each triangle that nothing before holds, and the rods that are links."""
         held = [frozenset(self.structure.bodies[CHASSIS])]
         for body, names in self.structure.moving_bodies():
-            a, b, c = self.triangles[body]
+            a, b, c = self.choices.triangles[body]
             for start, end in ((b, a), (c, a), (c, b)):
                 if not any({start, end} <= before for before in held):
                     yield Link(start, end)
             held.append(frozenset(name for name in names if name in solved))
+        for ends in self.structure.rods.values():
+            if ends not in self._on_axes.values():
+                yield Link(*ends)
 
     def _points_in_bodies(self, solved: Collection[str]) -> Iterator[Constraint]:
         """What else the bodies need: further points, and the normals of those with an axis of their own."""
-        with_axis = {
-            slide.body
-            for name, slide in self.structure.slides.items()
-            if slide.body != CHASSIS and not self._by_two_points(slide)
-        }
-        for name, one in self.structure.inputs.items():
-            if name in self.driven and one.kind == "turn" and one["on"] != CHASSIS:
-                with_axis.add(one["on"])
+        inputs = self.structure.inputs.items()
+        with_axis = {one.on for name, one in inputs if name in self.driven and isinstance(one, Turn)}
+        with_axis |= {axis.normal.normal for axis in map(self._axis, self.structure.slides) if axis}
         for body, names in self.structure.moving_bodies():
-            further = [n for n in names if n in solved and n not in self.triangles[body]]
-            if further or body in with_axis:
-                yield self._normal(body)
-            yield from (PointInBody(name, body, self._normal(body)) for name in further)
+            normal = self.normal(body)
+            further = [n for n in names if n in solved and n not in self.choices.triangles[body]]
+            if further or body in with_axis or normal.normal in with_axis:
+                yield normal
+            yield from (PointInBody(name, body, normal) for name in further)
 
-    def _by_two_points(self, slide: Slide) -> bool:
-        return slide.along in self.structure.bodies[slide.body]
+    @cached_property
+    def _on_axes(self) -> dict[str, Ends]:
+        """By point that a rod holds on an axis of a body, at its length from another there: the rod's ends.
 
-    def _line(self, name: str, slide: Slide) -> tuple[str, str]:
-        """Tail and head that the line's direction is drawn by; no tail for a direction of the car."""
-        return ("", slide.along) if slide.along in DIRECTIONS else (slide.through, slide.along)
-
-    def _slides(self, held: _Rods) -> Iterator[Constraint]:
-        """Lines of moving bodies, and what keeps bodies from turning about a line."""
+        The first rod of a point is no link, but holds it.
+        """
+        found: dict[str, Ends] = {}
         for name, slide in self.structure.slides.items():
-            if slide.body != CHASSIS:
-                yield from self._body_line(name, slide, held)
+            for ends in self.structure.rods.values() if self._axis(name) else ():
+                if {*ends} <= {*slide.points}:
+                    found.setdefault(max(ends, key=slide.points.index), ends)
+        return found
+
+    def _slides(self) -> Iterator[Constraint]:
+        """The points of slides, and what keeps bodies from turning about a line."""
+        for name, slide in self.structure.slides.items():
+            by_two = slide.body != CHASSIS and self._axis(name) is None
+            joined = any({*ends} == {*slide.points} for ends in self.structure.rods.values())
+            if by_two and joined and name not in self.travels:
+                # Two points that a rod joins make the line, and the two of the body are on it.
+                start, end = slide.points
+                for point in (slide.through, slide.along):
+                    place = f"place of {point} on the {name}"
+                    yield OnLine(point, start, f"line {start} - {end}", end, place, between=True)
+            else:
+                axis = self._axis(name)
+                if axis is not None:
+                    yield axis
+                yield from (self._on_line(name, point) for point in slide.points)
             if not slide.turns:
-                yield self._kept_from_turning(name, slide)
+                edges = self.choices.edges[name]
+                yield ScalarProduct(f"turn about the {name}", *edges, f"product of edges across the {name}")
 
-    def _body_line(self, name: str, slide: Slide, held: _Rods) -> Iterator[Constraint]:
-        if name in held.collinear:
-            start, end = slide.points
-            for point in (slide.through, slide.along):
-                yield OnLine(point, start, end, f"place of {point} on the {name}")
-            return
-        axis = self._axis(name, slide)
-        if axis is not None:
-            yield axis
-        for point in slide.points:
-            if point in held.by_point:
-                assert axis is not None  # only on axes is a point held at a rod's length
-                place = f"place of {point} on the {axis.axis}"
-                yield HeldOnAxis(point, held.by_point[point], axis, place)
-            else:
-                yield self._sliding(name, slide, point)
-
-    def _axis(self, name: str, slide: Slide) -> AxisInBody | None:
-        if self._by_two_points(slide):
+    def _axis(self, name: str) -> AxisInBody | None:
+        """The axis of a body that a slide runs along, unless the line is one of two of the body's points."""
+        slide = self.structure.slides[name]
+        if slide.body == CHASSIS or slide.along in self.structure.bodies[slide.body]:
             return None
-        return AxisInBody(f"{name} axis", *self._line(name, slide), self._normal(slide.body))
+        tail = "" if slide.along in DIRECTIONS else slide.through
+        return AxisInBody(f"{name} axis", tail, slide.along, self.normal(slide.body))
 
-    def _sliding(self, name: str, slide: Slide, point: str) -> OnAxis | OnLine | OnChassisLine:
+    def _on_line(self, name: str, point: str) -> OnLine:
         """The rows of one point of a slide; the place of the first is what a travel drives."""
+        slide, axis = self.structure.slides[name], self._axis(name)
         input = self.travels.get(name) if point == slide.points[0] else None
-        if slide.body == CHASSIS:
+        line, head, between = name, slide.along, slide.body != CHASSIS and axis is None
+        if axis is not None:
+            line = head = axis.axis
+        elif between:
+            line = f"line {slide.through} - {slide.along}"
+        elif slide.along not in DIRECTIONS:
+            head = f"line of the {name}"
+        if axis is not None and point in self._on_axes:
+            (at,) = {*self._on_axes[point]} - {point}
+            return OnLine(point, at, line, head, f"place of {point} on the {line}", "held", axis=axis)
+        place = f"place of {point} on the {line if axis is not None else name}"
+        if input:
             # Slides along directions of the car have one travel in one coordinate.
-            own = f"{input} travel" if slide.along in DIRECTIONS else f"{input} travel along the {name}"
-            place = own if input else f"place of {point} on the {name}"
-            line = self._line(name, slide)
-            return OnChassisLine(point, slide.through, name, *line, place, input is not None)
-        driven = f"{input} travel along the {name}"
-        axis = self._axis(name, slide)
-        if axis is None:
-            place = driven if input else f"place of {point} on the {name}"
-            return OnLine(point, slide.through, slide.along, place, input is not None)
-        place = driven if input else f"place of {point} on the {axis.axis}"
-        return OnAxis(point, slide.through, axis, place, input is not None)
-
-    def _chassis_lines(self) -> Iterator[Constraint]:
-        for name, slide in self.structure.slides.items():
-            if slide.body == CHASSIS:
-                yield from (self._sliding(name, slide, point) for point in slide.points)
-
-    def _kept_from_turning(self, name: str, slide: Slide) -> Constraint:
-        """The pair of edges of the two bodies that change most by a turn about the line."""
-        return ScalarProduct.kept_from_turning(name, *self.choices.edges[name])
-
-    def _input(self, name: str, one: Input) -> tuple[list[Constraint], list[Drive]]:
-        """Rows and drives of an input."""
-        value = f"value of {name}"
-        if one.kind == "arm":
-            of, about, up = one["of"], one["about"], one["from"]
-            value = f"{name} rise"
-            return [ScalarProduct.rise(of, about, up, value)], [ArmAngle(value, name, about, of, up)]
-        if one.kind == "height":
-            point, along = one["height"], one["along"]
-            return [ScalarProduct.height(point, along, value)], [
-                Travel(value, name, point, point, along, False)
-            ]
-        if one.kind == "contact":
-            inner, centre = one["contact"]
-            assert self.wheel_radius is not None  # the scene is refused without
-            rows = ContactHeight(inner, centre, "up", value, self.wheel_radius)
-            return [rows], [Travel(value, name, centre, centre, "up", False)]
-        if one.kind == "distance":
-            start, end = one["distance"]
-            return [ScalarProduct.distance(start, end, value)], [DistanceOf(value, name, start, end)]
-        if one.kind == "turn":
-            return self._turn(name, one)
-        drives: list[Drive] = []
-        for slide_name in one["travel"]:
-            slide = self.structure.slides[slide_name]
-            line = self._sliding(slide_name, slide, slide.points[0])
-            if any(drive.coordinate == line.place for drive in drives):
-                continue
-            if isinstance(line, OnChassisLine) and slide.along in DIRECTIONS:
-                drives.append(Travel(line.place, name, slide.through, slide.points[0], slide.along))
-            else:
-                drives.append(TravelAlong(line.place, name, slide.points[0], line))
-        return [], drives
-
-    def _turn(self, name: str, one: Input) -> tuple[list[Constraint], list[Drive]]:
-        body, other = one["angle"], one["on"]
-        tail, head = self.structure.shared(body, other)
-        point = next(p for p in self.triangles[body] if p not in (tail, head))
-        cosine, sine = f"cosine of {name}", f"sine of {name}"
-        carrier = None if other == CHASSIS else self._normal(other)
-        turn = Turn(f"turn of {body} by {name}", point, tail, head, cosine, sine, carrier)
-        return [turn], [TurnedBy(cosine, name, 0), TurnedBy(sine, name, 1)]
-
-
-@dataclass(frozen=True)
-class _Rods:
-    """Rods between two points of one line of a body.
-
-    Attributes:
-        on_axes: rods whose second point is held on the line at the rod's length, and no link.
-        by_point: by that point, the first one.
-        collinear: slides by two points of the body whose two points are joined: these two make the line.
-    """
-
-    on_axes: frozenset[str]
-    by_point: Mapping[str, str]
-    collinear: frozenset[str]
-
-    @classmethod
-    def of(cls, structure: Structure, travels: Collection[str]) -> _Rods:
-        on_axes: set[str] = set()
-        by_point: dict[str, str] = {}
-        collinear: set[str] = set()
-        for name, slide in structure.slides.items():
-            if slide.body == CHASSIS:
-                continue
-            for rod, ends in structure.rods.items():
-                if not {*ends} <= {*slide.points}:
-                    continue
-                if slide.along in structure.bodies[slide.body]:
-                    if len(slide.points) == 2 and name not in travels:
-                        collinear.add(name)
-                    continue
-                first, second = sorted(ends, key=slide.points.index)
-                if second not in by_point:
-                    on_axes.add(rod)
-                    by_point[second] = first
-        return cls(frozenset(on_axes), by_point, frozenset(collinear))
+            place = f"{input} travel" if head in DIRECTIONS else f"{input} travel along the {name}"
+        return OnLine(point, slide.through, line, head, place, "driven" if input else "free", between, axis)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from pydantic import ValidationError
 
@@ -38,6 +38,18 @@ def no_such(kind: str, name: object, known: Iterable[str], place: Iterable[str |
     there = tuple(known)
     hint = meant(name, there) if isinstance(name, str) else ""
     return TableFault(place, f"no {kind} is called {shown(name)}{hint}", ", ".join(there) or "none")
+
+
+def known_keys(table: object, known: Collection[str], what: str) -> object:
+    """A table that has no other keys than the known ones.
+
+    Raises:
+        TableFault: it has.
+    """
+    for key in table if isinstance(table, Mapping) else ():
+        if key not in known:
+            raise no_such(f"key of {what}", key, known, (key,))
+    return table
 
 
 def fault_of(error: ValidationError, place: Sequence[str | int] = ()) -> TableFault:

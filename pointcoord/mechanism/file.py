@@ -14,9 +14,10 @@ from pointcoord.errors import SceneError
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.checks import check
 from pointcoord.mechanism.compiled import Place, choices_of, compiled
-from pointcoord.mechanism.faults import TableFault, fault_of, no_such
+from pointcoord.mechanism.faults import TableFault, fault_of, known_keys, no_such
 from pointcoord.mechanism.freedoms import Freedoms, settled
-from pointcoord.mechanism.structure import CHASSIS, CLOSING, TABLES, Name, Structure, known_keys, structure_of
+from pointcoord.mechanism.inputs import CHASSIS, Name
+from pointcoord.mechanism.structure import CLOSING, TABLES, Structure, structure_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import shown
 

@@ -67,8 +67,8 @@ class Freedoms:
         kept = _independent(matrix, _rows_of_inputs(topology))
         rank = len(kept)
         null, left = (np.linalg.svd(each)[2][rank:] for each in (matrix, matrix.T))
-        free = tuple(topology.layout.describe(i) for i in dominant(null)) if len(null) else ()
-        redundant = tuple(topology.labels[i] for i in dominant(left)) if len(left) else ()
+        free = tuple(topology.layout.describe(i) for i in dominant(null))
+        redundant = tuple(topology.labels[i] for i in dominant(left))
         return cls(system.unknowns - rank, free, redundant, tuple(sorted(kept)))
 
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.structure import CHASSIS, Slide, Structure
+from pointcoord.mechanism.inputs import CHASSIS
+from pointcoord.mechanism.structure import Slide, Structure
 
 
 def joints(structure: Structure) -> Iterator[str]:

@@ -9,76 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property
-from typing import Annotated, Any, Literal
+from functools import cached_property
+from typing import Annotated, Any
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    Field,
-    StrictBool,
-    TypeAdapter,
-    ValidationError,
-)
+from pydantic import AfterValidator, BeforeValidator, StrictBool, TypeAdapter, ValidationError
 
-from pointcoord.linkage.directions import DIRECTIONS
-from pointcoord.mechanism.faults import TableFault, fault_of, no_such
-from pointcoord.wording import shown
+from pointcoord.mechanism.faults import TableFault, fault_of, known_keys, no_such
+from pointcoord.mechanism.inputs import CHASSIS, Distinct, Input, Name, Names, Pair, Role, input_of, renamed
 
-CHASSIS = "chassis"
 CLOSING = ("bodies", "rods", "slides", "inputs", "roles", "stand_ins")
 """Tables with entries by name, which a closure may put others in place of."""
 TABLES = (*CLOSING, "closures", "parts")
 PAIR_ROLES = ("wheel_axis", "steering_axis", "front_and_rear", "damper")
 ROLES = ("knuckle", *PAIR_ROLES, "inboard")
-
-
-def _once(names: tuple[str, ...]) -> tuple[str, ...]:
-    for at, each in enumerate(names):
-        if each in names[:at]:
-            raise TableFault((), f"{each!r} is named twice", "each name once")
-    return names
-
-
-def _pair(names: object) -> object:
-    if isinstance(names, list | tuple) and len(names) != 2:
-        counted = f"has {len(names)} point{'' if len(names) == 1 else 's'}"
-        raise TableFault((), counted, "two different points, such as [P, Q]")
-    if isinstance(names, list | tuple) and names[0] == names[1]:
-        raise TableFault((), f"goes from {shown(names[0])} to itself, so it has no length", "two points")
-    return names
-
-
-def _direction(name: str) -> str:
-    if name not in DIRECTIONS:
-        raise no_such("direction", name, DIRECTIONS, ())
-    return name
-
-
-def known_keys(table: object, known: Collection[str], what: str) -> object:
-    """A table that has no other keys than the known ones.
-
-    Raises:
-        TableFault: it has.
-    """
-    for key in table if isinstance(table, Mapping) else ():
-        if key not in known:
-            raise no_such(f"key of {what}", key, known, (key,))
-    return table
-
-
-Name = Annotated[str, Field(strict=True, min_length=1)]
-Ends = tuple[Name, Name]
-Role = Name | Ends
-Names = Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_once)]
-# The word at the end says what a name is the name of.
-Point = Annotated[Name, "point"]
-Pair = Annotated[Ends, BeforeValidator(_pair), "point"]
-Body = Annotated[Name, "body"]
-SlideNames = Annotated[Names, BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), "slide"]
-Direction = Annotated[Name, AfterValidator(_direction)]
-Chassis = Literal["chassis"]
 
 
 _PAIR: TypeAdapter[Role] = TypeAdapter(Pair)
@@ -107,11 +50,6 @@ class Slide:
     body: Name = CHASSIS
     turns: StrictBool = True
 
-    @property
-    def named(self) -> tuple[str, ...]:
-        """Every point that it names."""
-        return (*self.points, self.through, *(() if self.along in DIRECTIONS else (self.along,)))
-
 
 def _slide(table: object) -> object:
     """With `points`, where there is one `point`."""
@@ -124,137 +62,6 @@ def _slide(table: object) -> object:
         return table
     others = {key: value for key, value in table.items() if key != "point"}
     return {"points": (_read(_NAME, table["point"], "point"),), **others}
-
-
-class Arm(BaseModel):
-    """The angle of an arm of a body from a direction."""
-
-    angle: Body
-    of: Point
-    about: Point
-    from_: Direction = Field(alias="from")
-
-
-class Turn(BaseModel):
-    """The turn of a body about a hinge from the drawing."""
-
-    angle: Body
-    from_: Literal["drawing"] = Field(alias="from")
-    on: Body = CHASSIS
-
-
-class Travel(BaseModel):
-    """The travel of slides."""
-
-    travel: SlideNames
-
-
-class Height(BaseModel):
-    """The height of a point."""
-
-    height: Point
-    along: Direction = "up"
-
-
-class Contact(BaseModel):
-    """The height of a wheel's contact point."""
-
-    contact: Pair
-
-
-class Distance(BaseModel):
-    """The distance of two points."""
-
-    distance: Pair
-
-
-class Moves(BaseModel):
-    """A displacement of the whole car."""
-
-    moves: Chassis
-    along: Direction
-
-
-class Turns(BaseModel):
-    """A turn of the whole car."""
-
-    turns: Chassis
-    about: Point
-    along: Direction
-
-
-KINDS: Mapping[str, type[BaseModel]] = {
-    kind.__name__.lower(): kind for kind in (Arm, Turn, Travel, Height, Contact, Distance, Moves, Turns)
-}
-
-
-@cache
-def _naming(kind: str, what: str) -> tuple[str, ...]:
-    """The keys of a kind of input that name points, bodies or slides."""
-    return tuple(key for key, own in KINDS[kind].model_fields.items() if what in own.metadata)
-
-
-@dataclass(frozen=True)
-class Input:
-    """Something that can be driven.
-
-    Attributes:
-        kind: arm, turn, travel, height, contact, distance, moves or turns.
-        table: as written, with what may be left out filled in.
-    """
-
-    kind: str
-    table: Mapping[str, Any]
-
-    def __getitem__(self, key: str) -> Any:
-        return self.table[key]
-
-    @property
-    def moves_the_chassis(self) -> bool:
-        """Whether it moves the whole car, so that it holds no freedom of the mechanism."""
-        return self.kind in ("moves", "turns")
-
-    @property
-    def unit(self) -> str:
-        """Of its values."""
-        return "rad" if self.kind in ("arm", "turn", "turns") else "mm"
-
-    def named(self, what: str) -> tuple[str, ...]:
-        """The names of points, bodies or slides that it mentions."""
-        values = [self[key] for key in _naming(self.kind, what)]
-        return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
-
-    def renamed(self, rename: Mapping[str, Mapping[str, str]]) -> Input:
-        """With other names of points, bodies or slides."""
-        new = {key: names for what, names in rename.items() for key in _naming(self.kind, what)}
-        return replace(
-            self, table={key: _renamed(value, new.get(key, {})) for key, value in self.table.items()}
-        )
-
-
-def _renamed(value: Any, names: Mapping[str, str]) -> Any:
-    """A name or some, changed where there is another for it."""
-    return tuple(names.get(n, n) for n in value) if isinstance(value, tuple) else names.get(value, value)
-
-
-def _input(table: object) -> object:
-    """As its kind has it, which one of its keys tells."""
-    if not isinstance(table, Mapping):
-        raise TableFault((), f"is {shown(table)}", 'a table, such as { height = "a" }')
-    telling = ("angle", "travel", "height", "contact", "distance", "moves", "turns")
-    found = [key for key in telling if key in table]
-    if len(found) != 1:
-        hint = next((key for key in table if key not in ("along", "about")), "")
-        if not found and hint:
-            raise no_such("kind of input", hint, telling, (hint,))
-        counted = f"is of {len(found)} kinds" if found else "is of no kind"
-        raise TableFault((), counted, f"one of {', '.join(telling)}")
-    kind = found[0]
-    if kind == "angle":
-        kind = "turn" if table.get("from") == "drawing" else "arm"
-    known = [own.alias or key for key, own in KINDS[kind].model_fields.items()]
-    known_keys(table, known, f"an input by {found[0]}")
-    return Input(kind, KINDS[kind].model_validate(table).model_dump(by_alias=True))
 
 
 def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
@@ -280,10 +87,10 @@ class Structure:
     """
 
     name: str = ""
-    bodies: dict[Name, Annotated[tuple[Name, ...], AfterValidator(_once)]] = field(default_factory=dict)
+    bodies: dict[Name, Distinct] = field(default_factory=dict)
     rods: dict[Name, Pair] = field(default_factory=dict)
     slides: dict[Name, Annotated[Slide, BeforeValidator(_slide)]] = field(default_factory=dict)
-    inputs: dict[Name, Annotated[Input, BeforeValidator(_input)]] = field(default_factory=dict)
+    inputs: dict[Name, Annotated[Input, BeforeValidator(input_of)]] = field(default_factory=dict)
     roles: Annotated[dict[Name, Any], AfterValidator(_roles)] = field(default_factory=dict)
     stand_ins: dict[Name, Name] = field(default_factory=dict)
     sides: dict[str, str] = field(default_factory=dict)
@@ -321,7 +128,7 @@ class Structure:
         Where a rod, a slide or an input takes hold of the point too, nothing says of which of the two halves.
         """
         others = {end for ends in self.rods.values() for end in ends}
-        others |= {point for slide in self.slides.values() for point in slide.named}
+        others |= {point for one in self.slides.values() for point in (*one.points, one.through, one.along)}
         for one in (self.inputs[name] for name in driven if not self.inputs[name].moves_the_chassis):
             others |= set() if one.named("body") else {*one.named("point")}
         found = {}
@@ -352,47 +159,47 @@ class Structure:
         points: Mapping[str, str] | None = None,
         bodies: Mapping[str, str] | None = None,
         slides: Mapping[str, str] | None = None,
+        prefix: str = "",
     ) -> Structure:
-        """With other names; a name that comes twice in a body comes once then."""
+        """With other names; a name that comes twice in a body comes once then.
+
+        Args:
+            prefix: before the names of rods, inputs and roles.
+        """
         p, b, s = points or {}, bodies or {}, slides or {}
-        every = {**p, **b}
         return replace(
             self,
             bodies={
-                b.get(body, body): tuple(dict.fromkeys(_renamed(names, p)))
+                b.get(body, body): tuple(dict.fromkeys(renamed(names, p)))
                 for body, names in self.bodies.items()
             },
-            rods={rod: _renamed(ends, p) for rod, ends in self.rods.items()},
+            rods={prefix + rod: renamed(ends, p) for rod, ends in self.rods.items()},
             slides={
                 s.get(name, name): replace(
                     slide,
-                    points=_renamed(slide.points, p),
-                    through=_renamed(slide.through, p),
-                    along=_renamed(slide.along, p),
-                    body=_renamed(slide.body, b),
+                    points=renamed(slide.points, p),
+                    through=renamed(slide.through, p),
+                    along=renamed(slide.along, p),
+                    body=renamed(slide.body, b),
                 )
                 for name, slide in self.slides.items()
             },
             inputs={
-                name: one.renamed({"point": p, "body": b, "slide": s}) for name, one in self.inputs.items()
+                prefix + name: one.renamed({"point": p, "body": b, "slide": s})
+                for name, one in self.inputs.items()
             },
-            roles={role: _renamed(who, every) for role, who in self.roles.items()},
-            stand_ins={p.get(a, a): p.get(z, z) for a, z in self.stand_ins.items() if a not in p},
+            roles={prefix + role: renamed(who, {**p, **b}) for role, who in self.roles.items()},
+            # A point that another takes the place of is gone.
+            stand_ins={p.get(a, a): p.get(z, z) for a, z in self.stand_ins.items() if prefix or a not in p},
         )
 
     def prefixed(self, prefix: str) -> Structure:
         """With a prefix before every name but the chassis'."""
-        own = self.renamed(
+        return self.renamed(
             {n: prefix + n for n in self.points},
             {n: prefix + n for n in self.bodies if n != CHASSIS},
             {n: prefix + n for n in self.slides},
-        )
-        return replace(
-            own,
-            rods={prefix + n: ends for n, ends in own.rods.items()},
-            inputs={prefix + n: one for n, one in own.inputs.items()},
-            roles={prefix + n: who for n, who in own.roles.items()},
-            stand_ins={prefix + a: prefix + z for a, z in self.stand_ins.items()},
+            prefix,
         )
 
     def joined(self, other: Structure) -> Structure:

@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.linkage.drives import Drive
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.rounding import EPS
@@ -118,28 +117,19 @@ class Domain:
         rates = np.zeros((boxes, count, layout.size))
         curves = np.zeros((boxes, count, count, layout.size))
         for drive in mechanism.topology.drives:
-            place = layout.scalar(drive.coordinate)
-            series, doubts, variable = self._driven(drive, middle, half, order)
+            place, moves = layout.scalar(drive.coordinate), drive.input in self.free
+            i = self.free.index(drive.input) if moves else 0
+            at = middle[:, i] if moves else np.full(boxes, self.ranges[drive.input][0])
+            width = half[:, i] if moves else np.zeros(boxes)
+            series, doubts = drive.series_over(at, width, order, mechanism.drawing)
             known[:, 0, place - first] = series[:, 0]
             lacking[:, place] = drive.rounding(series[:, 0], mechanism.drawing, 0.0)[0]
             value[:, place] = doubts[0]
-            if variable is not None:
-                along = [every.power_of(variable, k) for k in range(1, order + 1)]
+            if moves:
+                along = [every.power_of(i, k) for k in range(1, order + 1)]
                 known[:, along, place - first] = series[:, 1:]
-                rates[:, variable, place] = doubts[1]
-                curves[:, variable, variable, place] = doubts[2]
+                rates[:, i, place], curves[:, i, i, place] = doubts[1:]
         return known, lacking, Jet(value, rates, curves)
-
-    def _driven(
-        self, drive: Drive, middle: Array, half: Array, order: int
-    ) -> tuple[Array, tuple[Array, Array, Array], int | None]:
-        """A driven coordinate's series, its doubts, and the variable that it is a series in, if any."""
-        drawing = self.mechanism.drawing
-        if drive.input in self.free:
-            i = self.free.index(drive.input)
-            return (*drive.series_over(middle[:, i], half[:, i], order, drawing), i)
-        held = np.full(len(middle), self.ranges[drive.input][0])
-        return (*drive.series_over(held, np.zeros(len(middle)), order, drawing), None)
 
 
 def widened(low: float, high: float) -> tuple[float, float]:

@@ -228,8 +228,6 @@ class _Flood:
                     unique_within=proof.unique_within[good],
                     coefficients=points[near],
                     off=off.each(lambda part: part[near]),
-                    condition=factors.condition[good],
-                    contraction=proof.contraction[good],
                 )
             )
             self._enter_neighbours(self.kept[-1], list(self.waiting))

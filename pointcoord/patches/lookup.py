@@ -39,30 +39,26 @@ class Lookup:
 
     def at(self, values: Array) -> Whole:
         """The number at values inside the domain, shape (..., p) to (...)."""
-        ends, parts, _ = self._flat
-        places = (((values[..., i] - low) * along).astype(np.int64) for i, (low, _, along) in enumerate(ends))
-        return np.asarray(self.table[tuple(np.minimum(place, parts - 1) for place in places)])
+        low, high = self.domain.ends
+        places = ((values - low) * (self.domain.parts / (high - low))).astype(np.int64)
+        return np.asarray(self.table[tuple(np.moveaxis(np.minimum(places, self.domain.parts - 1), -1, 0))])
 
     def at_one(self, values: Sequence[float]) -> int:
         """The number at one place, and -1 outside the domain; in a tenth of the time."""
-        ends, parts, table = self._flat
-        box = 0
-        for value, (low, high, along) in zip(values, ends, strict=True):
+        box, parts = 0, self.domain.parts
+        for value, (low, high, along) in zip(values, self._ends, strict=True):
             if not low <= value <= high:  # what is not a number is outside too
                 return -1
-            place = int((value - low) * along)
-            box = box * parts + (place if place < parts else parts - 1)
-        number: int = table.item(box)
+            box = box * parts + min(int((value - low) * along), parts - 1)
+        number: int = self.table.item(box)
         return number
 
     @cached_property
-    def _flat(self) -> tuple[list[tuple[float, float, float]], int, Whole]:
-        """Ends of each input with the smallest boxes per unit, how many of these lie along a range, and the
-        table laid out flat."""
+    def _ends(self) -> list[tuple[float, float, float]]:
+        """Ends of each input, with the smallest boxes per unit."""
         low, high = self.domain.ends
-        along = self.domain.parts / (high - low)
-        ends = list(zip(low.tolist(), high.tolist(), along.tolist(), strict=True))
-        return ends, self.domain.parts, self.table.ravel()
+        columns = (low.tolist(), high.tolist(), (self.domain.parts / (high - low)).tolist())
+        return list(zip(*columns, strict=True))
 
     def everywhere(self, low: Array, high: Array) -> NDArray[np.bool_]:
         """Whether boxes of values, (N, p), touch nothing that no patch covers, (N,)."""

@@ -67,7 +67,6 @@ class PatchProof:
         unique_within: no other assembly lies within this of the series, (P, unknowns).
         change: z by input: how much each input changes the Jacobian, (P, p).
         left_out: eta by input: how much each takes part in what the series leaves out, (P, p).
-        contraction: z + omega r, (P,).
     """
 
     proven: NDArray[np.bool_]
@@ -75,7 +74,6 @@ class PatchProof:
     unique_within: Array
     change: Array
     left_out: Array
-    contraction: Array
 
 
 def prove_patches(
@@ -112,7 +110,6 @@ def prove_patches(
         unique_within=np.where(proven[:, None], weights * found.outer[:, None], 0.0),
         change=spread,
         left_out=left_out,
-        contraction=np.where(proven, found.contraction, np.inf),
     )
 
 

@@ -32,7 +32,6 @@ class Patches:
         coefficients: of the reported points, (P, powers, 3 points), mm from the mechanism's origin.
         off: errors of their sums and of the derivatives of these by parts of the half widths, (P, 3 points),
             mm.
-        condition: condition number of the Jacobian at the middle, (P,). contraction: of the proof, (P,).
     """
 
     domain: Domain
@@ -41,8 +40,6 @@ class Patches:
     high: Whole
     coefficients: Array
     off: Jet
-    condition: Array
-    contraction: Array
 
     def taken(self, places: NDArray[np.intp]) -> Self:
         """Some of them."""
@@ -114,7 +111,7 @@ class ProvenPatches(Patches):
         """Of a domain of which nothing is proven."""
         inputs, points = len(domain.free), 3 * len(moving_points(domain.mechanism.topology))
         count, unknowns = powers(inputs, order).count, domain.mechanism.map.unknowns
-        corners, each = np.zeros((0, inputs), dtype=np.int64), np.zeros(0)
+        corners = np.zeros((0, inputs), dtype=np.int64)
         return cls(
             domain,
             order,
@@ -122,8 +119,6 @@ class ProvenPatches(Patches):
             corners,
             np.zeros((0, count, points)),
             Jet.constant(np.zeros((0, points)), inputs),
-            each,
-            each,
             np.zeros((0, count, unknowns)),
             np.zeros((0, unknowns)),
             np.zeros((0, unknowns)),

@@ -32,7 +32,8 @@ from pointcoord.mechanism.file import (
     whole_tables,
 )
 from pointcoord.mechanism.freedoms import free_directions
-from pointcoord.mechanism.structure import CHASSIS, TABLES, Structure
+from pointcoord.mechanism.inputs import CHASSIS
+from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.csv_table import beside, read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts

@@ -7,14 +7,14 @@ designs it has.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pointcoord.errors import SceneError, SweepError, UnknownName
+from pointcoord.errors import SweepError, UnknownName
 from pointcoord.linkage.topology import Topology
 from pointcoord.results.read_only import ReadOnly
 from pointcoord.scene.scene_file import Scene
@@ -42,19 +42,17 @@ class Column(ReadOnly):
 
 @dataclass(frozen=True)
 class Designs(ReadOnly):
-    """Designs of one suspension; make them with `designs_of`, `grid_of` or `designs_of_scenes`.
+    """Designs of one suspension; make them with `designs_of` or `grid_of`.
 
     Attributes:
         scene: what is not varied.
         count: how many designs there are; they are numbered from 0.
         columns: by coordinate, what varies: where it is drawn, mm.
-        scenes: the designs as scenes of their own, where they were given so; empty elsewhere.
     """
 
     scene: Scene
     count: int
     columns: Mapping[str, Column]
-    scenes: tuple[Scene, ...] = field(default=(), repr=False)
 
     @cached_property
     def following(self) -> Mapping[str, str]:
@@ -83,9 +81,7 @@ class Designs(ReadOnly):
         for coordinate, values in self.varied(numbers).items():
             point, _, axis = coordinate.rpartition(".")
             found[point][:, AXES.index(axis)] = values
-        if not self.scenes:
-            found |= {name: found[other].copy() for name, other in self.following.items()}
-        return found
+        return found | {name: found[other].copy() for name, other in self.following.items()}
 
     def design(self, number: int) -> Scene:
         """The scene of one design, checked.
@@ -96,8 +92,6 @@ class Designs(ReadOnly):
         """
         if not 0 <= number < self.count:
             raise SweepError(f"design {number}", "is none of these", f"0 to {self.count - 1}")
-        if self.scenes:
-            return Scene.checked(self.scenes[number], f"design {number}")
         points = {name: tuple(place[0].tolist()) for name, place in self.points(np.array([number])).items()}
         part = self.scene.mechanism
         content = {name: getattr(self.scene, name) for name in self.scene.model_fields_set}
@@ -165,57 +159,6 @@ def grid_of(
         sizes = " x ".join(str(length) for length in lengths.values())
         raise SweepError("the grid", f"has {sizes} = {repeat:.3g} designs", f"at most {MOST:.0e}")
     return Designs(scene, repeat, {name: columns[name] for name in values})
-
-
-def designs_of_scenes(scenes: Sequence[Scene]) -> Designs:
-    """Designs as scenes of one suspension, which may differ in their points and in the laws of their inputs.
-
-    Raises:
-        SweepError: there is none, or they are not of one suspension, one time and one list of effects.
-        SceneError: one of them is none.
-    """
-    if not len(scenes):
-        raise SweepError("the list of scenes", "is empty", "one or more scenes")
-    for number, scene in enumerate(scenes):
-        if not isinstance(scene, Scene):
-            raise SceneError(f"design {number}", "", f"is a {type(scene).__name__}, and no scene", "a Scene")
-    first = scenes[0]
-    shared = _shared(first)
-    for number, scene in enumerate(scenes):
-        if scene.mechanism.file != first.mechanism.file:
-            said = f"{scene.mechanism.name} where the first scene has {first.mechanism.name} of other tables"
-            raise SweepError(f"design {number}: mechanism", f"is {said}", "one for all designs of a sweep")
-        for key, value in _shared(scene).items():
-            if value != shared[key]:
-                said = f"{shown(value)} where the first scene has {shown(shared[key])}"
-                raise SweepError(f"design {number}: {key}", f"is {said}", "one for all designs of a sweep")
-    places = {
-        name: np.array([scene.mechanism.points[name] for scene in scenes]) for name in first.mechanism.points
-    }
-    columns = {
-        f"{name}.{axis}": Column(np.ascontiguousarray(place[:, i]))
-        for name, place in places.items()
-        for i, axis in enumerate(AXES)
-        if (place[:, i] != place[0, i]).any()
-    }
-    return Designs(first, len(scenes), columns, tuple(scenes))
-
-
-def _shared(scene: Scene) -> dict[str, object]:
-    """What scenes of one sweep have in common."""
-    part = scene.mechanism
-    return {
-        "mechanism.closure": part.closure,
-        "mechanism.side": part.side,
-        "mechanism.up": part.up,
-        "mechanism.right": part.right,
-        "mechanism.points": tuple(sorted(part.points)),
-        "inputs": tuple(sorted(scene.inputs)),
-        "effects": scene.effects,
-        "points": scene.points,
-        "tolerance": scene.tolerance,
-        "time": (scene.time.start, scene.time.stop, scene.time.samples),
-    }
 
 
 def _coordinates(

@@ -8,7 +8,7 @@ a scene.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 
@@ -25,7 +25,6 @@ from pointcoord.errors import (
     MotionTooRough,
     PointcoordError,
     SceneError,
-    SweepError,
 )
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
@@ -33,7 +32,6 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
 from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size, closing, movements
-from pointcoord.results.motion import Motion
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
 from pointcoord.results.table import Table
@@ -50,10 +48,9 @@ from pointcoord.simulation import (
     tolerance_notes,
 )
 from pointcoord.solve.assembly import close_drawing
-from pointcoord.solve.designs import SolvedDesigns, solve_designs
+from pointcoord.solve.designs import solve_designs
 from pointcoord.sweeping.designs import Designs
 from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
-from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
@@ -73,15 +70,13 @@ class Course:
     """Designs ready to be solved: what they share is checked.
 
     Attributes:
-        laws: scenes with the laws of some designs each. which: by design, the number of its laws; None where
-            all designs share them.
+        scene: what the designs share, checked.
     """
 
     designs: Designs
+    scene: Scene
     plan: Plan
     axes: CarAxes
-    laws: tuple[Scene, ...]
-    which: Numbers | None
 
     @classmethod
     def of(cls, designs: Designs) -> Course:
@@ -90,31 +85,24 @@ class Course:
         Raises:
             SceneError: the scene was made wrong after it was read.
         """
-        if designs.scenes:
-            checked = [Scene.checked(scene, f"design {i}") for i, scene in enumerate(designs.scenes)]
-            by_text: dict[str, int] = {}
-            own = [by_text.setdefault(str(sorted(scene.inputs.items())), len(by_text)) for scene in checked]
-            laws = tuple(checked[own.index(i)] for i in range(len(by_text)))
-            which = np.array(own) if len(laws) > 1 else None
-        else:
-            laws, which = (Scene.checked(designs.scene, designs.scene.title or "scene"),), None
-        plan = plan_effects(laws[0].effects, None, laws[0].unreported_points)
+        scene = Scene.checked(designs.scene, designs.scene.title or "scene")
+        plan = plan_effects(scene.effects, None, scene.unreported_points)
         for effect in plan.computed:
             if effect.way:
                 problem = f"has {effect.name!r}, and a sweep takes no derivatives by an input"
-                raise SceneError(laws[0].title or "scene", "effects", problem, "effects without gradients")
-        return cls(designs, plan, laws[0].mechanism.axes, laws, which)
-
-    @property
-    def scene(self) -> Scene:
-        """What the designs share."""
-        return self.laws[0]
+                raise SceneError(scene.title or "scene", "effects", problem, "effects without gradients")
+        return cls(designs, scene, plan, scene.mechanism.axes)
 
     @cached_property
     def table(self) -> Table:
         """Where the numbers of a design are."""
         topology = self.scene.mechanism.topology
         return Table.of(self.plan, topology, self.plan.derivatives(topology))
+
+    def readout(self, mechanism: Mechanism) -> Readout:
+        """How the numbers of designs are read."""
+        chassis = ChassisMotion.of(mechanism, self.scene.functions)
+        return Readout(mechanism=mechanism, plan=self.plan, chassis=chassis, axes=self.axes)
 
     @property
     def bytes_of_a_design(self) -> int:
@@ -129,39 +117,20 @@ class Course:
             OF_A_DESIGN + (OF_A_NUMBER * table.height * bool(table.computed) + 24 * len(table.spare)) * count
         )
 
-    def room(self, count: int) -> Array:
-        """Room for the numbers of so many designs."""
-        return np.empty((count, self.table.height, len(self.scene.instants)))
-
-    def solve(self, first: int, last: int, memory: float = np.inf, room: Array | None = None) -> Sweep:
+    def solve(self, first: int, last: int, memory: float = np.inf) -> Sweep:
         """What becomes of the designs from number `first` to before `last`.
 
         Args:
             memory: bytes for solving, beside the numbers.
-            room: for the numbers of as many designs or more; new if not given.
         Raises:
-            InputOutOfRange, InputNotKnown: a law that all designs share.
+            InputOutOfRange: a law that has no meaning, whatever the design.
         """
-        rows = self.room(last - first) if room is None else room[: last - first]
-        block, together = _Block.empty(self, first, rows), int(min(TOGETHER, memory // self.bytes_on_the_way))
-        for low in range(first, last, max(together, 1)):
-            numbers = np.arange(low, min(low + max(together, 1), last))
-            for law, members in self._by_laws(numbers):
-                try:
-                    block.solve(law, members)
-                except PointcoordError as error:
-                    if self.which is None:
-                        raise
-                    block.fail(members, error)
+        rows = np.empty((last - first, self.table.height, len(self.scene.instants)))
+        block = _Block.empty(self, first, rows)
+        together = max(int(min(TOGETHER, memory // self.bytes_on_the_way)), 1)
+        for low in range(first, last, together):
+            block.solve(np.arange(low, min(low + together, last)))
         return block.sweep()
-
-    def _by_laws(self, numbers: Numbers) -> Iterator[tuple[int, Numbers]]:
-        if self.which is None:
-            yield 0, numbers
-            return
-        which = self.which[numbers]
-        for one in np.unique(which).tolist():
-            yield one, numbers[which == one]
 
 
 @dataclass(frozen=True)
@@ -180,33 +149,30 @@ class _Block:
     filled: NDArray[np.bool_]
     closing: Array
     drawn: dict[str, Array]
-    failures: dict[int, Failure]
-    notes: list[Noted]
-    readouts: list[Readout]
+    failures: dict[int, Failure] = field(default_factory=dict)
+    notes: list[Noted] = field(default_factory=list)
+    readouts: list[Readout] = field(default_factory=list)
 
     @classmethod
     def empty(cls, course: Course, first: int, rows: Array) -> _Block:
-        count = len(rows)
         names = [
             name
             for effect in course.plan.computed
             if effect.derivative == 0 and not effect.reports_states
             for name in effect.names(course.scene.mechanism.topology)
         ]
-        drawn = {name: np.full(count, np.nan) for name in names}
-        filled = np.zeros(count, dtype=bool)
-        return cls(course, first, rows, filled, np.full(count, np.nan), drawn, {}, [], [])
+        nothing = np.full(len(rows), np.nan)
+        return cls(course, first, rows, nothing == 0.0, nothing, {name: nothing.copy() for name in names})
 
     def sweep(self) -> Sweep:
         """The block as a result."""
         course, scene = self.course, self.course.scene
         numbers = np.arange(self.first, self.first + len(self.rows))
-        solved = np.array([number not in self.failures for number in numbers.tolist()])
-        # What was not filled holds anything.
-        assert (self.filled == solved).all()
+        solved = self.alive(numbers)
+        assert (self.filled | ~solved).all()  # no failure is lost; what was not filled holds anything
         self.rows[~solved] = np.nan
         # Where no design has a mechanism, the scene's own must do to name what would have been computed.
-        readouts = self.readouts or [_readout(course, scene, scene_mechanism(scene))]
+        readouts = self.readouts or [course.readout(scene_mechanism(scene))]
         samples = readouts[0].named(scene.instants, self.rows)
         return Sweep(
             times=samples.times,
@@ -225,28 +191,36 @@ class _Block:
         """Mark designs as ones that cannot be solved."""
         for number in members:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
-            self.filled[int(number) - self.first] = False
 
-    def solve(self, law: int, members: Numbers) -> None:
-        """Solve designs that share their laws, by their number."""
-        course = self.course
-        points = course.designs.points(members)
-        sound = np.ones(len(members), dtype=bool)
-        for place in np.flatnonzero(_suspicious(course.designs, points)).tolist():
+    def alive(self, members: Numbers) -> NDArray[np.bool_]:
+        """Which of them have not failed."""
+        return ~np.isin(members, list(self.failures))
+
+    def solve(self, members: Numbers) -> None:
+        """Solve designs by their numbers."""
+        designs, scene = self.course.designs, self.course.scene
+        topology = scene.mechanism.topology
+        points = designs.points(members)
+        for place in np.flatnonzero(_suspicious(designs, points)).tolist():
             try:
-                course.designs.design(int(members[place]))
+                designs.design(int(members[place]))
             except SceneError as error:
-                sound[place] = False
                 self.fail([members[place]], error)
-        if course.scene.mechanism.topology.left_out:
-            # Which rows follow from others hangs on each drawing.
-            for number in members[sound].tolist():
-                self._alone_from_its_drawing(number)
+        sound = self.alive(members)
+        members, points = members[sound], {name: place[sound] for name, place in points.items()}
+        laws = [scene.functions[name] for name in topology.required_inputs]
+        certain = all((law.rounding(scene.instants) <= scene.tolerance).all() for law in laws)
+        if topology.left_out or not certain:
+            # Which rows follow from others hangs on each drawing, and how far a law's doubt moves a pose.
+            for number in members.tolist():
+                self._alone(number, whole=True)
             return
-        for own, mechanism in self._mechanisms(members[sound], {n: p[sound] for n, p in points.items()}):
-            places = np.searchsorted(members, own)
-            self._look_at(own, {name: place[places] for name, place in points.items()})
-            self._move(law, own, mechanism)
+        for some, mechanism in self._mechanisms(members, points):
+            places = np.searchsorted(members, some)
+            own = {name: place[places] for name, place in points.items()}
+            for i, doubt in enumerate(doubts_of_drawings(topology, own, self.course.axes)):
+                self._note(f"doubt {i}", some, doubt.where, _of_a_drawing(doubt))
+            self._move(some, mechanism)
 
     def _mechanisms(self, members: Numbers, points: Points) -> Iterator[tuple[Numbers, Mechanism]]:
         """The mechanism of all that have one, found in halves where some have none."""
@@ -264,12 +238,6 @@ class _Block:
             for some in (slice(None, half), slice(half, None)):
                 yield from self._mechanisms(members[some], {n: p[some] for n, p in points.items()})
 
-    def _look_at(self, members: Numbers, points: Points) -> None:
-        """Note what looks wrong with drawings that can be solved."""
-        topology = self.course.scene.mechanism.topology
-        for i, doubt in enumerate(doubts_of_drawings(topology, points, self.course.axes)):
-            self._note(f"doubt {i}", members, doubt.where, _of_a_drawing(doubt))
-
     def _note(
         self,
         kind: str,
@@ -279,15 +247,16 @@ class _Block:
         weights: Array | None = None,
         warns: bool = True,
     ) -> None:
+        """Note what is true of some of the members, in the words for the one of the largest weight."""
         count = int(np.count_nonzero(where))
         if count:
             place = int(np.argmax(where if weights is None else np.where(where, weights, -np.inf)))
             weight = 0.0 if weights is None else float(weights[place])
             self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
 
-    def _move(self, law: int, members: Numbers, mechanism: Mechanism) -> None:
+    def _move(self, members: Numbers, mechanism: Mechanism) -> None:
         """Close, assemble and move designs, and read their numbers."""
-        course, scene = self.course, self.course.laws[law]
+        course, scene = self.course, self.course.scene
         time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
         # Which values have a meaning is the same for every design.
@@ -295,121 +264,88 @@ class _Block:
         settings = chain_settings(scene, mechanism, course.plan.derivative)
         allowed = pose_tolerance(scene, SERIES, mechanism)
         solved = solve_designs(mechanism, functions, time.start, time.stop, settings, allowed)
-        self._look_at_closing(scene, members, mechanism, solved.closed)
-        self._read(scene, members, mechanism, functions, solved)
+        self._look_at_closing(members, mechanism, solved.closed)
+        for each in solved.followed:
+            readout = course.readout(mechanism.taken(each.numbers))
+            self._fill(ByChain(readout, functions, each.chain), scene.instants, members[each.numbers])
+        moved = members[solved.solved]
+        if len(moved):
+            for words in tolerance_notes(scene, mechanism.taken(int(solved.solved[0]))):
+                self._note("tolerance", moved, self.alive(moved), _always(words), warns=False)
+            self._note_missing(moved[self.alive(moved)])
         for place, error in solved.failures.items():
             if members[place] in self.failures:
                 continue
             if isinstance(error, MotionTooLong | MotionTooRough):
                 # What is too long or too rough for all together may not be so for one, or for a map.
                 self._alone(int(members[place]))
-                continue
-            self.fail([members[place]], error)
+            else:
+                self.fail([members[place]], error)
 
-    def _look_at_closing(self, scene: Scene, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
+    def _look_at_closing(self, members: Numbers, mechanism: Mechanism, closed: Array) -> None:
         """Refuse drawings whose closing makes another car of them, and note how far the others move."""
         moved = np.max(list(movements(mechanism, closed).values()), axis=0)
         size, places = car_size(mechanism), members - self.first
         self.closing[places] = moved
         for name, angle in self._angles(mechanism, closed).items():
             self.drawn[name][places] = angle
-        refused = np.zeros(len(members), dtype=bool)
         # A closure that puts points in their places is asked for by name, and refuses nothing.
         far = (moved > (1.0 - SLACK) * ALLOWED * size) & (not mechanism.topology.puts_in_place)
         for place in np.flatnonzero(far).tolist():
             try:
-                require_the_drawn_car(scene, closing(mechanism.taken(place), closed[place]))
+                require_the_drawn_car(self.course.scene, closing(mechanism.taken(place), closed[place]))
             except SceneError as error:
-                refused[place] = True
                 said = SceneError(f"design {members[place]}", error.key, error.problem, error.allowed)
                 self.fail([members[place]], said)
         with np.errstate(invalid="ignore"):
-            noticed = (moved > np.minimum(NOTICED, NOTICED_SHARE * size)) & ~refused
-        self._note(
-            "closing",
-            members,
-            noticed,
-            lambda place: closing(mechanism.taken(place), closed[place]).words,
-            moved,
-        )
+            noticed = (moved > np.minimum(NOTICED, NOTICED_SHARE * size)) & self.alive(members)
+
+        def words(place: int) -> str:
+            return closing(mechanism.taken(place), closed[place]).words
+
+        self._note("closing", members, noticed, words, moved)
 
     def _angles(self, mechanism: Mechanism, closed: Array) -> dict[str, Array]:
         return drawn_angles(mechanism, self.course.axes, self.course.plan.effects, closed)
-
-    def _read(
-        self,
-        scene: Scene,
-        members: Numbers,
-        mechanism: Mechanism,
-        functions: Mapping[str, TimeFunction],
-        solved: SolvedDesigns,
-    ) -> None:
-        """Put the numbers of designs that were solved into their tables."""
-        for each in solved.followed:
-            readout = _readout(self.course, scene, mechanism.taken(each.numbers))
-            solved_by = ByChain(readout, functions, each.chain)
-            self._fill(solved_by, scene.instants, members[each.numbers])
-        alive = members[solved.solved]
-        if not len(alive):
-            return
-        kept = np.array([number not in self.failures for number in alive.tolist()])
-        for words in tolerance_notes(scene, mechanism.taken(int(solved.solved[0]))):
-            self._note("tolerance", alive, kept, _the_same(words), warns=False)
-        self._require_known(scene, alive[kept], functions)
-        self._note_missing(alive[[number not in self.failures for number in alive.tolist()]])
 
     def _fill(self, solved: ByChain, instants: Array, members: Numbers) -> None:
         """Put the numbers of designs into their tables."""
         self.readouts[:] = [solved.readout]
         places = members - self.first
-        kept = np.array([number not in self.failures for number in members.tolist()])
-        whole = kept.all() and places[-1] - places[0] == len(places) - 1
-        rows = (
-            self.rows[places[0] : places[-1] + 1] if whole else np.empty((len(members), *self.rows.shape[1:]))
-        )
-        solved.fill(instants, rows)
-        if not whole:
-            self.rows[places[kept]] = rows[kept]
-        self.filled[places[kept]] = True
+        self.filled[places] = True
+        together = self.rows[places[0] : places[-1] + 1]
+        if len(together) == len(members):
+            solved.fill(instants, together)
+        else:
+            rows = np.empty((len(members), *self.rows.shape[1:]))
+            solved.fill(instants, rows)
+            self.rows[places] = rows
 
-    def _alone_from_its_drawing(self, number: int) -> None:
-        """Solve one design as a scene of its own, whose drawing nothing else has looked at."""
-        motion = self._alone(number)
-        if motion is None:
-            return
-        mechanism, place = motion.solved.readout.mechanism, number - self.first
-        self.closing[place] = motion.closing.largest
-        for name, angle in self._angles(mechanism, close_drawing(mechanism).y).items():
-            self.drawn[name][place] = angle
-        noticed, far = np.array([motion.closing.noticeable]), np.array([motion.closing.largest])
-        self._note("closing", np.array([number]), noticed, _the_same(motion.closing.words), far)
+    def _alone(self, number: int, whole: bool = False) -> None:
+        """Solve one design as a scene of its own, by whatever follows its laws.
 
-    def _alone(self, number: int) -> Motion | None:
-        """Solve one design as a scene of its own, by whatever follows its laws; None if that fails."""
+        Args:
+            whole: whether nothing has looked at its drawing yet.
+        """
         try:
             motion = simulate(self.course.designs.design(number))
         except PointcoordError as error:
             self.fail([number], error)
-            return None
-        place = number - self.first
+            return
+        place, one = number - self.first, np.array([number])
+        self.filled[place] = True
         for quantity, names in self.course.table.places.items():
             for name in names:
                 self.course.table.put(self.rows[place], quantity, name, motion.numbers[quantity][name])
-        self.filled[place] = True
-        words = f"solved by itself, by the method {motion.method!r}"
-        self._note("alone", np.array([number]), np.array([True]), _the_same(words), warns=False)
-        return motion
-
-    def _require_known(self, scene: Scene, members: Numbers, functions: Mapping[str, TimeFunction]) -> None:
-        """Where a law is less certain than the tolerance, hold each design to what it would be alone."""
-        instants = scene.instants
-        if all((law.rounding(instants) <= scene.tolerance).all() for law in functions.values()):
-            return
-        for number in members.tolist():
-            try:
-                simulate(self.course.designs.design(number))
-            except PointcoordError as error:
-                self.fail([number], error)
+        alone = f"solved by itself, by the method {motion.method!r}"
+        self._note("alone", one, np.array([True]), _always(alone), warns=False)
+        if whole:
+            mechanism, closed = motion.solved.readout.mechanism, motion.closing
+            self.closing[place] = closed.largest
+            for name, angle in self._angles(mechanism, close_drawing(mechanism).y).items():
+                self.drawn[name][place] = angle
+            noticed, far = np.array([closed.noticeable]), np.array([closed.largest])
+            self._note("closing", one, noticed, _always(closed.words), far)
 
     def _note_missing(self, members: Numbers) -> None:
         """Note which numbers are none, and why."""
@@ -433,20 +369,16 @@ class _Block:
                     if names is None or name in names:
                         words = f"{quantity.words} of {name} is not a number at some instants{why}"
                         where = np.asarray(missing[:, place].any(axis=-1))
-                        self._note(f"{quantity.name} {name}", members, where, _the_same(words), warns=False)
+                        kind = f"{quantity.name} {name}"
+                        self._note(kind, members, where, _always(words), warns=False)
 
 
 def _of_a_drawing(doubt: Doubt) -> Callable[[int], str]:
     return lambda place: doubt.words((place,))
 
 
-def _the_same(words: str) -> Callable[[int], str]:
+def _always(words: str) -> Callable[[int], str]:
     return lambda place: words
-
-
-def _readout(course: Course, scene: Scene, mechanism: Mechanism) -> Readout:
-    chassis = ChassisMotion.of(mechanism, scene.functions)
-    return Readout(mechanism=mechanism, plan=course.plan, chassis=chassis, axes=course.axes)
 
 
 def _suspicious(designs: Designs, points: Points) -> NDArray[np.bool_]:
@@ -488,19 +420,3 @@ def reason_of(error: PointcoordError) -> str:
         if isinstance(error, kind):
             return words
     return f"an input is refused ({type(error).__name__})"
-
-
-def require_room(course: Course, memory: float) -> None:
-    """Refuse designs of which not one fits.
-
-    Raises:
-        SweepError: it does not.
-    """
-    needed = course.bytes_of_a_design + course.bytes_on_the_way
-    if needed > memory:
-        raise SweepError(
-            "memory",
-            f"is {memory / 1e6:.4g} MB, where one design of {len(course.scene.instants)} instants takes "
-            f"{needed / 1e6:.4g} MB",
-            "more memory, or fewer instants",
-        )

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 from numpy.typing import ArrayLike
 
 from pointcoord.errors import SweepError
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.sweeping.designs import Designs, designs_of, designs_of_scenes, grid_of
-from pointcoord.sweeping.solving import Course, require_room
+from pointcoord.sweeping.designs import Designs, designs_of, grid_of
+from pointcoord.sweeping.solving import Course
 from pointcoord.sweeping.swept import Sweep
 
 MEMORY = 256e6  # bytes
 
 
 def sweep(
-    designs: Scene | Sequence[Scene] | Designs,
+    designs: Scene | Designs,
     points: Mapping[str, ArrayLike] | None = None,
     *,
     offsets: Mapping[str, ArrayLike] | None = None,
@@ -27,8 +27,7 @@ def sweep(
     """Solve many designs of one suspension by point coordinates, at the instants of their scene.
 
     Args:
-        designs: the scene whose points vary; or scenes of one suspension, which may differ in their points
-            and in the laws of their inputs.
+        designs: the scene whose points vary, or designs of `designs_of` or `grid_of`.
         points: by point where each design draws it, (D, 3), mm, or by coordinate, such as lower_ball_joint.z,
             (D,). What is given once holds for all designs. A rack_centre that is drawn where tie_rod_inner is
             goes along with it.
@@ -63,21 +62,18 @@ def sweep(
 
 
 def sweep_blocks(
-    designs: Scene | Sequence[Scene] | Designs,
+    designs: Scene | Designs,
     points: Mapping[str, ArrayLike] | None = None,
     *,
     offsets: Mapping[str, ArrayLike] | None = None,
     grid: bool = False,
     memory: float = MEMORY,
-    reuse: bool = False,
 ) -> Iterator[Sweep]:
     """The same in blocks of consecutive designs: any number of them, in a block's memory.
 
     Args:
         memory: bytes that a block and solving it take at most; one that is still held when the next is asked
             for comes to that.
-        reuse: whether the numbers of a block are written over those of the block before: the quickest, for
-            who is done with a block when asking for the next.
     Raises:
         SweepError: as `sweep`; or one design takes more memory than that.
 
@@ -87,25 +83,30 @@ def sweep_blocks(
     2
     """
     course = Course.of(_designs(designs, points, offsets, grid))
-    require_room(course, memory)
+    needed = course.bytes_of_a_design + course.bytes_on_the_way
+    if needed > memory:
+        raise SweepError(
+            "memory",
+            f"is {memory / 1e6:.4g} MB, where one design of {len(course.scene.instants)} instants takes "
+            f"{needed / 1e6:.4g} MB",
+            "more memory, or fewer instants",
+        )
     # Half for the numbers of a block and half for what is solved together.
     solving = max(0.5 * memory, course.bytes_on_the_way)
-    left = memory - solving
-    size, count = int(max(left // course.bytes_of_a_design, 1)), course.designs.count
-    room = course.room(min(size, count)) if reuse else None
-    return (course.solve(first, min(first + size, count), solving, room) for first in range(0, count, size))
+    size, count = int(max((memory - solving) // course.bytes_of_a_design, 1)), course.designs.count
+    return (course.solve(first, min(first + size, count), solving) for first in range(0, count, size))
 
 
 def _designs(
-    designs: Scene | Sequence[Scene] | Designs,
+    designs: Scene | Designs,
     points: Mapping[str, ArrayLike] | None,
     offsets: Mapping[str, ArrayLike] | None,
     grid: bool,
 ) -> Designs:
-    if isinstance(designs, Designs | Sequence):
+    if isinstance(designs, Designs):
         if points or offsets or grid:
             raise SweepError("points", "are given beside designs that have their own", "a scene with these")
-        return designs if isinstance(designs, Designs) else designs_of_scenes(designs)
+        return designs
     require_scene(designs)
     return (grid_of if grid else designs_of)(designs, points, offsets)
 

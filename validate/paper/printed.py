@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, Edges, States
-from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file
 from pointcoord.method import Method
@@ -44,8 +43,8 @@ def as_printed(topology: Topology) -> Topology | None:
 
     None of any other linkage: one whose points slide on other lines, or that has other points.
     """
-    sliding = [constraint for constraint in topology.constraints if isinstance(constraint, OnLine)]
-    own = [constraint for constraint in _PAPERS.constraints if isinstance(constraint, OnLine)]
+    sliding = [constraint for constraint in topology.constraints if constraint.aligned]
+    own = [constraint for constraint in _PAPERS.constraints if constraint.aligned]
     if topology.moving != _PAPERS.moving or sliding != own:
         return None
     first = topology.constraints.index(sliding[0])

@@ -8,20 +8,60 @@ beside points, and how it reads that off a drawing, it knows itself: nobody else
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import Self
+from collections.abc import Mapping
 
-from pointcoord.errors import MechanismError
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.quadratic import Product, Row
 
 
 class Constraint(ABC):
-    """Named rows over a layout, and the coordinates of y that belong to them alone."""
+    """Named rows over a layout, and the coordinates of y that belong to them alone.
+
+    Attributes:
+        vectors, slides: unknown vectors and unknown numbers that it brings along.
+        constants: numbers of the drawing that its rows need.
+        squared_lengths: pairs of points that it keeps at their drawn distance.
+        aligned: points that it puts on one line although they may be drawn beside it: two of the line and a
+            third.
+        segments: pairs of points that a picture of the linkage joins.
+        along_axes: whether its rows are the three components of one equation between vectors.
+        may_lock: whether it can be what a motion ends at.
+        holds_a_body: whether it only says how a body is made, and joins it to nothing.
+        is_length: whether its rows at the drawing are the components of a distance that the drawing misses.
+    """
 
     along_axes = False
-    """Whether its rows are the three components of one equation between vectors."""
+    holds_a_body = False
+    is_length = False
+
+    @property
+    def vectors(self) -> tuple[str, ...]:
+        return ()
+
+    @property
+    def slides(self) -> tuple[str, ...]:
+        return ()
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        return ()
+
+    @property
+    def squared_lengths(self) -> tuple[tuple[str, str], ...]:
+        return ()
+
+    @property
+    def aligned(self) -> tuple[()] | tuple[str, str, str]:
+        return ()
+
+    @property
+    def segments(self) -> tuple[tuple[str, str], ...]:
+        return ()
+
+    @property
+    def may_lock(self) -> bool:
+        return False
 
     @property
     @abstractmethod
@@ -37,65 +77,13 @@ class Constraint(ABC):
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """The rows, in the order of the labels."""
 
-    @property
-    def vectors(self) -> tuple[str, ...]:
-        """Unknown vectors that it brings along."""
-        return ()
-
-    @property
-    def slides(self) -> tuple[str, ...]:
-        """Unknown places along a line that it brings along."""
-        return ()
-
-    @property
-    def constants(self) -> tuple[str, ...]:
-        """Numbers of the drawing that its rows need."""
-        return ()
-
-    @property
-    def squared_lengths(self) -> tuple[tuple[str, str], ...]:
-        """Pairs of points that it keeps at their drawn distance; its rows need the square of that."""
-        return ()
-
-    @property
-    def aligned(self) -> tuple[()] | tuple[str, str, str]:
-        """Points that it puts on one line although they may be drawn beside it: two of the line, a third."""
-        return ()
-
-    @property
-    def segments(self) -> tuple[tuple[str, str], ...]:
-        """Pairs of points that a picture of the linkage joins."""
-        return ()
-
-    @property
-    def may_lock(self) -> bool:
-        """Whether it can be what a motion ends at."""
-        return False
-
-    @property
-    def holds_a_body(self) -> bool:
-        """Whether it only says how a body is made, and joins it to nothing."""
-        return False
-
-    @property
-    def is_length(self) -> bool:
-        """Whether its rows at the drawing are the components of a distance that the drawing misses."""
-        return False
-
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        """Its own coordinates as drawn.
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
+        """Its own coordinates as drawn, by name.
 
         Raises:
             MechanismError: the drawing gives them no value.
         """
-        return ()
-
-    @classmethod
-    def placed_together(
-        cls, constraints: Sequence[Self], layout: Layout, drawing: Drawing
-    ) -> tuple[Placed, ...]:
-        """The same of several of one kind; one after the other unless the kind says otherwise."""
-        return tuple(own for constraint in constraints for own in constraint.placed(layout, drawing))
+        return {}
 
 
 def per_axis(name: str) -> tuple[str, ...]:
@@ -106,10 +94,3 @@ def per_axis(name: str) -> tuple[str, ...]:
 def dot(a: Triple, b: Triple, c: Triple, d: Triple) -> Row:
     """(y_a - y_b) . (y_c - y_d) as products, for vectors given by their indices."""
     return tuple(Product(1.0, (a[i], b[i]), (c[i], d[i])) for i in range(3))
-
-
-def no_length(start: str, end: str) -> MechanismError:
-    """The error for two points in one place that a length or a line needs apart."""
-    return MechanismError(
-        f"link {start} - {end} has no length: both points are at the same place; move one", [start, end]
-    )

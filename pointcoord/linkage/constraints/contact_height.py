@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,6 @@ from pointcoord.numerics.double_double import (
     pair_root,
     pair_sum,
     two_product,
-    two_sum,
 )
 from pointcoord.numerics.quadratic import Product, Row
 
@@ -85,16 +85,15 @@ class ContactHeight(Constraint):
             ),
         )
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """The drawn lean and the constants, with what they lack by rounding.
 
         Raises:
             MechanismError: the axis has no length, or is drawn upright.
         """
-        inner, centre = drawing.vectors[self.inner], drawing.vectors[self.centre]
-        e = drawing.pair(self.direction)
-        square = exact_square(centre, inner)
-        lean = pair_dot(two_sum(centre, -inner), e)
+        centre, e = drawing.vectors[self.centre], drawing.edge(self.direction)
+        square = exact_square(centre, drawing.vectors[self.inner])
+        lean = pair_dot(drawing.edge(self.centre, self.inner), e)
         reach2 = pair_sum(square, minus_pair(pair_product(lean, lean)))
         if not (reach2[0] > 1e-12 * square[0]).all() or not (square[0] > 0.0).all():
             names = (self.inner, self.centre)
@@ -106,23 +105,16 @@ class ContactHeight(Constraint):
         reach = pair_root(reach2)
         radius = two_product(np.asarray(self.radius / drawing.unit), np.ones_like(square[0]))
         share = pair_quotient(radius, pair_root(square))
-        height = pair_dot((centre, np.zeros_like(centre)), e)
         drop = pair_product(share, reach)
-        drawn = pair_sum(height, minus_pair(drop))
+        drawn = pair_sum(pair_dot((centre, np.zeros_like(centre)), e), minus_pair(drop))
         # The root loses what the difference under it cancels to; roots, quotients and products round a few
         # times as often as one product of pairs.
         lost = 8.0 * PAIRS * (1.0 + square[0] / reach2[0])
         size = np.sum(np.abs(centre * e[0]), axis=-1) + np.abs(drop[0])
-        doubts = (PAIRS * square[0], 8.0 * PAIRS * share[0], lost * size)
-        constants = (square, share, drawn)
-        places = tuple(layout.scalar(name) for name in self.constants)
-        values = tuple(layout.scalar(name) for name in self.slides)
-        return (
-            Placed(values, np.stack([lean[0], reach[0]], axis=-1)),
-            Placed(
-                places,
-                np.stack([high for high, _ in constants], axis=-1),
-                np.stack([low for _, low in constants], axis=-1),
-                np.stack(doubts, axis=-1),
-            ),
+        constants = (
+            Placed(*square, PAIRS * square[0]),
+            Placed(*share, 8.0 * PAIRS * share[0]),
+            Placed(*drawn, lost * size),
         )
+        slides = (Placed(lean[0]), Placed(reach[0]))
+        return dict(zip((*self.slides, *self.constants), (*slides, *constants), strict=True))

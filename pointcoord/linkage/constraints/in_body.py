@@ -13,13 +13,14 @@ that it is drawn by.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.constraint import Constraint, no_length
+from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
@@ -33,7 +34,7 @@ from pointcoord.numerics.double_double import (
 )
 from pointcoord.numerics.quadratic import Product, Row
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.numerics.vectors import lengths
+from pointcoord.numerics.vectors import cross, lengths
 
 Array = NDArray[np.float64]
 
@@ -72,9 +73,9 @@ class Normal(Constraint):
             for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
         )
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
-        return (Placed(layout.vector(self.normal), np.cross(first - base, second - base)),)
+        return {self.normal: Placed(cross(first - base, second - base))}
 
 
 @dataclass(frozen=True)
@@ -109,16 +110,15 @@ class AxisInBody(Constraint):
         vector = layout.vector(self.axis), (layout.zero,) * 3
         return weighted_rows(layout, vector, self.normal, self.constants)
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """The drawn direction and its constants, with what they lack by rounding.
 
         Raises:
             MechanismError: the axis has no direction, or the triangle is flat.
         """
-        direction = scaled_axis(drawing, self.tail, self.head)
-        places = tuple(layout.scalar(name) for name in self.constants)
+        direction = drawing.axis(self.tail, self.head)
         weights = weights_in_body(drawing, direction, self.normal, self.axis)
-        return (Placed(layout.vector(self.axis), direction[0]), Placed(places, *weights))
+        return {self.axis: Placed(direction[0]), **by_component(self.constants, weights)}
 
 
 @dataclass(frozen=True)
@@ -149,9 +149,14 @@ class PointInBody(Constraint):
         vector = layout.vector(self.point), layout.vector(self.normal.base)
         return weighted_rows(layout, vector, self.normal, self.constants)
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        places = tuple(layout.scalar(name) for name in self.constants)
-        return (Placed(places, *carrier_weights(drawing, self.point, self.normal)),)
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
+        return by_component(self.constants, carrier_weights(drawing, self.point, self.normal))
+
+
+def by_component(names: Sequence[str], vector: Placed) -> dict[str, Placed]:
+    """The components of vectors (..., 3) as numbers with names of their own."""
+    values, lacks, doubt = (np.asarray(part) for part in vector)
+    return {name: Placed(values[..., i], lacks[..., i], doubt[..., i]) for i, name in enumerate(names)}
 
 
 def weight_names(name: str, body: Normal) -> tuple[str, ...]:
@@ -177,14 +182,13 @@ def weighted_rows(
     )
 
 
-def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> tuple[Array, Array, Array]:
+def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> Placed:
     """(a, b, c) of a drawn vector in a body, what they lack by rounding, and their doubt, each (..., 3).
 
     Raises:
         MechanismError: the body's triangle is flat.
     """
-    base, first, second = (drawing.vectors[name] for name in (body.base, body.first, body.second))
-    edges = (two_sum(first, -base), two_sum(second, -base))
+    edges = drawing.edge(body.first, body.base), drawing.edge(body.second, body.base)
     columns = (*edges, pair_cross(*edges))
     frame = np.stack(np.broadcast_arrays(*(high for high, _ in columns)), axis=-1)
     sides = lengths(edges[0][0]) * lengths(edges[1][0])
@@ -203,37 +207,12 @@ def weights_in_body(drawing: Drawing, vector: Pair, body: Normal, what: str) -> 
     spread = np.abs(inverse)
     again = _applied(np.abs(frame), _applied(spread, np.abs(rest)))
     doubt = _applied(spread, PAIRS * size + SOLVED * again) + PAIRS * np.abs(values)
-    return values, lacks, doubt
+    return Placed(values, lacks, doubt)
 
 
-def carrier_weights(drawing: Drawing, point: str, body: Normal) -> tuple[Array, Array, Array]:
+def carrier_weights(drawing: Drawing, point: str, body: Normal) -> Placed:
     """The same of a drawn point from the base of the body."""
-    vector = two_sum(drawing.vectors[point], -drawing.vectors[body.base])
-    return weights_in_body(drawing, vector, body, point)
-
-
-def scaled_axis(drawing: Drawing, tail: str, head: str) -> Pair:
-    """The drawn direction from tail to head, as high and low, of a length between 1/2 and 1.
-
-    Without a tail, half the unit vector along a direction of the car.
-
-    Raises:
-        MechanismError: both points are in one place.
-    """
-    if not tail:
-        high, low = drawing.pair(head)
-        return 0.5 * high, 0.5 * low
-    scale = axis_scale(drawing, tail, head)[..., None]
-    high, low = two_sum(drawing.vectors[head], -drawing.vectors[tail])
-    return high * scale, low * scale
-
-
-def axis_scale(drawing: Drawing, tail: str, head: str) -> Array:
-    """The power of two that brings the drawn distance between 1/2 and 1, shape (...,)."""
-    length = drawing.distance(tail, head)
-    if not (length > 0.0).all():
-        raise no_length(tail, head)
-    return np.ldexp(1.0, -np.frexp(length)[1])
+    return weights_in_body(drawing, drawing.edge(point, body.base), body, point)
 
 
 def _applied(matrix: Array, vector: Array) -> Array:

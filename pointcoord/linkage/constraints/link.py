@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from pointcoord.linkage.constraints.constraint import Constraint, dot, no_length
-from pointcoord.linkage.drawing import Drawing, Placed
+from pointcoord.linkage.constraints.constraint import Constraint, dot
+from pointcoord.linkage.drawing import Drawing, Placed, no_length
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.double_double import exact_square
 from pointcoord.numerics.quadratic import Product, Row
@@ -32,30 +32,31 @@ class Link(Constraint):
     def segments(self) -> tuple[tuple[str, str], ...]:
         return ((self.start, self.end),)
 
-    def rows(self, layout: Layout) -> tuple[Row, ...]:
-        start, end = layout.vector(self.start), layout.vector(self.end)
-        square = layout.squared_length(self.start, self.end)
-        length = Product(-1.0, (square, layout.zero), (layout.one, layout.zero))
-        return ((*dot(start, end, start, end), length),)
-
     @property
     def squared_lengths(self) -> tuple[tuple[str, str], ...]:
         return ((self.start, self.end),)
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
-        return self.placed_together((self,), layout, drawing)
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """d^2."""
+        return (f"squared length of {self.name}",)
 
-    @classmethod
-    def placed_together(
-        cls, constraints: Sequence[Link], layout: Layout, drawing: Drawing
-    ) -> tuple[Placed, ...]:
-        """The squares of the drawn lengths; five units of rounding at most, which are measured."""
-        starts = drawing.stacked([link.start for link in constraints])
-        ends = drawing.stacked([link.end for link in constraints])
-        squares = np.sum((starts - ends) ** 2, axis=-1)
-        if not (squares > 0.0).all():
-            short = constraints[int(np.argwhere(~(squares > 0.0))[0, -1])]
-            raise no_length(short.start, short.end)
-        exact, rest = exact_square(starts, ends)
-        places = tuple(layout.squared_length(link.start, link.end) for link in constraints)
-        return (Placed(places, squares, (exact - squares) + rest, 256 * UNIT_ROUNDOFF**2 * squares),)
+    def rows(self, layout: Layout) -> tuple[Row, ...]:
+        start, end = layout.vector(self.start), layout.vector(self.end)
+        square = layout.scalar(*self.constants)
+        length = Product(-1.0, (square, layout.zero), (layout.one, layout.zero))
+        return ((*dot(start, end, start, end), length),)
+
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
+        """The square of the drawn length; five units of rounding at most, which are measured.
+
+        Raises:
+            MechanismError: both points are in one place.
+        """
+        start, end = drawing.vectors[self.start], drawing.vectors[self.end]
+        square = np.sum((start - end) ** 2, axis=-1)
+        if not (square > 0.0).all():
+            raise no_length(self.start, self.end)
+        exact, rest = exact_square(start, end)
+        doubt = 256 * UNIT_ROUNDOFF**2 * square
+        return {self.constants[0]: Placed(square, (exact - square) + rest, doubt)}

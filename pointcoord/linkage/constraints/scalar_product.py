@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from pointcoord.linkage.constraints.constraint import Constraint, dot
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
-from pointcoord.numerics.double_double import PAIRS, Pair, pair_dot, two_sum
+from pointcoord.numerics.double_double import PAIRS, pair_dot
 from pointcoord.numerics.quadratic import Product, Row
 
 Edge = tuple[str, str]
@@ -20,7 +21,10 @@ class ScalarProduct(Constraint):
     r"""u . v - k - x = 0, with k as drawn and x driven, where the row has such. One row.
 
     An edge runs from its second point to its first; with an empty second name it is a direction of the car
-    or the place of a point.
+    or the place of a point. So x is the height of a point over another, with d cos(theta) the paper's arm
+    angle, eq. (12), or over where it is drawn, with k; or the square of a distance. Two bodies that do not
+    turn against each other about a line keep k for an edge of each: about a line along d the product changes
+    as d . (v x u), so the three may not lie in one plane.
 
     Attributes:
         what: its name in messages.
@@ -33,30 +37,6 @@ class ScalarProduct(Constraint):
     other: Edge
     drawn: str = ""
     driven: str = ""
-
-    @classmethod
-    def rise(cls, point: str, pivot: str, direction: str, rise: str) -> ScalarProduct:
-        """Driven height of a point over another; with d cos(theta) the paper's arm angle, eq. (12)."""
-        return cls(f"rise of {point} over {pivot}", (point, pivot), (direction, ""), "", rise)
-
-    @classmethod
-    def height(cls, point: str, direction: str, rise: str) -> ScalarProduct:
-        """Driven height of a point over where it is drawn."""
-        drawn = f"drawn height of {point} {direction}"
-        return cls(f"height of {point}", (point, ""), (direction, ""), drawn, rise)
-
-    @classmethod
-    def distance(cls, start: str, end: str, square: str) -> ScalarProduct:
-        """Driven distance of two points."""
-        return cls(f"distance of {start} and {end}", (start, end), (start, end), "", square)
-
-    @classmethod
-    def kept_from_turning(cls, line: str, one: Edge, other: Edge) -> ScalarProduct:
-        """Two bodies, each with an edge of its own, that do not turn against each other about a line.
-
-        About a line along d the product changes as d . (v x u), so the three may not lie in one plane.
-        """
-        return cls(f"turn about the {line}", one, other, f"product of edges across the {line}")
 
     @property
     def name(self) -> str:
@@ -78,16 +58,9 @@ class ScalarProduct(Constraint):
         less = (Product(-1.0, (scalar, layout.zero), (layout.one, layout.zero)) for scalar in scalars)
         return ((*dot(a, b, c, d), *less),)
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         if not self.drawn:
-            return ()
-        u, v = (_drawn(drawing, edge) for edge in (self.one, self.other))
-        high, low = pair_dot(u, v)
+            return {}
+        u, v = drawing.edge(*self.one), drawing.edge(*self.other)
         size = np.sum(np.abs(u[0] * v[0]), axis=-1)
-        place = (layout.scalar(self.drawn),)
-        return (Placed(place, high[..., None], low[..., None], PAIRS * size[..., None]),)
-
-
-def _drawn(drawing: Drawing, edge: Edge) -> Pair:
-    head, tail = edge
-    return two_sum(drawing.vectors[head], -drawing.vectors[tail]) if tail else drawing.pair(head)
+        return {self.drawn: Placed(*pair_dot(u, v), PAIRS * size)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,7 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, dot, per_axis
 from pointcoord.linkage.constraints.in_body import (
     Normal,
-    axis_scale,
-    scaled_axis,
+    by_component,
     weight_names,
     weighted_rows,
     weights_in_body,
@@ -20,12 +20,10 @@ from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
     PAIRS,
-    Pair,
     pair_cross,
     pair_dot,
     pair_quotient,
     pair_root,
-    two_sum,
 )
 from pointcoord.numerics.quadratic import Product, Row
 
@@ -112,41 +110,31 @@ class Turn(Constraint):
                 )
         return tuple(found)
 
-    def placed(self, layout: Layout, drawing: Drawing) -> tuple[Placed, ...]:
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """The drawn vectors and parts.
 
         Raises:
             MechanismError: the point is drawn on the hinge.
         """
-        across, along, v = self._drawn(drawing)
-        parts = tuple(np.sum(v[0] * vector[0], axis=-1) for vector in (across, along))
-        found = [Placed(tuple(layout.scalar(name) for name in self.slides), np.stack(parts, axis=-1))]
-        for number, vector in enumerate((across, along)):
-            places = tuple(layout.scalar(name) for name in self.constants[3 * number : 3 * number + 3])
-            if self.carrier is None:
-                # Products of vectors that are at most 1 long, and a quotient of one by another.
-                found.append(Placed(places, vector[0], vector[1], 8.0 * PAIRS))
-                continue
-            values, lacks, doubt = weights_in_body(drawing, vector, self.carrier, self.turn)
-            found.append(Placed(layout.vector(self._named[number]), vector[0]))
-            found.append(Placed(places, values, lacks, doubt))
-        return tuple(found)
-
-    def _drawn(self, drawing: Drawing) -> tuple[Pair, Pair, Pair]:
-        """N, M and v as drawn."""
-        axis = scaled_axis(drawing, self.tail, self.head)
-        scale = axis_scale(drawing, self.tail, self.point)[..., None]
-        high, low = two_sum(drawing.vectors[self.point], -drawing.vectors[self.tail])
+        axis, scale = drawing.axis(self.tail, self.head), drawing.scale(self.tail, self.point)[..., None]
+        high, low = drawing.edge(self.point, self.tail)
         v = high * scale, low * scale
         across = pair_cross(axis, v)
-        square = np.sum(across[0] ** 2, axis=-1)
-        if not (square > 1e-24).all():
+        if not (np.sum(across[0] ** 2, axis=-1) > 1e-24).all():
             raise MechanismError(
                 f"{self.point} is drawn on the hinge {self.tail} - {self.head}, so it does not tell how far "
                 "its body has turned; draw it off the hinge",
                 (self.point, self.tail, self.head),
             )
         length = pair_root(pair_dot(axis, axis))
-        plain = pair_cross(across, axis)
-        along = pair_quotient(plain, (length[0][..., None], length[1][..., None]))
-        return across, along, v
+        along = pair_quotient(pair_cross(across, axis), (length[0][..., None], length[1][..., None]))
+        found: dict[str, Placed] = {}
+        for i, vector in enumerate((across, along)):
+            found[self.slides[i]] = Placed(np.sum(v[0] * vector[0], axis=-1))
+            # Products of vectors that are at most 1 long, and a quotient of one by another.
+            numbers = Placed(*vector, np.full_like(vector[0], 8.0 * PAIRS))
+            if self.carrier is not None:
+                found[self._named[i]] = Placed(vector[0])
+                numbers = weights_in_body(drawing, vector, self.carrier, self.turn)
+            found |= by_component(self.constants[3 * i : 3 * i + 3], numbers)
+        return found

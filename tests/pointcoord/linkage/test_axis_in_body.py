@@ -8,26 +8,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal
-from pointcoord.linkage.constraints.on_line import HeldOnAxis
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drawing import Drawing, Placed
-from pointcoord.linkage.layout import Layout
 
 Array = NDArray[np.float64]
 Vector = list[Fraction]
 U = 2.0**-53
 BODY = Normal("n", "base", "first", "second")
 AXIS = AxisInBody("axis", "tail", "head", BODY)
-HELD = HeldOnAxis("end", "head", AXIS, "held")
-LAYOUT = Layout(
-    moving=("base", "first", "second", "tail", "head", "end"),
-    ratios=(),
-    chassis=(),
-    directions=(),
-    driven=(),
-    squared_lengths=(),
-    vectors=("n", "axis"),
-    constants=(*AXIS.constants, *HELD.constants),
-)
+HELD = OnLine("end", "head", "axis", "axis", "held", "held", axis=AXIS)
 
 
 def exact(vector: Array) -> Vector:
@@ -70,7 +59,8 @@ def test_the_place_of_an_axis_in_its_body_is_right_to_its_stated_doubt(
 ) -> None:
     points = drawn(seed, place, 10.0**power)
     assume(np.linalg.norm(points["head"] - points["tail"]) > 1e-3)
-    direction, constants = AXIS.placed(LAYOUT, Drawing(points, np.array(1.0)))
+    placed = AXIS.placed(Drawing(points, np.array(1.0)))
+    direction, constants = placed["axis"], [placed[name] for name in AXIS.constants]
     base, first, second, tail, head = (exact(points[n]) for n in ("base", "first", "second", "tail", "head"))
     scale = _scale(less(head, tail))
     axis = [scale * c for c in less(head, tail)]
@@ -79,10 +69,10 @@ def test_the_place_of_an_axis_in_its_body_is_right_to_its_stated_doubt(
     volume = dot(frame[0], cross(frame[1], frame[2]))
     for i in range(3):
         columns = [axis if j == i else frame[j] for j in range(3)]
-        _is_right(constants, i, dot(columns[0], cross(columns[1], columns[2])) / volume)
+        _is_right(constants[i], dot(columns[0], cross(columns[1], columns[2])) / volume)
     # The doubt is of the order of u^2, so that it never shows beside the rounding of a pose.
     height = np.linalg.norm(np.cross(points["first"] - points["base"], points["second"] - points["base"]))
-    assert np.max(constants.doubt) <= 1e5 * U**2 / height**4
+    assert max(float(each.doubt) for each in constants) <= 1e5 * U**2 / height**4
     # An unknown: it is drawn to rounding only.
     assert np.allclose(direction.values, [float(c) for c in axis], rtol=4 * U, atol=0.0)
 
@@ -91,13 +81,13 @@ def test_the_place_of_an_axis_in_its_body_is_right_to_its_stated_doubt(
 def test_a_point_is_held_at_its_drawn_distance_on_its_drawn_side(seed: int, place: str) -> None:
     points = drawn(seed, place, 1.0)
     assume(np.linalg.norm(points["head"] - points["tail"]) > 1e-3)
-    (held,) = HELD.placed(LAYOUT, Drawing(points, np.array(1.0)))
+    held = HELD.placed(Drawing(points, np.array(1.0)))["held"]
     tail, head, end = (exact(points[n]) for n in ("tail", "head", "end"))
     scale = _scale(less(head, tail))
     axis = [scale * c for c in less(head, tail)]
     squared = dot(less(end, head), less(end, head)) / dot(axis, axis)
     side = 1 if dot(less(end, head), axis) >= 0 else -1
-    found, lacks, doubt = _numbers(held, 0)
+    found, lacks, doubt = _numbers(held)
     # found = side sqrt(squared) + e  gives  found^2 - squared = 2 found e - e^2
     error = ((found + lacks) ** 2 - squared) / (2 * (found + lacks)) if squared else found
     assert found * side >= 0
@@ -115,11 +105,11 @@ def _scale(vector: Vector) -> Fraction:
     return scale
 
 
-def _numbers(placed: Placed, i: int) -> tuple[Fraction, Fraction, Fraction]:
-    return tuple(Fraction(float(np.asarray(part)[i])) for part in (placed.values, placed.lacks, placed.doubt))
+def _numbers(placed: Placed) -> list[Fraction]:
+    return [Fraction(float(part)) for part in placed]
 
 
-def _is_right(placed: Placed, i: int, meant: Fraction) -> None:
-    found, lacks, doubt = _numbers(placed, i)
+def _is_right(placed: Placed, meant: Fraction) -> None:
+    found, lacks, doubt = _numbers(placed)
     assert abs(found + lacks - meant) <= doubt
     assert abs(lacks) <= 5 * U * abs(found)

@@ -45,23 +45,6 @@ def test_cars_that_share_some_carriers_have_the_weights_that_they_have_alone(
     assert carried_gain(weights, together, carriers) == pytest.approx(max(gains), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("weights", "gain"),
-    [
-        ((0.0, 0.0, 0.0), 1.0),  # in the base
-        ((0.25, 0.5, 0.0), 1.0),  # inside the triangle
-        ((1.0, 1.0, 0.0), 3.0),  # |1 - 2| + 1 + 1
-        ((0.25, 0.5, -0.125), 1.75),  # and 2 / 8 of the largest sum of two sides, 3
-    ],
-)
-def test_the_gain_is_the_sum_of_what_each_carrier_may_move_the_point(
-    weights: tuple[float, ...], gain: float
-) -> None:
-    places = {"base": (0.0, 0.0, 0.0), "first": (1.0, 0.0, 0.0), "second": (0.0, -2.0, 0.0)}
-    drawing = Drawing({name: np.array(place) for name, place in places.items()}, np.array(1.0))
-    assert carried_gain(np.array(weights), drawing, ("base", "first", "second")) == gain
-
-
 OFF = 1e-6  # of the unit: what is quadratic in it, some 1e-12, is far below the slack
 
 

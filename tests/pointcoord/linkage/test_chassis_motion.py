@@ -11,21 +11,9 @@ from pointcoord import InputOutOfRange, Scene, simulate
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.time_functions import Polynomial, Sine
+from pointcoord.time_functions import Polynomial
 
-LIFT, SWAY = Polynomial((3.0, -2.0, 0.5, 0.25)), Sine(12.0, 3.0, 0.4, -1.0)
-UP, SIDE = np.array([0.6, 0.0, 0.8]), np.array([0.8, 0.0, -0.6])
-T = np.linspace(0.0, 2.0, 17)
-
-
-def test_of_a_batch_of_cars_each_goes_along_its_own_direction() -> None:
-    ways = np.array([UP, SIDE, [0.0, 1.0, 0.0]])
-    together = ChassisMotion({"heave": LIFT}, {"heave": ways}).states(T, 2)
-    for i, way in enumerate(ways):
-        alone = ChassisMotion({"heave": LIFT}, {"heave": way}).states(T, 2)
-        for many, one in zip(together, alone, strict=True):
-            assert many.shape == (3, len(T), 3)
-            assert np.array_equal(many[i], one)
+UP = np.array([0.6, 0.0, 0.8])
 
 
 @pytest.mark.parametrize(

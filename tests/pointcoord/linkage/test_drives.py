@@ -42,7 +42,7 @@ CASES: dict[str, tuple[Drive, Equation, tuple[float, float, float]]] = {
     "arm": (ARM, lambda x: length_of(DRAWING) * mpmath.cos(x), (0.6, 2.5, 0.5)),
     "travel": (RACK, lambda x: x / UNIT, (-90.0, 90.0, 8.0)),
     "travel along a line": (
-        TravelAlong("place", "strut", "inner", OnLine("inner", "pivot", "ball", "place")),
+        TravelAlong("place", "strut", OnLine("inner", "pivot", "line", "ball", "place", between=True)),
         lambda x: x / (UNIT * length_of(DRAWING)),
         (200.0, 400.0, 8.0),
     ),
@@ -154,18 +154,6 @@ def test_a_coordinate_tells_its_input(kind: str) -> None:
         assert float(equation(mpf(float(told[0])))) == pytest.approx(float(coordinate[0]), abs=1e-14)
         if "turn" not in kind:
             assert told[0] == pytest.approx(x, rel=1e-13)
-
-
-def test_an_arm_turns_from_straight_up_to_straight_down() -> None:
-    arm = float(length_of(DRAWING))
-    for angle, rise in ((0.0, arm), (np.pi / 2, 0.0), (np.pi, -arm)):
-        (found,) = ARM.series(np.array([angle]), DRAWING)
-        assert found == pytest.approx(rise, abs=4.0 * U)
-    assert [float(x) for x in ARM.extremes(DRAWING)] == pytest.approx([arm, -arm], rel=4.0 * U)
-    # A rounding beyond the end is the end.
-    assert ARM.input_value(np.array([1.0001, -1.0001]) * arm, DRAWING).tolist() == [0.0, np.pi]
-    height = DRAWING.vectors["ball"][2] - DRAWING.vectors["pivot"][2]
-    assert float(ARM.drawn(DRAWING)) == height
 
 
 @pytest.mark.parametrize("angle", [-1e-3, 3.2, 90.0, 180.0, 181.0, 6.0, np.nan])

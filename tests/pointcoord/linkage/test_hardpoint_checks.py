@@ -1,93 +1,61 @@
 """Hardpoints put on a topology: what is refused, and that neither place nor size costs a digit."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sample_cars import SAMPLES, SampleCar, by_car
+from sample_cars import SampleCar, by_car
 
 from pointcoord import MechanismError, Scene, simulate
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.hardpoints import build_mechanism
-from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism import mechanism_file
 from pointcoord.method import NEWTON, SERIES, Method
 
 COLLINEAR = mechanism_file("macpherson").topology("collinear", points=Scene.load("bounce").mechanism.points)
 Points = dict[str, tuple[float, float, float]]
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
-EVERY_LINK = [(car, c) for car in SAMPLES for c in car.topology.constraints if isinstance(c, Link)]
-by_link = pytest.mark.parametrize(
-    ("car", "link"), EVERY_LINK, ids=[f"{car.name} {link.name}" for car, link in EVERY_LINK]
-)
 
 
-def without(*left_out: Link, topology: Topology = COLLINEAR) -> Topology:
-    return replace(topology, constraints=tuple(c for c in topology.constraints if c not in left_out))
+def test_a_point_that_is_missing_or_no_number_is_refused_by_name(table: Points) -> None:
+    for place in ((1.0, np.nan, 2.0), (1.0, 2.0)):
+        with pytest.raises(MechanismError, match=r"point 'strut_top'.*three finite numbers") as caught:
+            build_mechanism(COLLINEAR, table | {"strut_top": place}, AXES)
+        assert caught.value.names == ("strut_top",)
+    without = {name: place for name, place in table.items() if name != "strut_top"}
+    with pytest.raises(MechanismError, match="point 'strut_top' is missing; needed: "):
+        build_mechanism(COLLINEAR, without, AXES)
 
 
-def doubled(topology: Topology, link: Link) -> Topology:
-    return replace(topology, constraints=(*topology.constraints, Link(link.end, link.start)))
+@by_car
+def test_a_drawing_that_loses_rank_is_refused_with_what_is_free_and_what_is_redundant(car: SampleCar) -> None:
+    """An arm drawn straight up: its height and its rod say the same."""
+    front = car.points["lower_arm_front"]
+    points = {**car.points, "lower_ball_joint": (front[0], front[1], front[2] + 300.0)}
+    with pytest.raises(MechanismError, match="is not determined: free at the drawing: ") as caught:
+        build_mechanism(car.topology, points, AXES)
+    rise = "rise of lower_ball_joint over lower_arm_front"
+    assert {rise, "link lower_ball_joint - lower_arm_front"} <= set(caught.value.names)
+    assert (
+        f"redundant or contradictory at the drawing: link lower_ball_joint - lower_arm_front, {rise}"
+        in str(caught.value)
+    )
+    assert "of lower_ball_joint" in str(caught.value).partition("redundant")[0]
 
 
-@by_link
-def test_missing_link_is_under_determined_and_the_free_coordinates_are_named(
-    car: SampleCar, link: Link
-) -> None:
-    whole = car.topology
-    n = whole.layout.unknowns
-    expected = f"under-determined: {n} unknowns, {n - 1} equations; free"
-    with pytest.raises(MechanismError, match=expected) as caught:
-        build_mechanism(without(link, topology=whole), car.points, AXES)
-    # An own null space from the drawing: with that row gone exactly one direction is free.
-    mechanism = car.mechanism()
-    jacobian = np.delete(mechanism.map.jacobian(mechanism.drawn), whole.labels.index(link.name), axis=0)
-    free = np.abs(np.linalg.svd(jacobian)[2][-1])
-    moving = {whole.layout.describe(i) for i in np.flatnonzero(free > 0.1 * free.max())}
-    assert set(caught.value.names) == moving
-    assert all(name in str(caught.value) for name in moving)
-
-
-@by_link
-def test_doubled_link_is_over_determined_and_both_rows_are_named(car: SampleCar, link: Link) -> None:
-    n = car.topology.layout.unknowns
-    with pytest.raises(MechanismError, match=f"over-determined: {n} unknowns, {n + 1} equations") as caught:
-        build_mechanism(doubled(car.topology, link), car.points, AXES)
-    assert set(caught.value.names) == {f"link {link.start} - {link.end}", f"link {link.end} - {link.start}"}
-
-
-@by_link
-def test_link_without_length_is_refused_by_name(car: SampleCar, link: Link) -> None:
+@by_car
+def test_a_link_without_length_is_refused_by_name(car: SampleCar) -> None:
+    link = next(c for c in car.topology.constraints if isinstance(c, Link))
     points = {**car.points, link.start: car.points[link.end]}
     with pytest.raises(MechanismError, match=r"no length|lie in one line") as caught:
         build_mechanism(car.topology, points, AXES)
     assert {link.start, link.end} <= set(caught.value.names)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("name", ["strut_top", "tie_rod_outer", "wheel_centre"])
-def test_number_that_is_not_finite_is_refused_by_name(table: Points, name: str, bad: float) -> None:
-    with pytest.raises(MechanismError, match=f"point '{name}'.*three finite numbers") as caught:
-        build_mechanism(COLLINEAR, table | {name: (1.0, bad, 2.0)}, AXES)
-    assert caught.value.names == (name,)
-
-
-@by_car
-def test_missing_point_is_refused_by_name(car: SampleCar) -> None:
-    for name in car.topology.required_points:
-        points = {other: place for other, place in car.points.items() if other not in (name, "rack_centre")}
-        if name == car.topology.stand_ins["rack_centre"]:
-            points["rack_centre"] = car.points[name]
-        with pytest.raises(MechanismError, match=f"point '{name}' is missing; needed: ") as caught:
-            build_mechanism(car.topology, points, AXES)
-        assert all(point in str(caught.value) for point in car.topology.required_points)
-
-
-@pytest.mark.parametrize("size", [0.0, 1e-110, 1e110, 1e308])
+@pytest.mark.parametrize("size", [0.0, 1e-110, 1e308])
 def test_car_without_a_usable_size_is_refused(table: Points, size: float) -> None:
     points = {name: tuple(size * np.sign(place)) for name, place in table.items()}
     with pytest.raises(MechanismError, match="the points span"):
@@ -119,7 +87,7 @@ def test_origin_and_size_are_taken_off_without_rounding(
         assert np.abs(own).max() < 8.0  # the origin lies near the car, within four of its sizes
 
 
-@pytest.mark.parametrize("power", [-300, -40, -1, 1, 10, 300])
+@pytest.mark.parametrize("power", [-300, 1, 300])
 @pytest.mark.parametrize("method", [SERIES, NEWTON], ids=str)
 @by_car
 def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(

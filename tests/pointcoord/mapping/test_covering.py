@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar, by_car
+from sample_cars import PAPER_STRUT, SampleCar, by_car
 
-from pointcoord import AssemblyError, NotCovered, Scene, kinematic_map, standing
-from pointcoord.numerics.multi_index import powers
+from pointcoord import NotCovered, Scene, kinematic_map, standing
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
@@ -39,47 +38,6 @@ def scene_of(car: SampleCar) -> Scene:
             "time": {"start": 0.0, "stop": 0.0, "samples": 1},
         }
     )
-
-
-@pytest.mark.parametrize("which", [0, 1])
-def test_a_driven_coordinate_and_its_two_derivatives_are_as_near_as_a_box_says(which: int) -> None:
-    """Against many more terms; the fifth, which is left out, is by the sine of angles near a right one."""
-    mechanism = GENERAL_STRUT.mechanism()
-    domain = Domain(mechanism, {"arm_angle": (1.1, 2.1), "rack": (-30.0, 40.0)}, 1)
-    low, high = np.array([[which, 0]]), np.array([[which + 1, 2]])
-    middle, half = domain.middle_and_half(low, high)
-    np.testing.assert_allclose(middle, [[1.35 + 0.5 * which, 5.0]], rtol=1e-15)
-    np.testing.assert_allclose(half, [[0.25, 35.0]], rtol=1e-14)
-    short, _, doubt = domain.known_over(middle, half, 4)
-    long, _, _ = domain.known_over(middle, half, 14)
-    s = np.linspace(-1.0, 1.0, 81)
-    first = mechanism.layout.unknowns
-    for variable, name in enumerate(domain.free):
-        drive = next(drive for drive in mechanism.topology.drives if drive.input == name)
-        place = mechanism.layout.scalar(drive.coordinate)
-        rows = [
-            np.array(
-                [known[0, powers(2, order).power_of(variable, k), place - first] for k in range(order + 1)]
-            )
-            for known, order in ((short, 4), (long, 14))
-        ]
-        bounds = [
-            doubt.value[0, place],
-            doubt.first[0, variable, place],
-            doubt.second[0, variable, variable, place],
-        ]
-        for derivative, bound in enumerate(bounds):
-            one, other = (np.polynomial.Polynomial(row).deriv(derivative)(s) for row in rows)
-            off = np.abs(one - other).max()
-            assert off <= bound + 1e-15
-            assert bound <= 2.0 * off + 1e-15
-        # Nothing depends on the other input, and the other coordinates are known as they are.
-        other_input = 1 - variable
-        assert doubt.first[0, other_input, place] == 0.0
-        assert not doubt.second[0, other_input, :, place].any()
-        doubt.first[0, variable, place] = doubt.second[0, variable, variable, place] = 0.0
-    assert not doubt.first.any()
-    assert not doubt.second.any()
 
 
 @by_car
@@ -126,33 +84,13 @@ def test_near_a_saddle_where_branches_nearly_meet_the_branch_is_the_drawing_s() 
     both = covered & reached
     assert both.sum() > 60
     places = mechanism.places(paths.y[both])
-    found = map.evaluate(values[both])[0]
+    found = np.array([map.evaluate(value)[0] for value in values[both]])
     for i, name in enumerate(map.points):
         # Paths end where Newton's method does, with condition numbers near the folds of 1e5 or so.
         assert np.abs(found[:, i] - places[name] * mechanism.unit).max() <= map.bound.position + 1e-8
     # Inputs that no straight way leads to may be reached around a fold, but not where there is no assembly.
     for value in values[covered & ~reached][:5]:
         assert np.isfinite(map.evaluate(value)).all()
-
-
-@by_car
-def test_neighbouring_patches_are_one_function_where_they_touch(car: SampleCar) -> None:
-    drawn = car.drawn_inputs
-    middle = 1.0 if car is PAPER_STRUT else drawn["arm_angle"]
-    ranges = {"arm_angle": (middle - 0.2, middle + 0.2), "rack": (drawn["rack"] - 25.0, drawn["rack"] + 25.0)}
-    map = kinematic_map(scene_of(car), ranges)
-    assert len(map.patches) > 2
-    nothing = 1e-13
-    for patch in map.patches:
-        (low, high), (left, right) = patch.ranges["arm_angle"], patch.ranges["rack"]
-        racks = np.linspace(left, right, 5)[1:-1]
-        for end in (low, high):
-            sides = [end - nothing, end + nothing]
-            if not ranges["arm_angle"][0] < sides[0] < sides[1] < ranges["arm_angle"][1]:
-                continue
-            here, there = (map.evaluate(np.stack([np.full(3, side), racks], axis=-1)) for side in sides)
-            # Twice 1e-13 rad at rates below 2000 mm a rad.
-            assert np.abs(here - there).max() <= 2.0 * map.bound.position + 4e-10
 
 
 def paper_domain() -> Domain:
@@ -201,10 +139,3 @@ def test_only_what_is_wanted_of_a_range_is_covered_and_all_of_that() -> None:
     assert wanted.any_in(cover.patches.low, cover.patches.high).all()
     assert (cover.patches.lookup.table[marks] >= 0).all()
     assert (cover.patches.lookup.table < 0).any()
-
-
-def test_a_range_that_the_drawing_cannot_reach_is_refused_with_what_stops_it() -> None:
-    scene = scene_of(PAPER_STRUT)
-    last = standing(scene).reach["rack"][1].value
-    with pytest.raises(AssemblyError, match=r"wanted .*rack"):
-        kinematic_map(scene, {"arm_angle": (1.6, 1.7), "rack": (last + 50.0, last + 60.0)})

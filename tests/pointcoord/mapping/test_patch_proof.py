@@ -28,7 +28,6 @@ from pointcoord.patches import patch_proof
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.patch_proof import PatchProof, prove_patches
-from pointcoord.patches.reported_points import moving_points, reported_points
 from pointcoord.solve.assembly import close_drawing
 from pointcoord.solve.follower import follow
 
@@ -71,33 +70,6 @@ def test_errors_of_a_root_are_within_their_bounds() -> None:
     exact = u, -SLOPES / (2.0 * u), -np.outer(SLOPES, SLOPES) / (4.0 * u**3)
     parts = zip(exact, in_the_corner(series[0, :, U]), found.parts, strict=True)
     assert all((np.abs(e - s) <= bound[0, ..., 0]).all() for e, s, bound in parts)
-
-
-def doubts() -> tuple[Array, Jet, Array]:
-    """What the centre lacks, (1, 5); what the series of w and v are off beside, and that by coefficients."""
-    off = np.zeros((1, EVERY.count, 5))
-    off[0, :, [W, V]] = 0.01 * np.random.default_rng(1).uniform(1.0, 2.0, (2, EVERY.count))
-    low = np.array([[0.0, 0.01, 0.02, 0.0, 0.0]])
-    return low, Jet.of(off, EVERY.exponents), off
-
-
-def test_what_is_left_of_data_that_are_off_as_far_as_they_may_be_is_bounded_and_hardly_less() -> None:
-    """Here w and v grow with the inputs, so that no term of the two is of another sign."""
-    low, data, off = doubts()
-    series = np.zeros((1, EVERY.count, 5))
-    series[0, 0] = CENTRE
-    series[0, 1:3, W], series[0, 1:3, V] = SLOPES, SLOPES[::-1]
-    factors = factorise(SQUARE.jacobian(series[:, 0]))
-    found = patch_proof._remaining(SQUARE, factors, series, LOW_ORDER, low, data)
-    whole = series[0] + off[0]
-    whole[0] += low[0]
-    w, v = (in_the_corner(whole[:, place]) for place in (W, V))
-    mixed = np.outer(w[1], v[1])
-    exact = w[0] * v[0] - 1.0, w[1] * v[0] + w[0] * v[1], w[2] * v[0] + mixed + mixed.T + w[0] * v[2]
-    # X = 1 / 2. What the centre lacks of both is taken twice, which is below one part in a thousand.
-    parts = list(zip(exact, found.parts, strict=True))
-    assert all((b[0, ..., 0] <= 0.501 * e).all() for e, b in parts)
-    assert all((0.5 * e <= b[0, ..., 0] * INFLATION).all() for e, b in parts)
 
 
 def test_how_far_the_jacobian_changes_is_bounded() -> None:
@@ -295,45 +267,3 @@ def test_what_a_series_leaves_is_no_more_than_its_bound_says(doubtful: bool) -> 
             assert left <= Fraction(float(bound)), (seed, d)
             closest[d] = max(closest[d], float(left / Fraction(float(bound))) if bound else 0.0)
     assert (closest > 0.3).all(), closest
-
-
-def standing_series(mechanism: Mechanism) -> tuple[Array, Jet]:
-    """A series of two inputs in which nothing moves, and no error."""
-    count, unknowns = powers(2, 2).count, mechanism.map.unknowns
-    series = np.zeros((1, count, mechanism.map.size))
-    series[0, 0] = mechanism.drawn
-    return series, Jet.constant(np.zeros((1, unknowns)), 2)
-
-
-@by_car
-def test_a_carried_point_is_off_by_what_its_carriers_are_off_at_most(car: SampleCar) -> None:
-    """To first order exactly the sum of what each coordinate of the carriers moves it."""
-    mechanism = car.mechanism()
-    series, _ = standing_series(mechanism)
-    unknowns, names = mechanism.map.unknowns, moving_points(mechanism.topology)
-    generator = np.random.default_rng(4)
-    # Numbers of any size, so that none hides another; so small that their products are nothing.
-    size = 1e-6 * 10.0 ** generator.uniform(-3.0, 0.0, unknowns)
-    error = Jet.constant(size[None], 2)
-    error.first[0] = 1e-6 * 10.0 ** generator.uniform(-3.0, 0.0, (2, unknowns))
-    found, off = reported_points(mechanism, series, error, 2)
-    step = 1e-3
-    gains = []
-    for k in range(unknowns):
-        ahead, behind = series.copy(), series.copy()
-        ahead[0, 0, k] += step
-        behind[0, 0, k] -= step
-        none = Jet.constant(np.zeros((1, unknowns)), 2)
-        ends = [reported_points(mechanism, each, none, 2)[0][0, 0] for each in (ahead, behind)]
-        gains.append(np.abs(ends[0] - ends[1]) / (2.0 * step))
-    table = np.array(gains)
-    here = slice(3 * len(mechanism.topology.moving), None)
-    # A coordinate of the first carrier moves the point and both edges; the bound takes these apart.
-    wanted = size @ table
-    assert (off.value[0, here] >= wanted[here] * (1.0 - 1e-6)).all()
-    assert (off.value[0, here] <= 4.0 * wanted[here].max()).all()
-    for i in range(2):
-        wanted = error.first[0, i] @ table
-        assert (off.first[0, i, here] >= wanted[here] * (1.0 - 1e-6)).all()
-        assert (off.first[0, i, here] <= 4.0 * wanted[here].max()).all()
-    assert found.shape[-1] == 3 * len(names)

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord.linkage.constraints.link import Link
-from pointcoord.linkage.constraints.on_line import OnChassisLine
+from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drives import Travel
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
@@ -30,10 +30,10 @@ TRIPOD = Topology(
     moving=(*(f"slider_{n}" for n in NUMBERS), "tip"),
     bodies={},
     carried={},
-    directions=("up",),
+    directions={"up": ("", "up")},
     constraints=(
         *(Link("tip", f"slider_{n}") for n in NUMBERS),
-        *(OnChassisLine(f"slider_{n}", f"rail_{n}", "rail", "", "up", f"travel {n}", True) for n in NUMBERS),
+        *(OnLine(f"slider_{n}", f"rail_{n}", "rail", "up", f"travel {n}", "driven") for n in NUMBERS),
     ),
     drives=tuple(Travel(f"travel {n}", f"push_{n}", f"rail_{n}", f"slider_{n}", "up") for n in NUMBERS),
     roles={

@@ -6,13 +6,11 @@ them over 1e-15 s.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
 import mpmath
 import numpy as np
 import pytest
-import wishbone_by_points
 from closed_forms import PHASES, cross, dot, minus, number, numbers
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -157,17 +155,3 @@ def test_every_number_is_within_its_proven_bound_of_the_closed_form(
                         # The bound takes each law's value rounded once; these laws round nothing. What the
                         # differences leave out is STEP^2 of a rate's own size, far below a double's digits.
                         assert abs(value - number(float(found))) <= mpf(float(bound)) + 1e-25
-
-
-def test_the_closed_form_of_the_wishbone_is_at_home_in_its_drawing() -> None:
-    with mpmath.workdps(DIGITS):
-        points = {name: tuple(Fraction(c) for c in place) for name, place in wishbone_by_points.BASE.items()}
-        car = wishbone_by_points.WishboneCar(points, (0, 0, 1), (0, 1, 0))
-        found = list(car.poses(*car.drawn))
-        assert len({pose.sides for pose in found}) == len(found) > 1
-
-        def moved(pose: wishbone_by_points.WishbonePose) -> mpf:
-            return max(abs(c) for n, p in pose.points.items() for c in minus(p, numbers(points[n])))
-
-        assert [moved(pose) < mpf(10) ** -50 for pose in found].count(True) == 1
-        assert min(found, key=moved).sides == car.drawn_sides

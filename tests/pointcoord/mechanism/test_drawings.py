@@ -6,17 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sample_cars import Points, SampleCar, by_drawn_car
+from sample_cars import SampleCar, by_drawn_car
 
 from pointcoord import Scene, SceneError, simulate
 
 EPS = np.finfo(float).eps
-
-
-def off_the_rack(car: SampleCar, by: tuple[float, float, float]) -> Points:
-    """The tie rod drawn beside the line of the rack, which stays where it was."""
-    inner = car.points["tie_rod_inner"]
-    return {**car.points, "rack_centre": inner, "tie_rod_inner": tuple(np.add(inner, by).tolist())}
 
 
 @by_drawn_car
@@ -55,18 +49,6 @@ def test_a_rack_without_a_centre_starts_at_the_drawn_tie_rod(
     )
     for name in one.position:
         assert np.array_equal(one.position[name], other.position[name])
-
-
-@by_drawn_car
-def test_a_tie_rod_off_the_line_of_the_rack_turns_the_knuckle(
-    make_scene: Callable[..., Scene], car: SampleCar
-) -> None:
-    points = off_the_rack(car, (3.0, 0.0, 1.0))
-    motion = simulate(make_scene([1.55], [0.0], stop=0.0, samples=1, car=car, points=points))
-    assert motion.closing.misses == {"tie_rod_inner on the rack": pytest.approx(np.sqrt(10.0))}
-    assert motion.closing.movements["tie_rod_inner"] == pytest.approx(np.sqrt(10.0))
-    assert motion.closing.movements["wheel_centre"] > 0.01
-    assert motion.closing.noticeable
 
 
 @by_drawn_car

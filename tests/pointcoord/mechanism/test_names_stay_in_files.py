@@ -10,7 +10,7 @@ import pytest
 import pointcoord
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
-from pointcoord.mechanism.structure import KINDS
+from pointcoord.mechanism.inputs import KINDS
 from pointcoord.scene.scene_file import CarPart
 
 PACKAGE = Path(pointcoord.__file__).parent

@@ -11,13 +11,11 @@ from pointcoord import (
     MechanismError,
     Scene,
     SceneError,
-    SweepError,
     kinematic_map,
     simulate,
     solve_poses,
     sweep,
 )
-from pointcoord.mechanism.file import mechanism_file
 from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.simulation import scene_mechanism
 
@@ -127,30 +125,6 @@ def test_a_violated_row_is_named_by_maps_poses_and_sweeps() -> None:
     assert reasons == ["the mechanism locks", "the drawing is refused"]
 
 
-def test_each_design_of_a_redundant_mechanism_is_the_one_that_is_solved_alone() -> None:
-    longer = sweep(four_bar(), offsets={"c.x": [0.0, 5.0], "c_far.x": [0.0, 5.0]})
-    for number in (0, 1):
-        motion = longer.motion(number)
-        for name, place in motion.position.items():
-            assert np.array_equal(place, longer.of(number).position[name])
-        assert longer.closing[number] == motion.closing.largest
-    assert np.abs(longer.position["c"][1] - longer.position["c"][0]).max() > 1.0
-
-
-def test_a_mechanism_without_a_wheel_is_swept_too() -> None:
-    scene = Scene.load("spatial-four-bar")
-    point = scene.mechanism.topology.moving[0]
-    assert sweep(scene, offsets={f"{point}.x": [0.0, 0.5]}).solved.all()
-
-
-def test_scenes_of_other_tables_are_no_designs_of_one_sweep() -> None:
-    # Without a type their tables alone tell them apart.
-    other = four_bar().model_dump(exclude_none=True)
-    other["mechanism"]["inputs"]["reach"] = {"distance": ["a", "c"]}
-    with pytest.raises(SweepError, match="design 1: mechanism"):
-        sweep([four_bar(), Scene.from_mapping(other)])
-
-
 AXLE = """
 title = "Axle"
 [parts]
@@ -212,8 +186,3 @@ def test_three_inputs_of_one_corner_are_named_before_anything_is_solved(driven: 
     assert "the inputs left.arm_angle, left.wheel_travel, rack drive more" in words
     assert "z of right.lower_ball_joint" in words.partition("leave free")[2]
     assert "right.wheel_travel" in words.partition("instead one of")[2]
-
-
-def test_the_first_inputs_of_an_axle_do_not_drive_one_corner_three_times() -> None:
-    driven = mechanism_file("axle").topology().required_inputs
-    assert driven == ("left.arm_angle", "left.rack", "right.arm_angle", "right.rack")

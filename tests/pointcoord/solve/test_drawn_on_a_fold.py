@@ -43,7 +43,7 @@ def drawn_with_a_dead_tie_rod(car: SampleCar, sine: float, turn: Rotation) -> di
     rod = points["tie_rod_inner"] - outer
     flat = rod - (rod @ normal) * normal
     points["tie_rod_inner"] = outer + flat + sine * np.linalg.norm(flat) * normal
-    points.pop("rack_centre", None)
+    points["rack_centre"] = points["tie_rod_inner"]
     return {name: turn.apply(place) for name, place in points.items()}
 
 

@@ -141,7 +141,7 @@ def test_rates_near_a_lock_are_those_of_the_pose_that_is_reported(
     motion = simulate(scene, method)
     p, v = motion.position, motion.velocity
     fast = max(np.abs(v[name]).max() for name in strut.layout.moving)
-    for start, end in strut.layout.squared_lengths:
+    for start, end in (ends for one in strut.topology.constraints for ends in one.squared_lengths):
         stretch = (p[start][-1] - p[end][-1]) @ (v[start][-1] - v[end][-1])
         # r . v = 0 for every link. LU leaves some eps of the matrix times the solution, here 8; both factors
         # are rounded, coordinates up to 600 mm; three products.

@@ -52,7 +52,7 @@ def _in_mechanism(change: Callable[[Mechanism], Mechanism]) -> Plant:
 
 def _link_too_long(mechanism: Mechanism) -> Mechanism:
     """The tie rod 1e-7 mm longer than drawn."""
-    place = mechanism.layout.squared_length("tie_rod_inner", "tie_rod_outer")
+    place = mechanism.layout.scalar("squared length of link tie_rod_inner - tie_rod_outer")
     drawn = mechanism.drawn.copy()
     drawn[place] = (np.sqrt(drawn[place]) + 1e-7 / mechanism.unit) ** 2
     return replace(mechanism, drawn=drawn)

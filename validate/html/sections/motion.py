@@ -66,7 +66,7 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
     given = np.isin(instants, np.concatenate([model.times for model in models])) if models else [True]
     reached = np.flatnonzero(given)
     at = instants[reached[:: max(-(-len(reached) // run.frames), 1)]]
-    known = topology.with_defaults({name: np.array(p) for name, p in scene.mechanism.points.items()})
+    known = {name: np.array(p) for name, p in scene.mechanism.points.items()}
     points = [name for name in topology.points if name in known]
     number = {name: i for i, name in enumerate(points)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
@@ -125,7 +125,10 @@ def _places(
     origin, still = readout.mechanism.origin, np.zeros((len(model.times), 3))
     drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
     shift = origin + sum(readout.chassis.states(model.times, 0), np.zeros(3))
-    held = {name: place + shift for name, place in readout.chassis.turned(model.times, [drawn])[0].items()}
+    held = {
+        name: place + shift
+        for name, place in readout.chassis.turned_by(readout.laws(model.times), [drawn])[0].items()
+    }
     return {**held, **model.numbers.get(PLACE, {})}
 
 

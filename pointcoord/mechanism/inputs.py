@@ -1,0 +1,291 @@
+"""What can be driven: a kind of input knows its keys, what they may name, its rows and its drives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Annotated, Any, ClassVar, Literal, Protocol
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+from pointcoord.linkage import drives
+from pointcoord.linkage.constraints import turn
+from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.contact_height import ContactHeight
+from pointcoord.linkage.constraints.in_body import Normal
+from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.scalar_product import ScalarProduct
+from pointcoord.linkage.directions import DIRECTIONS
+from pointcoord.linkage.drives import Drive
+from pointcoord.mechanism.faults import TableFault, known_keys, no_such
+from pointcoord.wording import shown
+
+CHASSIS = "chassis"
+
+
+def _once(names: tuple[str, ...]) -> tuple[str, ...]:
+    for at, each in enumerate(names):
+        if each in names[:at]:
+            raise TableFault((), f"{each!r} is named twice", "each name once")
+    return names
+
+
+def _pair(names: object) -> object:
+    if isinstance(names, list | tuple) and len(names) != 2:
+        counted = f"has {len(names)} point{'' if len(names) == 1 else 's'}"
+        raise TableFault((), counted, "two different points, such as [P, Q]")
+    if isinstance(names, list | tuple) and names[0] == names[1]:
+        raise TableFault((), f"goes from {shown(names[0])} to itself, so it has no length", "two points")
+    return names
+
+
+def _direction(name: str) -> str:
+    if name not in DIRECTIONS:
+        raise no_such("direction", name, DIRECTIONS, ())
+    return name
+
+
+Name = Annotated[str, Field(strict=True, min_length=1)]
+Ends = tuple[Name, Name]
+Role = Name | Ends
+Distinct = Annotated[tuple[Name, ...], AfterValidator(_once)]
+Names = Annotated[tuple[Name, ...], Field(min_length=1), AfterValidator(_once)]
+# The word at the end says what a name is the name of.
+Point = Annotated[Name, "point"]
+Pair = Annotated[Ends, BeforeValidator(_pair), "point"]
+Body = Annotated[Name, "body"]
+SlideNames = Annotated[Names, BeforeValidator(lambda v: (v,) if isinstance(v, str) else v), "slide"]
+Direction = Annotated[Name, AfterValidator(_direction)]
+Chassis = Literal["chassis"]
+
+Bodies = Mapping[str, Sequence[str]]
+Made = tuple[list[Constraint], list[Drive]]
+
+
+class Compiled(Protocol):
+    """What an input is made with."""
+
+    @property
+    def wheel_radius(self) -> float | None:
+        """Of the scene, mm."""
+
+    def shared(self, body: str, other: str) -> tuple[str, ...]:
+        """Points of two bodies, as the first lists them."""
+
+    def normal(self, body: str) -> Normal:
+        """The triangle that stands for a body, with its normal."""
+
+    def driven_line(self, slide: str) -> OnLine:
+        """The line of a slide's first point."""
+
+
+class Input(BaseModel):
+    """Something that can be driven, as its table says.
+
+    Attributes:
+        unit: of its values.
+        moves_the_chassis: whether it moves the whole car, so that it holds no freedom of the mechanism.
+    """
+
+    model_config = ConfigDict(frozen=True)
+    unit: ClassVar[str] = "mm"
+    moves_the_chassis: ClassVar[bool] = False
+
+    @property
+    def kind(self) -> str:
+        """arm, turn, travel, height, contact, distance, moves or turns."""
+        return type(self).__name__.lower()
+
+    @property
+    def table(self) -> dict[str, Any]:
+        """As written, with what may be left out filled in."""
+        return self.model_dump(by_alias=True)
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """Directions of the car that its rows need."""
+        return ()
+
+    def named(self, what: str) -> tuple[str, ...]:
+        """The names of points, bodies or slides that it mentions."""
+        values = [getattr(self, key) for key in self._naming(what)]
+        return tuple(n for value in values for n in (value if isinstance(value, tuple) else (value,)))
+
+    def renamed(self, rename: Mapping[str, Mapping[str, str]]) -> Input:
+        """With other names of points, bodies or slides."""
+        keys = ((key, names) for what, names in rename.items() for key in self._naming(what))
+        return self.model_copy(update={key: renamed(getattr(self, key), names) for key, names in keys})
+
+    @classmethod
+    def _naming(cls, what: str) -> list[str]:
+        return [key for key, own in cls.model_fields.items() if what in own.metadata]
+
+    def check(self, bodies: Bodies) -> None:
+        """Check what its names, which are known, mean together.
+
+        Raises:
+            TableFault: they make no input; its place is below the input's own.
+        """
+
+    def made(self, name: str, of: Compiled) -> Made:
+        """Rows and drives of the input where it is driven; none of one that moves the chassis."""
+        return [], []
+
+
+class Arm(Input):
+    """The angle of an arm of a body from a direction."""
+
+    unit = "rad"
+    angle: Body
+    of: Point
+    about: Point
+    from_: Direction = Field(alias="from")
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        return (self.from_,)
+
+    def check(self, bodies: Bodies) -> None:
+        if self.of == self.about:
+            raise TableFault(("of",), f"is {self.of!r} as about is", "two different points")
+        if self.angle == CHASSIS or self.of not in bodies[self.angle]:
+            raise no_such(f"point of {self.angle}", self.of, bodies[self.angle], ("of",))
+
+    def made(self, name: str, of: Compiled) -> Made:
+        value, edge = f"{name} rise", (self.of, self.about)
+        rise = ScalarProduct(f"rise of {self.of} over {self.about}", edge, (self.from_, ""), "", value)
+        return [rise], [drives.ArmAngle(value, name, self.about, self.of, self.from_)]
+
+
+class Turn(Input):
+    """The turn of a body about a hinge from the drawing."""
+
+    unit = "rad"
+    angle: Body
+    from_: Literal["drawing"] = Field(alias="from")
+    on: Body = CHASSIS
+
+    def check(self, bodies: Bodies) -> None:
+        shared = [point for point in bodies[self.angle] if point in bodies[self.on]]
+        if self.angle in (CHASSIS, self.on) or len(shared) != 2:
+            points = ", ".join(shared if self.angle != self.on else ()) or "no point"
+            problem = f"{self.angle} and {self.on} share {points}, which is no hinge"
+            raise TableFault((), problem, "two bodies that share two points")
+
+    def made(self, name: str, of: Compiled) -> Made:
+        triangle = of.normal(self.angle)
+        tail, head = of.shared(self.angle, self.on)
+        corners = (triangle.base, triangle.first, triangle.second)
+        point = next(corner for corner in corners if corner not in (tail, head))
+        cosine, sine = f"cosine of {name}", f"sine of {name}"
+        carrier = None if self.on == CHASSIS else of.normal(self.on)
+        rows = turn.Turn(f"turn of {self.angle} by {name}", point, tail, head, cosine, sine, carrier)
+        return [rows], [drives.TurnedBy(cosine, name, 0), drives.TurnedBy(sine, name, 1)]
+
+
+class Travel(Input):
+    """The travel of slides."""
+
+    travel: SlideNames
+
+    def made(self, name: str, of: Compiled) -> Made:
+        found: dict[str, Drive] = {}
+        for line in map(of.driven_line, self.travel):
+            if line.head in DIRECTIONS:
+                drive: Drive = drives.Travel(line.place, name, line.origin, line.point, line.head)
+            else:
+                drive = drives.TravelAlong(line.place, name, line)
+            found.setdefault(line.place, drive)  # several along one direction of the car have one travel
+        return [], list(found.values())
+
+
+class Height(Input):
+    """The height of a point."""
+
+    height: Point
+    along: Direction = "up"
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        return (self.along,)
+
+    def made(self, name: str, of: Compiled) -> Made:
+        value, point = f"value of {name}", self.height
+        drawn = f"drawn height of {point} {self.along}"
+        rows = ScalarProduct(f"height of {point}", (point, ""), (self.along, ""), drawn, value)
+        return [rows], [drives.Travel(value, name, point, point, self.along, False)]
+
+
+class Contact(Input):
+    """The height of a wheel's contact point."""
+
+    contact: Pair
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        return ("up",)
+
+    def made(self, name: str, of: Compiled) -> Made:
+        value, (inner, centre) = f"value of {name}", self.contact
+        assert of.wheel_radius is not None  # the scene is refused without
+        rows = ContactHeight(inner, centre, "up", value, of.wheel_radius)
+        return [rows], [drives.Travel(value, name, centre, centre, "up", False)]
+
+
+class Distance(Input):
+    """The distance of two points."""
+
+    distance: Pair
+
+    def made(self, name: str, of: Compiled) -> Made:
+        value, (start, end) = f"value of {name}", self.distance
+        rows = ScalarProduct(f"distance of {start} and {end}", self.distance, self.distance, "", value)
+        return [rows], [drives.DistanceOf(value, name, start, end)]
+
+
+class Moves(Input):
+    """A displacement of the whole car."""
+
+    moves_the_chassis = True
+    moves: Chassis
+    along: Direction
+
+
+class Turns(Input):
+    """A turn of the whole car."""
+
+    unit = "rad"
+    moves_the_chassis = True
+    turns: Chassis
+    about: Point
+    along: Direction
+
+
+KINDS: Mapping[str, type[Input]] = {
+    kind.__name__.lower(): kind for kind in (Arm, Turn, Travel, Height, Contact, Distance, Moves, Turns)
+}
+TELLING = ("angle", "travel", "height", "contact", "distance", "moves", "turns")
+
+
+def input_of(table: object) -> object:
+    """An input as its kind has it, which one of its keys tells.
+
+    Raises:
+        TableFault: no key does, several do, or one is none of that kind's.
+    """
+    if not isinstance(table, Mapping):
+        raise TableFault((), f"is {shown(table)}", 'a table, such as { height = "a" }')
+    found = [key for key in TELLING if key in table]
+    if len(found) != 1:
+        hint = next((key for key in table if key not in ("along", "about")), "")
+        if not found and hint:
+            raise no_such("kind of input", hint, TELLING, (hint,))
+        counted = f"is of {len(found)} kinds" if found else "is of no kind"
+        raise TableFault((), counted, f"one of {', '.join(TELLING)}")
+    kind = KINDS[found[0]] if found[0] != "angle" else Turn if table.get("from") == "drawing" else Arm
+    known_keys(table, [own.alias or key for key, own in kind.model_fields.items()], f"an input by {found[0]}")
+    return kind.model_validate(table)
+
+
+def renamed(value: Any, names: Mapping[str, str]) -> Any:
+    """A name or some, changed where there is another for it."""
+    return tuple(names.get(n, n) for n in value) if isinstance(value, tuple) else names.get(value, value)
