@@ -110,7 +110,7 @@ def try_scene(
     any_answer = any(isinstance(one, Solution) for one in came.values())
     reference = _reference(scene) if proven or any_answer else NOT_ASKED
     answers = tuple(compared(scene, name, one, reference) for name, one in came.items())
-    facts = {"reference": said(reference) if isinstance(reference, Exception) else "answers"}
+    facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
     return Trial(value, answers, facts, Tried(scene, came, reference, start))
 
 

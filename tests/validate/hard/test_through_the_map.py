@@ -14,9 +14,9 @@ from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
 from validate.hard.cars import PAPER_CAR, scene_content
-from validate.hard.case import REFUSED, RIGHT, Case, case, decades
+from validate.hard.case import MAP, REFUSED, RIGHT, Case, case, decades
 from validate.hard.report import summary_parts
-from validate.hard.run import MAP, as_expected, examine
+from validate.hard.run import as_expected, examine
 from validate.hard.trial import OURS
 from validate.output.table import text_of
 
