@@ -16,26 +16,17 @@ Numbers = NDArray[np.int64]
 DEPENDENT = 1e-9
 
 
-def independent_rows(jacobian: Array, last: int) -> Numbers:
+def independent_rows(jacobian: Array) -> Numbers:
     """As many rows as are independent, increasing, at a pose, (rows, columns).
 
-    The last ones are taken after all others. Rows are taken by pivoting (Golub and Van Loan, Matrix
-    Computations, 5.4.2), so that those that are left out are those that depend most on the others.
+    Rows are taken by pivoting (Golub and Van Loan, Matrix Computations, 5.4.2), so that those that are left
+    out are those that depend most on the others.
     """
-    first = len(jacobian) - last
-    chosen: list[int] = []
-    for rows, offset in ((jacobian[:first], 0), (jacobian[first:], first)):
-        # Without what the rows before span.
-        if chosen:
-            basis = np.linalg.qr(jacobian[chosen].T)[0]
-            rows = rows - (rows @ basis) @ basis.T
-        if rows.size:
-            _, triangle, order = qr(rows.T, mode="economic", pivoting=True)
-            sizes = np.abs(np.diag(triangle))
-            most = jacobian.shape[1] - len(chosen)
-            count = min(int((sizes > DEPENDENT).sum()), most)
-            chosen += [offset + int(k) for k in order[:count]]
-    return np.array(sorted(chosen), dtype=np.int64)
+    if not jacobian.size:
+        return np.zeros(0, dtype=np.int64)
+    _, triangle, order = qr(jacobian.T, mode="economic", pivoting=True)
+    count = int((np.abs(np.diag(triangle)) > DEPENDENT).sum())
+    return np.sort(order[:count]).astype(np.int64)
 
 
 def blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
