@@ -1,4 +1,4 @@
-"""Which rows of a Jacobian determine its columns, and in which order they do."""
+"""Which rows of a Jacobian determine its columns, and which of them together."""
 
 from __future__ import annotations
 
@@ -30,25 +30,12 @@ def independent_rows(jacobian: Array) -> Numbers:
 
 
 def blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
-    """Rows and columns of the diagonal blocks of a square pattern in lower block triangular form.
+    """Rows and columns of the diagonal blocks of a square pattern in block triangular form.
 
-    Each block is solved after those before it (Duff and Reid, ACM Transactions on Mathematical Software 4,
-    1978), so that the determinant is the product of theirs.
+    The determinant is the product of theirs (Duff and Reid, ACM Transactions on Mathematical Software 4,
+    1978).
     """
-    graph = csr_matrix(pattern)
-    row_of = maximum_bipartite_matching(graph, perm_type="row")
-    matched = pattern[row_of]
-    count, label = connected_components(csr_matrix(matched), directed=True, connection="strong")
+    row_of = maximum_bipartite_matching(csr_matrix(pattern), perm_type="row")
+    count, label = connected_components(csr_matrix(pattern[row_of]), directed=True, connection="strong")
     members = [np.flatnonzero(label == k) for k in range(count)]
-    waiting, done, ordered = list(range(count)), np.zeros(len(label), dtype=bool), []
-    while waiting:
-        for k in waiting:
-            columns = members[k]
-            needed = matched[columns].any(axis=0)
-            needed[columns] = False
-            if not (needed & ~done).any():
-                ordered.append((np.asarray(row_of[columns], dtype=np.int64), columns))
-                done[columns] = True
-                waiting.remove(k)
-                break
-    return ordered
+    return [(np.asarray(row_of[columns], dtype=np.int64), columns) for columns in members]

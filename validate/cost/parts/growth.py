@@ -91,11 +91,9 @@ class Line:
             yield found
 
 
-def lines_of(
-    study: StudyScene, ways: Sequence[Way], quick: bool = False, plan: Plan | None = None
-) -> list[Line]:
+def lines_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Line]:
     """All that grows, for one scene: how costs grow is a matter of the way, and of the scene hardly."""
-    plan = plan or (QUICK if quick else FULL)
+    plan = QUICK if quick else FULL
     alone = StudyScene(f"{study.name}, positions alone", study.positions_only())
     lines = []
 
