@@ -111,7 +111,7 @@ def dialled(scene: str, way: str, fastest: float, slope: float, floor: float, **
 
 
 def study() -> list[Row]:
-    """A whole study: dials and single settings, a failure, an omission, exact zeros, growth, loading."""
+    """A whole study: dials and single settings, a failure, an omission, exact zeros, growth."""
     rows = []
     for scene, car in (("bounce", 1.0), ("double-wishbone", 1.6)):
         rows += dialled(scene, "series", 4e-6 * car, 0.05, 2e-13, dense=True, rates=3e-6)
@@ -137,9 +137,6 @@ def study() -> list[Row]:
     rows += grown("chain", "relative", "", "unknowns", chains[:4], 0.0, 1e-8, power=2.9, bytes_each=2e4)
     stopped = Row("growth", "chain", "relative", verdict="left out", reason="would take an hour", **WHERE)
     rows.append(replace(stopped, against="unknowns", size=1500))
-    rows.append(
-        Row("loading", "", "import pointcoord", quantity="loading", time=0.15, lower=0.1, upper=0.2, **WHERE)
-    )
     return [replace(row, digest="0") for row in rows]
 
 

@@ -45,9 +45,8 @@ ROWS = "pointcoord-cost.parquet"
 DESCRIPTION = """\
 What accuracy costs in time: every way to solve a scene, over the range of its settings, compared with
 a many-digit reference. Three sentences say who is quickest, what a digit costs and where others
-win; a picture shows error against time; tables hold the rest: what each effect costs, how time
-and memory grow with instants, designs and unknowns, what loading takes, and what a pose takes at
-inputs that have nothing to do with each other.
+win; a picture shows error against time; tables hold the rest, and how time and memory grow with
+instants, designs and unknowns.
 
 What is measured is kept in a Parquet file, a row for each number: a run that is stopped goes on
 with the scene that it was in, and --from-rows makes the report again without measuring."""
@@ -69,11 +68,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--parts",
         metavar="A,B",
-        help=f"of {', '.join(PARTS)}; all if not given, of named scenes those that are about a scene, with "
-        "--quick accuracy",
-    )
-    parser.add_argument(
-        "--effects", action="store_true", help="what each effect costs at many instants: --parts effects"
+        help=f"of {', '.join(PARTS)}; both if not given, with --quick accuracy",
     )
     parser.add_argument(
         "--rows", metavar="FILE", default=ROWS, help=f"keeps what is measured; {ROWS} if not given"
@@ -83,7 +78,7 @@ def add(commands: Commands) -> None:
     )
     add_json(parser, "everything")
     parser.add_argument("--csv", metavar="FILE", help="write every row as CSV; - for standard output")
-    pictures = ", pictures (SVG, PNG), all tables as Markdown and CSV, and the rows as JSON into a folder"
+    pictures = ", the picture, all tables as Markdown and CSV, and the rows as JSON into a folder"
     share(parser, "--report", help=f"write a page of HTML that needs no network{pictures}")
     share(parser, "--quiet")
     parser.set_defaults(run=run)
@@ -135,15 +130,10 @@ def _listing() -> str:
 
 def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
     """The parts that are asked for, in their order."""
-    if options.effects:
-        if options.parts is not None:
-            raise UsageError("--effects and --parts both say what to measure; give one of them")
-        return ("effects",)
     if options.parts is None and options.quick and not options.from_rows:
         return ("accuracy",)
     if options.parts is None:
-        about_scenes: tuple[Part, ...] = ("accuracy", "effects", "growth", "unrelated")
-        return about_scenes if options.scenes and not options.from_rows else PARTS
+        return PARTS
     return tuple(
         part for part in PARTS if part in _chosen(options.parts, "--parts", "part of the study", PARTS)
     )
@@ -177,7 +167,7 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     if not scenes:
         names = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
         scenes = [of_study.study_scene(name, of_study.own_scene(name)) for name in names]
-    found: Study = study.Study(parts, tuple(scenes), ways, options.quick, own=bool(options.scenes))
+    found: Study = study.Study(parts, tuple(scenes), ways, options.quick)
     return found
 
 
@@ -219,16 +209,16 @@ def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
     if options.scenes:
         names = [name_of(name) for name in options.scenes]
         there = [*dict.fromkeys(row.scene for row in rows if row.scene)]
-        # A part of a scene's effects is named after a comma.
+        # A scene without its effects is named after a comma.
         about = {name: [one for one in there if f"{one}, ".startswith(f"{name}, ")] for name in names}
         for name in names:
             if not about[name]:
                 raise UnknownName(f"scene of the rows in {options.rows}", name, there)
         rows = [row for row in rows if any(row.scene in about[name] for name in names)]
     if options.ways is not None:
-        there = [*dict.fromkeys(row.way for row in rows if row.way and row.part != "loading")]
+        there = [*dict.fromkeys(row.way for row in rows)]
         asked = _chosen(options.ways, "--ways", f"way in the rows of {options.rows}", there)
-        rows = [row for row in rows if row.way in asked or row.part == "loading"]
+        rows = [row for row in rows if row.way in asked]
     return replace(report, rows=tuple(rows))
 
 

@@ -10,6 +10,7 @@ from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.progress import progress
+from validate.output.report import counted_as
 
 DESCRIPTION = """\
 Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
@@ -60,7 +61,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     headings: list[str] = []
 
     def finished() -> str:
-        return f"{len(results)} of {hard_report.numbered(len(cases), 'case')}"
+        return f"{len(results)} of {counted_as(len(cases), 'case')}"
 
     def tell(result: hard_run.Examined) -> None:
         results.append(result)

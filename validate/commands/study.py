@@ -229,7 +229,7 @@ def _worked_out(
     # Found out before a folder is made.
     cluster.quiet_dask()
     with ExitStack() as stack:
-        store = stack.enter_context(needed("study", "validate.studies.store").adding_to(folder, study))
+        store = needed("study", "validate.studies.store").adding_to(folder, study)
         recorded = store.tasks()
         missing = [task for task in study.tasks if task not in recorded]
         before = there = len(study.tasks) - len(missing)

@@ -45,7 +45,7 @@ def quantities_of(table: pd.DataFrame) -> list[str]:
 def timed(table: pd.DataFrame, part: str) -> pd.DataFrame:
     """The rows of a part that have a time; of what has errors, those with one."""
     found = table[(table.part == part) & (table.verdict == "measured") & table.time.notna()]
-    return found[found.error.notna()] if part in ("accuracy", "unrelated") else found
+    return found[found.error.notna()] if part == "accuracy" else found
 
 
 def heights(errors: pd.Series) -> tuple[pd.Series, str]:

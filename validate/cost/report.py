@@ -5,8 +5,7 @@ The same rows give the same bytes: nothing in it depends on when or where it is 
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
@@ -120,12 +119,12 @@ class Report:
         """The same in lines."""
         return text_of(self.parts())
 
-    def markdown(self, pictures: Sequence[str] = ()) -> str:
-        """For a page: sentences, pictures by the names of their files, and all tables."""
+    def markdown(self, picture: str = "") -> str:
+        """For a page: sentences, a picture by the name of its file, and all tables."""
         blocks = [
             f"# {TITLE}",
             "\n".join(f"- {markdown(sentence)}" for sentence in self.sentences or [NOTHING]),
-            *(f"![{name.removesuffix('.svg')}]({name})" for name in pictures),
+            *([f"![error against time]({picture})"] if picture else []),
             *(f"**{markdown(table.caption)}**\n\n{table.markdown}" for table in self.tables()),
             "\n".join(f"- {name}: {markdown(value)}" for name, value in self.head()),
         ]
@@ -162,23 +161,14 @@ class Report:
         return None if figure is None else drawn(figure, "svg")
 
     def files(self) -> Iterator[tuple[str, bytes]]:
-        """Names and contents of the files of a folder.
+        """Names and contents of the files of a folder: the picture, all tables as a page, and the rows.
 
         Raises:
             ImportError: matplotlib is not there.
         """
-        from validate.cost.picture import figures
-        from validate.output.figure import drawn
-
-        names: list[str] = []
-        for name, figure in figures(self.table):
-            plain = re.sub(r"[^A-Za-z0-9]+", "-", name.removesuffix(".toml")).strip("-")
-            # Two scenes may have names that differ by signs alone.
-            same = sum(re.fullmatch(rf"{plain}(-\d+)?", other) is not None for other in names)
-            names.append(f"{plain}-{same + 1}" if plain in names else plain)
-            for ending in ("svg", "png"):
-                yield f"{names[-1]}.{ending}", drawn(figure, ending)
-        yield "report.md", self.markdown([f"{name}.svg" for name in names]).encode()
+        if (picture := self.headline()) is not None:
+            yield "headline.svg", picture
+        yield "report.md", self.markdown("headline.svg" if picture else "").encode()
         yield "table.csv", self.csv().encode()
         yield "rows.json", json_text(self.data()).encode()
 

@@ -32,7 +32,7 @@ NEAR_TOGGLE = "near-toggle"
 STUDY_SCENES = ("bounce", "steer", "bounce-and-steer", "off-axis-strut", "double-wishbone", NEAR_TOGGLE)
 """Those that are measured if none is named."""
 QUICK_SCENE = "bounce-and-steer"
-"""That of a quick study, and that whose car is solved at unrelated inputs: both inputs move."""
+"""That of a quick study: both inputs move."""
 RATES = ("velocity", "acceleration", "knuckle_rates")
 GOLDEN = (1.0 + math.sqrt(5.0)) / 2.0
 MOST, MOST_QUICK = 200, 24  # the reference takes some 5 ms for each, and more tell no more about an error

@@ -14,7 +14,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
+
+from pydantic import TypeAdapter, ValidationError
 
 from validate.output.document import code_digest, machine, program_version
 from validate.output.files import OutputError, write_content
@@ -23,7 +25,7 @@ from validate.output.files import OutputError, write_content
 if TYPE_CHECKING:
     import pandas as pd
 
-Part = Literal["accuracy", "effects", "growth", "loading", "unrelated"]
+Part = Literal["accuracy", "growth"]
 Verdict = Literal["measured", "failed", "left out"]
 PARTS: tuple[Part, ...] = get_args(Part)
 # What is measured, of this distribution; how it is reported may change and the rows stay what they are.
@@ -52,7 +54,7 @@ class Row:
         dense: whether one solve serves any instant.
         against: what a row of growth varies: `instants`, `designs` or `unknowns`. size: how many of them.
         poses: that one run gives.
-        quantity: see `pointcoord.effects.registry.QUANTITIES`; `read` and `copy` of effects.
+        quantity: see `pointcoord.effects.registry.QUANTITIES`.
         error, rms: against the reference, largest and root mean square of the components, in the quantity's
             unit. radius: the reference's own proven error. numbers: how many components there are.
         time: from instants to arrays, s a pose, median of the repeats; lower, upper: their quartiles.
@@ -109,7 +111,6 @@ class Row:
 
 
 _KINDS = {"float": "float64", "int": "Int64", "bool": "bool"}
-NEVER_EMPTY = [one.name for one in fields(Row) if not str(one.type).endswith("None")]
 COLUMNS = {one.name: _KINDS.get(str(one.type).removesuffix(" | None"), "str") for one in fields(Row)}
 """Every column with its type in pandas."""
 
@@ -128,32 +129,24 @@ def read_rows(path: Path) -> list[Row]:
         StoreError: it cannot be read, or is no such table.
         ImportError: pyarrow is not there.
     """
-    import pandas as pd
+    from pyarrow import parquet
 
     try:
         content = path.read_bytes()
     except OSError as error:
         raise StoreError(f"{path}: cannot be read ({error.strerror}); give another file") from None
     try:
-        table = pd.read_parquet(BytesIO(content))
-        if odd := set(table.columns) ^ set(COLUMNS):
+        table = parquet.read_table(BytesIO(content))
+        if odd := set(table.column_names) ^ set(COLUMNS):
             raise ValueError(f"the columns {', '.join(sorted(odd))} are missing or unknown")
-        if odd := {name for name in NEVER_EMPTY if table[name].isna().any()}:
-            raise ValueError(f"there are rows without {', '.join(sorted(odd))}")
-        table = table[list(COLUMNS)].astype(COLUMNS)
-        for name, allowed in (("part", PARTS), ("verdict", get_args(Verdict))):
-            if odd := set(table[name]) - set(allowed):
-                raise ValueError(f"{name} is {min(odd)!r}; allowed: {', '.join(allowed)}")
-    except ImportError:
-        raise
+        return TypeAdapter(list[Row]).validate_python(table.to_pylist())
+    except ValidationError as error:
+        first = error.errors()[0]
+        why = f"{first['loc'][1]} of row {first['loc'][0]}: {first['msg']}"
     # pyarrow's errors have no family of their own.
     except Exception as error:
         why = " ".join(str(error).split())[:200]
-        raise StoreError(
-            f"{path}: is no Parquet file of what accuracy costs ({why}); give another file"
-        ) from None
-    columns: dict[str, Any] = {n: table[n].astype(object).where(table[n].notna(), None) for n in COLUMNS}
-    return [Row(*values) for values in zip(*columns.values(), strict=True)]
+    raise StoreError(f"{path}: is no Parquet file of what accuracy costs ({why}); give another file")
 
 
 class Store:
@@ -169,7 +162,6 @@ class Store:
         """
         self.path, self.here = path, here
         self.rows = self._read()
-        self._known = {row.key for row in self.rows}
         for row in self.rows:
             pairs = [(getattr(row, what), getattr(here, what)) for what in WHERE]
             other = [f"{there}; here: {mine}" for there, mine in pairs if there != mine]
@@ -184,7 +176,7 @@ class Store:
 
     def has(self, row: Row) -> bool:
         """Whether the run of a row has been measured, whatever came of it."""
-        return row.key in self._known
+        return any(row.key == known.key for known in self.rows)
 
     def write(self, rows: Iterable[Row]) -> None:
         """Keep rows, now.
@@ -194,12 +186,11 @@ class Store:
         """
         try:
             # Another run may have written meanwhile.
-            self.rows += [row for row in self._read() if row.key not in self._known]
+            self.rows += [row for row in self._read() if not self.has(row)]
         except StoreError as error:
             raise OutputError("rows", str(error)) from None
         where = {what: getattr(self.here, what) for what in (*WHERE, "command")}
         self.rows += [replace(row, **where) for row in rows]
-        self._known = {row.key for row in self.rows}
         if self.path is not None:
             write_content(str(self.path), frame(self.rows).to_parquet())
 

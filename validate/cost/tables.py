@@ -8,8 +8,7 @@ from typing import Any
 import pandas as pd
 
 from validate.cost.findings import ACCURACIES, cheapest, growths, quantities_of, timed, unit_of, words_of
-from validate.cost.parts.effects import NO_EFFECT
-from validate.cost.words import BYTES, SECONDS, duration, in_units, power, times
+from validate.cost.words import BYTES, SECONDS, duration, in_units, power
 from validate.output.table import Table
 
 KEY = "*: one solve serves any instant; in brackets: the setting"
@@ -21,8 +20,7 @@ def tables_of(table: pd.DataFrame, quantities: tuple[str, ...] = ()) -> list[Tab
     Args:
         quantities: whose times to an accuracy are shown; all if none is given.
     """
-    found = [*_reached(table, quantities), *_effects(table), *_growths(table), *_loading(table)]
-    return [*found, *_unrelated(table), *_without_numbers(table)]
+    return [*_reached(table, quantities), *_growths(table), *_without_numbers(table)]
 
 
 def _table(caption: str, head: tuple[str, ...], rows: Any) -> Table:
@@ -65,26 +63,6 @@ def _reach(one: Any) -> str:
     return duration(one.time) + ("" if pd.isna(one.value) else f" ({power(one.value)})")
 
 
-def _effects(table: pd.DataFrame) -> Iterator[Table]:
-    """What reading a scene takes with each effect, beside a copy and beside positions alone."""
-    for scene, here in timed(table, "effects").groupby("scene", sort=False):
-        wide = here.pivot_table(index=["setting", "numbers"], columns="quantity", values="time", sort=False)
-        alone = wide["read"].get(NO_EFFECT, pd.Series(float("nan"))).max()
-        yield _table(
-            f"Reading {scene} at {here.poses.max()} instants, by effects",
-            ("asked for", "numbers", "an instant", "of a copy", "of positions"),
-            (
-                (
-                    name,
-                    str(numbers),
-                    duration(one["read"]),
-                    *map(times, (one["read"] / one["copy"], one["read"] / alone)),
-                )
-                for (name, numbers), one in wide.iterrows()
-            ),
-        )
-
-
 def _growths(table: pd.DataFrame) -> Iterator[Table]:
     """Fitted exponents of time and memory, a table for each thing that is varied and each scene."""
     for (against, scene), here in growths(table).groupby(["against", "scene"], sort=False):
@@ -99,32 +77,6 @@ def _growths(table: pd.DataFrame) -> Iterator[Table]:
             f"Growth in {against} of {scene}: value = factor x size^exponent, of the largest sizes",
             ("way and setting", "of", "exponent", "largest", "takes", "each"),
             lines,
-        )
-
-
-def _loading(table: pd.DataFrame) -> Iterator[Table]:
-    here = timed(table, "loading")
-    if not here.empty:
-        yield _table(
-            "Loading, the start of Python included",
-            ("what", "median", "quartiles"),
-            (
-                (one.way, duration(one.time), f"{duration(one.lower)} to {duration(one.upper)}")
-                for one in here.itertuples()
-            ),
-        )
-
-
-def _unrelated(table: pd.DataFrame) -> Iterator[Table]:
-    """What a pose takes at inputs that have nothing to do with each other, quickest first."""
-    for scene, here in timed(table, "unrelated").groupby("scene", sort=False):
-        yield _table(
-            f"A pose of {scene} at inputs that have nothing to do with each other; errors of the first poses",
-            ("way", "poses", "a pose", "error, mm", "set-up"),
-            (
-                (_named(one), f"{one.poses:,}", duration(one.time), f"{one.error:.1e}", duration(one.set_up))
-                for one in here.sort_values("time").itertuples()
-            ),
         )
 
 

@@ -53,7 +53,6 @@ class Way:
         values: of the setting, the coarsest first; None where there is nothing to set.
         setting: a value in words.
         dense: whether one solve serves any instant, so that more instants cost their evaluation only.
-        rates_only: whether its positions are those of another way.
         package: an optional one that it needs, by the name that it is imported with.
     """
 
@@ -64,7 +63,6 @@ class Way:
     setting: str = "{} mm"
     dense: bool = False
     package: str = ""
-    rates_only: bool = False
 
     def says(self, value: float | None) -> str:
         """A setting in words, such as `1e-9 mm`."""

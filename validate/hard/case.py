@@ -15,6 +15,8 @@ from validate.hard.answer import Answer, Outcome
 from validate.hard.subjects import BESIDE, PAPER, SUBJECTS, WISHBONE, Content, Subject, hyphens
 from validate.hard.trial import OURS, Trial, try_scene
 
+# Every case that pointcoord has to solve is tried by a map of the inputs too.
+MAP = "pointcoord-map"
 SOLVERS = (OURS, "pointcoord-newton", "absolute", "relative")
 # Why a model may refuse a mechanism, or no reference be had of it.
 HARD: Mapping[str, str] = {"bricard": "one of its rows depends on the others at every pose"}
@@ -70,7 +72,6 @@ class Case:
         scene: the content of the scene, of a mechanism and at a value.
         subject: the mechanism.
         expected: by formulation; a case tries the formulations named here.
-        behaviour: what is expected, in words.
         judged: the trial at a value, with what else is measured, or asked of its answers.
         unit: of error and bound.
         proven: see `try_scene`.
@@ -88,7 +89,6 @@ class Case:
     scene: SceneAt
     subject: Subject
     expected: Mapping[str, Expected]
-    behaviour: str
     judged: Callable[[Subject, float, Trial], Trial] | None = None
     unit: str = "mm"
     proven: bool = True
@@ -105,9 +105,34 @@ class Case:
         trial = try_scene(value, self.content(value), tuple(self.expected), self.proven)
         return trial if self.judged is None else self.judged(self.subject, value, trial)
 
+    @property
+    def mapped(self) -> tuple[float, ...]:
+        """The values that are tried by a map too: the one amid them and the last, as each takes long."""
+        by_map = OURS in self.expected and MAP not in self.expected
+        return (self.values[len(self.values) // 2], self.values[-1]) if by_map else ()
+
+    def allowed(self, formulation: str) -> Expected:
+        """What a formulation may come to.
+
+        A map may be refused, its effort being bounded; it answers only where the other method may.
+        """
+        if formulation == MAP and MAP not in self.expected:
+            return RIGHT_OR_REFUSED if "right" in self.expected[OURS].outcomes else REFUSED
+        return self.expected[formulation]
+
     def unexpected(self, trial: Trial) -> tuple[Answer, ...]:
         """The answers of a trial that are not allowed."""
-        return tuple(a for a in trial.answers if not self.expected[a.formulation].met(trial.value, a.outcome))
+        return tuple(a for a in trial.answers if not self.allowed(a.formulation).met(trial.value, a.outcome))
+
+    @property
+    def behaviour(self) -> str:
+        """What is expected, in words: formulations of which as much is expected are named together."""
+        alike: dict[str, list[str]] = {}
+        for name, one in self.expected.items():
+            alike.setdefault(one.words, []).append(name)
+        if len(alike) == 1:
+            return next(iter(alike))
+        return "; ".join(f"{', '.join(names)}: {words}" for words, names in alike.items())
 
     @property
     def without_pose(self) -> bool:
@@ -134,7 +159,6 @@ def case(
     name: str = "",
     why: str = "",
     suffix: str | None = None,
-    behaviour: str = "",
     **more: Any,
 ) -> Case:
     """A case, see `Case`.
@@ -143,35 +167,27 @@ def case(
         expected: by formulation, or of each of `SOLVERS`.
         name, why: the scene's own name, and the first paragraph of its text, if not given.
         suffix: of the name; that of the mechanism if not given.
-        behaviour: where that is more than `expected` says.
     """
-    every = dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected
     return Case(
-        name=(name or name_of(scene)) + (subject.suffix if suffix is None else suffix),
+        name=(name or hyphens(whole(scene).__name__)) + (subject.suffix if suffix is None else suffix),
         why=why or reason_of(scene),
         parameter=parameter,
         values=tuple(values),
         scene=scene,
         subject=subject,
-        expected=every,
-        behaviour=behaviour or described(every),
+        expected=dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected,
         **more,
     )
 
 
-def name_of(function: Callable[..., Any]) -> str:
-    """What a case is called that a function makes."""
-    return hyphens(_whole(function).__name__)
+def whole(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function of which this one is a part with some arguments given."""
+    return whole(function.func) if isinstance(function, partial) else function
 
 
 def reason_of(function: Callable[..., Any]) -> str:
     """Why a case is hard that a function makes: the first paragraph of its text."""
-    return " ".join((_whole(function).__doc__ or "").partition("\n\n")[0].split())
-
-
-def _whole(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function of which this one is a part with some arguments given."""
-    return _whole(function.func) if isinstance(function, partial) else function
+    return " ".join((whole(function).__doc__ or "").partition("\n\n")[0].split())
 
 
 def family(
@@ -181,9 +197,6 @@ def family(
     expected: Expected | Mapping[str, Expected] = RIGHT,
     subjects: Sequence[Subject] = SUBJECTS,
     *,
-    second: Values = (),
-    others: Values = (),
-    also_answered: Values | Callable[[Subject, float], bool] = (),
     strict: bool = False,
     **more: Any,
 ) -> tuple[Case, ...]:
@@ -191,18 +204,19 @@ def family(
 
     Args:
         values: that the first mechanism is tried at, or of each.
-        second, others: see `values_of`.
-        also_answered: see `Case`; or whether a value is one of them.
         strict: whether as much is expected of mechanisms that are hard by nature.
     """
-
-    def of(subject: Subject) -> Case:
-        own = tuple(values(subject) if callable(values) else values_of(subject, values, second, others))
-        also = [v for v in own if also_answered(subject, v)] if callable(also_answered) else also_answered
-        due = expected if strict else expected_of(subject, expected)
-        return case(scene, parameter, own, due, subject, also_answered=tuple(also), **more)
-
-    return tuple(map(of, subjects))
+    return tuple(
+        case(
+            scene,
+            parameter,
+            values(one) if callable(values) else values_of(one, values),
+            expected if strict else expected_of(one, expected),
+            one,
+            **more,
+        )
+        for one in subjects
+    )
 
 
 def expected_of(
@@ -214,30 +228,11 @@ def expected_of(
     return IF_ANY if isinstance(expected, Expected) else dict.fromkeys(expected, IF_ANY)
 
 
-def described(expected: Mapping[str, Expected]) -> str:
-    """What is expected of formulations, in words: who shares it named once."""
-    alike: dict[str, list[str]] = {}
-    for name, one in expected.items():
-        alike.setdefault(one.words, []).append(name)
-    if len(alike) == 1:
-        return next(iter(alike))
-    return "; ".join(f"{', '.join(names)}: {words}" for words, names in alike.items())
-
-
-def values_of(
-    subject: Subject, values: Values, second: Values = (), others: Values = ()
-) -> tuple[float, ...]:
-    """Those of a family's values that a mechanism is tried at.
-
-    Args:
-        second: in place of every fourth and the last for the second mechanism.
-        others: in place of the one amid them for all others.
-    """
+def values_of(subject: Subject, values: Values) -> Values:
+    """Those of a family's values that a mechanism is tried at: all, every fourth and the last, or one."""
     if subject in (PAPER, BESIDE):
-        return tuple(values)
-    if subject is WISHBONE:
-        return tuple(second or coarse(tuple(values)))
-    return tuple(others or (values[len(values) // 2],))
+        return values
+    return coarse(values) if subject is WISHBONE else (values[len(values) // 2],)
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
@@ -245,8 +240,8 @@ def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
     return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
 
 
-def coarse(values: tuple[float, ...]) -> tuple[float, ...]:
-    """Every fourth value and the last: what a case tries of a second suspension."""
+def coarse(values: Values) -> tuple[float, ...]:
+    """Every fourth value and the last."""
     return tuple(dict.fromkeys((*values[::4], values[-1])))
 
 

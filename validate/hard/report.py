@@ -9,14 +9,14 @@ from itertools import groupby
 from typing import Any, get_args
 
 from validate.hard.answer import Answer, Outcome
-from validate.hard.case import Case
-from validate.hard.run import MAP, Examined, as_expected, counts, refusals
+from validate.hard.case import MAP, Case
+from validate.hard.run import Examined, as_expected, counts
+from validate.output.report import counted_as
 from validate.output.table import Part, Table
 
 OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 SIZES = ("error", "bound", "share", "condition")
 SHORT = 90  # characters of a reason in a table
-PLAIN = {"reference": "answers"}  # what nothing has to be said of
 
 
 def listing(cases: Sequence[Case]) -> str:
@@ -29,14 +29,14 @@ def listing(cases: Sequence[Case]) -> str:
 def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
     """What came of a case: a row per formulation, and per value as well if asked for."""
     case, values = result.case, result.case.values
-    span = f"{values[0]:g}{f' to {values[-1]:g}' * (len(values) > 1)}, {numbered(len(values), 'value')}"
+    span = f"{values[0]:g}{f' to {values[-1]:g}' * (len(values) > 1)}, {counted_as(len(values), 'value')}"
     sizes = (f"error [{case.unit}]", f"bound [{case.unit}]", "of its bound", "condition")
     head = ("formulation", "tried", *OUTCOMES, *sizes, "verdict")
     lines: list[Part] = [
         f"{case.name}: {case.why}",
         f"  parameter: {case.parameter}, {span}",
         f"  expected: {case.behaviour}",
-        Table(head, tuple(_row(result, name) for name in case.expected), indent=2),
+        Table(head, tuple(_row(result, name) for name in counts([result])), indent=2),
     ]
     if every_value:
         rows = (
@@ -44,9 +44,12 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
             for t in result.trials
             for a in t.answers
         )
-        head = ("value", "formulation", "outcome", "error", "bound", *sizes[2:], "verdict")
+        head = ("value", "formulation", "outcome", *sizes, "verdict")
         lines.append(Table(head, tuple(rows), indent=2))
-        lines += [f"  at {t.value:g}: {_facts(t.facts)}" for t in result.trials if t.facts != PLAIN]
+        told = (
+            f"  at {t.value:g}: {', '.join(f'{k}: {v}' for k, v in t.facts.items())}" for t in result.trials
+        )
+        lines += [line for line, t in zip(told, result.trials, strict=True) if t.facts]
     lines += [
         f"  NOT AS EXPECTED: {answer.formulation} is {answer.outcome} at {value:g}: {answer.reason}"
         for value, answer in result.unexpected
@@ -59,9 +62,9 @@ def _row(result: Examined, name: str) -> tuple[str, ...]:
     outcomes = Counter(answer.outcome for _, answer in given)
     other = any(answer.formulation == name for _, answer in result.unexpected)
     verdict = "NOT as expected" if other else "as expected"
-    stop = result.gives_up(name)
+    stop = next(((value, answer) for value, answer in given if answer.outcome == "refused"), None)
     if stop is not None:
-        verdict += f"; gives up at {given[stop[0]][0]:g}: {short(stop[1].reason)}"
+        verdict += f"; gives up at {stop[0]:g}: {short(stop[1].reason)}"
     return (
         *(name, str(len(given)), *(str(outcomes[o] or ".") for o in OUTCOMES)),
         *_digits([answer for _, answer in given]),
@@ -78,18 +81,9 @@ def _digits(answers: Sequence[Answer]) -> list[str]:
     return found
 
 
-def numbered(count: int, noun: str) -> str:
-    """A count with its noun: 1 case, 2 cases."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
 def short(reason: str) -> str:
     """The beginning of a reason, for a table."""
     return reason if len(reason) <= SHORT else reason[: SHORT - 3] + "..."
-
-
-def _facts(facts: Any) -> str:
-    return ", ".join(f"{k}: {v:.6g}" if isinstance(v, float) else f"{k}: {v}" for k, v in facts.items())
 
 
 def times_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
@@ -110,25 +104,27 @@ def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     ]
     trials = sum(len(result.trials) for result in results)
     lines: list[Part] = [
-        f"{numbered(len(results), 'case')}, {numbered(trials, 'scene')}:",
+        f"{counted_as(len(results), 'case')}, {counted_as(trials, 'scene')}:",
         Table(("formulation", "answers", *OUTCOMES), tuple(rows)),
     ]
-    if refused := refusals(results, MAP):
+    # Reasons begin with the kind of the error.
+    of_map = (a for r in results for _, a in r.answers(MAP) if a.outcome == "refused")
+    if refused := Counter(answer.reason.partition(":")[0] for answer in of_map):
         kinds = ", ".join(f"{count} {kind}" for kind, count in refused.most_common())
         lines.append(f"Refused by the map, whose effort is bounded here: {kinds}.")
     other = [result for result in results if result.unexpected or result.wrong]
     verdict = "All as expected: but for the formulas as printed, no number is wrong without a warning"
     if other:
         verdict = (
-            f"NOT as expected: {numbered(sum(len(r.unexpected) for r in other), 'answer')}, "
+            f"NOT as expected: {counted_as(sum(len(r.unexpected) for r in other), 'answer')}, "
             f"{sum(len(r.wrong) for r in other)} wrong without a warning, in "
             f"{', '.join(result.case.name for result in other)}"
         )
-    unjudged = {
-        r.case.name: sum(a.outcome == "unjudged" for t in r.trials for a in t.answers) for r in results
-    }
-    if some := [name for name, count in unjudged.items() if count]:
-        verdict += f"; {numbered(sum(unjudged.values()), 'answer')} not judged, in {', '.join(some)}"
+    unjudged = Counter(
+        r.case.name for r in results for t in r.trials for a in t.answers if a.outcome == "unjudged"
+    )
+    if unjudged:
+        verdict += f"; {counted_as(unjudged.total(), 'answer')} not judged, in {', '.join(unjudged)}"
     return (*lines, f"{verdict}.")
 
 
@@ -147,16 +143,9 @@ def results_data(results: Sequence[Examined]) -> dict[str, Any]:
 
 
 def _description(case: Case) -> dict[str, Any]:
-    return {
-        "name": case.name,
-        "group": case.group,
-        "why": case.why,
-        "parameter": case.parameter,
-        "values": list(case.values),
-        "unit": case.unit,
-        "behaviour": case.behaviour,
-        "expected": {name: asdict(one) for name, one in case.expected.items()},
-    }
+    same = ("name", "group", "why", "parameter", "unit", "behaviour")
+    expected = {name: asdict(one) for name, one in case.expected.items()}
+    return {**{name: getattr(case, name) for name in same}, "values": list(case.values), "expected": expected}
 
 
 def _case_data(result: Examined) -> dict[str, Any]:
@@ -164,12 +153,8 @@ def _case_data(result: Examined) -> dict[str, Any]:
         **_description(result.case),
         "seconds": result.seconds,
         "trials": [
-            {
-                "value": trial.value,
-                "answers": [asdict(answer) for answer in trial.answers],
-                "facts": dict(trial.facts),
-            }
-            for trial in result.trials
+            {"value": t.value, "answers": [asdict(a) for a in t.answers], "facts": dict(t.facts)}
+            for t in result.trials
         ],
         "unexpected": [asdict(answer) | {"value": value} for value, answer in result.unexpected],
     }

@@ -13,12 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from pointcoord import PointcoordError, Scene, SceneError
+from pointcoord import Scene, SceneError
 from pointcoord.method import MAP
-from pointcoord.simulation import Task
 from validate.adjudication.reference_solution import reference_solution
 from validate.extras import MissingPackage
-from validate.formulations.point_coordinates import PointCoordinates, started
+from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer, judged_answer
@@ -37,13 +36,11 @@ class Tried:
     Attributes:
         came: a formulation's solution, or why there is none, by name.
         reference: at the scene's instants, or why there is none.
-        start: of all methods of pointcoord; None if each is to start by itself.
     """
 
     scene: Scene
     came: Mapping[str, Solution | Exception]
     reference: Solution | Exception
-    start: Task | PointcoordError | None = None
 
     @property
     def solutions(self) -> Mapping[str, Solution]:
@@ -62,7 +59,7 @@ class Tried:
 
     def answer(self, name: str) -> Answer:
         """The answer of another formulation."""
-        return compared(self.scene, name, solved(name, self.scene, self.start), self.reference)
+        return compared(self.scene, name, solved(name, self.scene), self.reference)
 
 
 @dataclass(frozen=True)
@@ -105,30 +102,17 @@ def try_scene(
     except SceneError as error:
         refused = tuple(Answer(name, "refused", said(error)) for name in formulations)
         return Trial(value, refused, {"reference": "not asked"})
-    start = _started(scene) if OURS in formulations else None
-    came = {name: solved(name, scene, start) for name in formulations}
+    came = {name: solved(name, scene) for name in formulations}
     any_answer = any(isinstance(one, Solution) for one in came.values())
     reference = _reference(scene) if proven or any_answer else NOT_ASKED
     answers = tuple(compared(scene, name, one, reference) for name, one in came.items())
-    facts = {"reference": said(reference) if isinstance(reference, Exception) else "answers"}
-    return Trial(value, answers, facts, Tried(scene, came, reference, start))
+    facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
+    return Trial(value, answers, facts, Tried(scene, came, reference))
 
 
-def _started(scene: Scene) -> Task | PointcoordError | None:
-    """Where all methods of pointcoord start; None if that fails, so that each fails by itself."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            return started(scene)
-    except Exception:
-        return None
-
-
-def solved(name: str, scene: Scene, start: Task | PointcoordError | None = None) -> Solution | Exception:
+def solved(name: str, scene: Scene) -> Solution | Exception:
     """A formulation's solution, or why there is none: a warning is an error, and the run goes on.
 
-    Args:
-        start: of pointcoord, if it is at hand.
     Raises:
         MissingPackage: the formulation is not installed.
     """
@@ -136,12 +120,10 @@ def solved(name: str, scene: Scene, start: Task | PointcoordError | None = None)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             one = formulation(name)
-            if not isinstance(one, PointCoordinates):
-                return one.solve(scene)
-            if one.method is MAP:
+            if isinstance(one, PointCoordinates) and one.method is MAP:
                 # Given up early: thousands of hard cases have to be tried in little time.
                 one = replace(one, method=replace(MAP, map_effort=MAP_EFFORT))
-            return one.solve(scene, start)
+            return one.solve(scene)
     except MissingPackage:
         raise
     except Exception as error:

@@ -67,7 +67,9 @@ class InExudyn(Program):
         self.solver.InitializeSolver(system, self.settings)
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
+        self.as_drawn = np.zeros(self.size)
         self.driven = np.array([self.links.last[driven.body] for driven in linkage.driven])
+        self.driven_at = self.driven
         self.unknown = np.array([i for i in range(self.size) if i not in self.driven], dtype=np.intp)
 
     @property
@@ -78,16 +80,6 @@ class InExudyn(Program):
     def put(self, coordinates: Array) -> None:
         """Set all joints."""
         self.system.systemData.SetODE2Coordinates(coordinates)
-
-    def drive(self, driven: Array) -> None:
-        """Set the driven joints."""
-        coordinates = self.coordinates
-        coordinates[self.driven] = driven
-        self.put(coordinates)
-
-    def put_as_drawn(self) -> None:
-        """Set all joints as the car is drawn."""
-        self.put(np.zeros(self.size))
 
     def move(self, step: Array) -> None:
         """Move all joints."""

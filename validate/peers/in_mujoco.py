@@ -37,13 +37,14 @@ class InMujoco(Program):
         self.linkage = linkage
         self.model = model = _model(linkage)
         self.data = mujoco.MjData(model)
+        self.as_drawn = self.coordinates
         self.sites = [model.site(name).id for name in linkage.points]
         self.turns = [model.site(f"body {body}").id for body in linkage.bodies.values()]
         self.ends = [
             tuple(model.site(f"loop {k} {end}").id for end in "ab") for k in range(len(linkage.loops))
         ]
         driven = [model.joint(driven.body) for driven in linkage.driven]
-        self.driven_places = np.array([joint.qposadr[0] for joint in driven])
+        self.driven_at = np.array([joint.qposadr[0] for joint in driven])
         self.driven = np.array([joint.dofadr[0] for joint in driven])
         # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
         idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.rods]
@@ -57,14 +58,6 @@ class InMujoco(Program):
     def put(self, coordinates: Array) -> None:
         """Set all joints."""
         self.data.qpos[:] = coordinates
-
-    def drive(self, driven: Array) -> None:
-        """Set the driven joints."""
-        self.data.qpos[self.driven_places] = driven
-
-    def put_as_drawn(self) -> None:
-        """Set all joints as the car is drawn."""
-        mujoco.mj_resetData(self.model, self.data)
 
     def move(self, step: Array) -> None:
         """Move all joints."""

@@ -46,9 +46,10 @@ class InPinocchio(Program):
             parent = self.number[joint.parent]
             self.number[joint.body] = model.addJoint(parent, _kind(joint, own), placed, joint.body)
         self.data = model.createData()
-        self.q, self.v = np.array(pinocchio.neutral(model)), np.zeros(model.nv)
+        self.as_drawn = np.array(pinocchio.neutral(model))
+        self.q, self.v = self.as_drawn, np.zeros(model.nv)
         joints = [model.joints[self.number[driven.body]] for driven in linkage.driven]
-        self.driven_places = np.array([joint.idx_q for joint in joints])
+        self.driven_at = np.array([joint.idx_q for joint in joints])
         self.driven = np.array([joint.idx_v for joint in joints])
         # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
         idle = [model.joints[self.number[rod]].idx_v + 2 for rod in linkage.rods]
@@ -71,14 +72,6 @@ class InPinocchio(Program):
     def put(self, coordinates: Array) -> None:
         """Set all joints."""
         self.q = np.array(coordinates)
-
-    def drive(self, driven: Array) -> None:
-        """Set the driven joints."""
-        self.q[self.driven_places] = driven
-
-    def put_as_drawn(self) -> None:
-        """Set all joints as the car is drawn."""
-        self.q = np.array(pinocchio.neutral(self.model))
 
     def move(self, step: Array) -> None:
         """Move all joints."""

@@ -1,21 +1,4 @@
-r"""A mechanism as any multibody program takes it: bodies on joints, a tree, and ball joints that close it.
-
-The tree is that of `spanning_tree.cut`. Programs have few closures and drives in common, so that all are
-made of joints and of ball joints that close loops:
-
-    a point on a line      a body that slides along it, and a ball joint with the point
-    a rod                  a body on a ball joint at one end, whose spin is held, and one at the other end
-    a driven distance      likewise, and the rod is a driven slide
-    a driven height,       a body on three slides at right angles, of which the first is driven, and a ball
-    angle or travel        joint with the point; if it counts from a point that moves, on three slides more
-    a driven hinge         itself
-    directions at right    two points along the first one, as far along the second one: bodies on two slides
-    angles                 each, which stand on one slide
-    a wheel's contact      a body on a hinge about the wheel's axis, one radius down of which is driven; a
-    point                  line across it stays level, likewise
-
-An angle is driven by the height that it stands for, size x cos(angle).
-"""
+"""A mechanism for a program: the tree of its joints, and what is given to the program and read off it."""
 
 from __future__ import annotations
 
@@ -31,15 +14,12 @@ from validate.peers.errors import HardpointsError, InputError
 from validate.spanning_tree.chassis import ChassisMotion
 from validate.spanning_tree.cut import (
     CHASSIS,
-    Coincide,
     CutError,
-    Drive,
+    Driven,
     Joint,
-    OnLine,
+    Loop,
     Place,
-    Rod,
     SpanningTree,
-    Square,
     across,
     cut,
 )
@@ -54,43 +34,6 @@ BETWEEN = {
     "angle": (0.0, np.pi, "an angle from 0 to pi"),
     "distance": (np.nextafter(0.0, 1.0), np.inf, "a distance above 0"),
 }
-
-
-@dataclass(frozen=True)
-class Loop:
-    """A ball joint that closes the tree: a place of one body that a place of another one must meet.
-
-    Attributes:
-        name: of the point, rod, slide or input that it stands for.
-    """
-
-    name: str
-    first: Place
-    second: Place
-
-
-@dataclass(frozen=True)
-class Driven:
-    """A joint that is driven: its coordinate is scale x f(input) + start.
-
-    Attributes:
-        body: that the joint carries. drive: which input, and f: see `cut.Drive`.
-    """
-
-    body: str
-    drive: Drive
-    scale: float
-    start: float
-
-    def coordinate(self, law: Array) -> Array:
-        """The coordinate with two time derivatives, from the input's, (..., 3)."""
-        value, rate, bend = np.moveaxis(law, -1, 0)
-        if self.drive.kind == "angle":
-            sine, cosine = np.sin(value), np.cos(value)
-            value, rate, bend = cosine, -sine * rate, -cosine * rate * rate - sine * bend
-        found = np.stack([value, rate, bend], axis=-1) * self.scale
-        found[..., 0] += self.start
-        return found
 
 
 @dataclass(frozen=True)
@@ -128,8 +71,6 @@ class Linkage:
 
     Attributes:
         plain: the flat mechanism. tree: of it.
-        joints: of the tree and of what closes and drives it, parents first.
-        rods: bodies on a ball joint whose spin about the axis changes nothing.
         points: every moving point, as a place of a body.
         bodies: those whose turn is reported, by the name that it is reported by.
         wheels: what numbers of the wheels are made of.
@@ -137,13 +78,29 @@ class Linkage:
 
     plain: Mapping[str, Any]
     tree: SpanningTree
-    joints: tuple[Joint, ...]
-    rods: Mapping[str, Array]
-    loops: tuple[Loop, ...]
-    driven: tuple[Driven, ...]
     points: Mapping[str, Place]
     bodies: Mapping[str, str]
     wheels: Wheels
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """Of the tree and of what closes and drives it, parents first."""
+        return self.tree.joints
+
+    @property
+    def rods(self) -> Mapping[str, Array]:
+        """Bodies on a ball joint whose spin about the axis changes nothing."""
+        return self.tree.rods
+
+    @property
+    def loops(self) -> tuple[Loop, ...]:
+        """Ball joints that close the tree."""
+        return self.tree.loops
+
+    @property
+    def driven(self) -> tuple[Driven, ...]:
+        """Joints that are driven."""
+        return self.tree.driven
 
     @property
     def unit(self) -> float:
@@ -167,7 +124,7 @@ class Linkage:
     @property
     def drawn_inputs(self) -> Array:
         """Inputs at the drawing, (drives,), rad and the unit."""
-        return np.array([driven.drive.drawn for driven in self.driven])
+        return np.array([driven.drawn for driven in self.driven])
 
     def coordinates(self, series: Array) -> Array:
         """Driven coordinates with two time derivatives, from the drives' inputs, (..., drives, 3) each."""
@@ -199,15 +156,15 @@ class Linkage:
         for name, law in laws.items():
             _require(name, law, np.asarray(np.isfinite(law).all(axis=1)), "finite numbers and rates")
         found = []
-        for drive in (driven.drive for driven in self.driven):
-            if drive.input not in laws:
-                raise InputError(drive.input, "missing", "; ".join(d.drive.input for d in self.driven))
-            law = laws[drive.input]
-            if drive.kind in BETWEEN:
-                least, most, words = BETWEEN[drive.kind]
+        for driven in self.driven:
+            if driven.input not in laws:
+                raise InputError(driven.input, "missing", "; ".join(one.input for one in self.driven))
+            law = laws[driven.input]
+            if driven.kind in BETWEEN:
+                least, most, words = BETWEEN[driven.kind]
                 value = law[:, 0]
-                _require(drive.input, law, np.asarray((value >= least) & (value <= most)), words)
-            found.append(law if drive.is_angle else law / self.unit)
+                _require(driven.input, law, np.asarray((value >= least) & (value <= most)), words)
+            found.append(law if driven.is_angle else law / self.unit)
         return Inputs(np.stack(found, axis=1), laws, self.plain)
 
 
@@ -228,119 +185,13 @@ def linkage_of(plain: Mapping[str, Any]) -> Linkage:
         tree = cut(plain)
     except CutError as error:
         raise HardpointsError(error.name, error.problem, error.allowed) from error
-    made = _Made(tree)
     return Linkage(
         plain=plain,
         tree=tree,
-        joints=tuple(made.joints),
-        rods=made.rods,
-        loops=tuple(made.loops),
-        driven=tuple(made.driven),
         points={name: place for name, place in tree.points.items() if place.body != CHASSIS},
         bodies=knuckles(plain),
         wheels=Wheels.of(plain, tree),
     )
-
-
-class _Made:
-    """Joints and loops of a tree while they are made."""
-
-    def __init__(self, tree: SpanningTree) -> None:
-        self.joints = list(tree.joints)
-        self.rods: dict[str, Array] = {}
-        self.loops: list[Loop] = []
-        self.driven: list[Driven] = []
-        for number, closure in enumerate(tree.closures):
-            name = f"closure {number} {closure.name}"
-            if isinstance(closure, Coincide):
-                self._loop(closure.name, closure.first, closure.second)
-            elif isinstance(closure, OnLine):
-                foot, axis = closure.second.at, closure.axis
-                foot = foot + float((closure.first.at - foot) @ axis) * axis
-                end = self._slide(name, Place(closure.second.body, foot), axis)
-                self._loop(closure.name, end, closure.first)
-            elif isinstance(closure, Rod):
-                self._rod(name, closure.name, closure.first, closure.second, closure.length)
-            elif isinstance(closure, Square):
-                # Of any two points of the body: its frame's origin, and one along the direction.
-                body, along = closure.first.body, closure.first.at
-                start = next(joint.at for joint in self.joints if joint.body == body)
-                ends = Place(body, start), Place(body, start + along)
-                self._level(name, closure.name, closure.second.body, closure.second.at, *ends)
-        for number, drive in enumerate(tree.drives):
-            self._drive(f"drive {number} {drive.input}", drive)
-
-    def _loop(self, name: str, first: Place, second: Place) -> None:
-        self.loops.append(Loop(name, first, second))
-
-    def _slide(self, name: str, place: Place, axis: Array) -> Place:
-        self.joints.append(Joint(name, place.body, "slide", place.at, axis))
-        return Place(name, place.at)
-
-    def _slides(self, name: str, place: Place, axes: tuple[Array, ...]) -> Place:
-        for number, axis in enumerate(axes):
-            place = self._slide(f"{name} {number}", place, axis)
-        return place
-
-    def _level(self, name: str, of: str, body: str, axis: Array, first: Place, second: Place) -> None:
-        """Two places that stay equally far along an axis of a body."""
-        start = self._slide(name, Place(body, first.at), axis)
-        for label, place in (("first", first), ("second", second)):
-            level = place.at - float((place.at - first.at) @ axis) * axis
-            end = self._slides(f"{name} {label}", Place(start.body, level), across(axis))
-            self._loop(of, end, place)
-
-    def _rod(
-        self, name: str, of: str, first: Place, second: Place, length: float, driven: Drive | None = None
-    ) -> None:
-        axis = second.at - first.at
-        axis = axis / float(np.linalg.norm(axis))
-        self.joints.append(Joint(name, first.body, "ball", first.at))
-        self.rods[name] = axis
-        end = Place(name, first.at + length * axis)
-        if driven is not None:
-            end = self._slide(f"{name} length", end, axis)
-            self.driven.append(Driven(end.body, driven, 1.0, -length))
-        self._loop(of, end, second)
-
-    def _drive(self, name: str, drive: Drive) -> None:
-        first, second = drive.first, drive.second
-        if drive.kind == "distance":
-            self._rod(name, drive.input, first, second, drive.drawn, drive)
-            return
-        if drive.kind == "turn":
-            self.driven.append(Driven(drive.joint, drive, drive.size, 0.0))
-            return
-        if drive.kind == "contact":
-            first = self._contact(name, drive)
-            second = Place(drive.of, first.at)
-        long = float(np.linalg.norm(drive.axis))
-        axis, drawn = drive.axis / long, float((first.at - second.at) @ drive.axis)
-        size = 1.0 if drive.kind == "contact" else drive.size
-        if drive.joint:
-            scale = drive.along / long
-            self.driven.append(Driven(drive.joint, drive, scale * drive.size, -scale * drawn))
-            return
-        base = Place(drive.of, first.at)
-        if second.body != drive.of:
-            # A body that goes along with the second point, and turns as the body `of` does.
-            carried = self._slides(f"{name} from", Place(drive.of, second.at), (axis, *across(axis)))
-            self._loop(drive.input, carried, second)
-            base = Place(carried.body, first.at)
-        end = self._slide(name, base, axis)
-        self.driven.append(Driven(end.body, drive, size / long, -drawn / long))
-        self._loop(drive.input, self._slides(f"{name} beside", end, across(axis)), first)
-
-    def _contact(self, name: str, drive: Drive) -> Place:
-        """The lowest point of a wheel, as a place of a body that turns about the wheel's axis."""
-        centre, up = drive.first, drive.axis
-        down = float(up @ drive.axle) * drive.axle - up
-        down = down / float(np.linalg.norm(down))
-        rim = f"{name} rim"
-        self.joints.append(Joint(rim, centre.body, "hinge", centre.at, drive.axle))
-        tip = Place(rim, centre.at + np.cross(drive.axle, down))
-        self._level(f"{name} level", drive.input, drive.of, up, Place(rim, centre.at), tip)
-        return Place(rim, centre.at + drive.size * down)
 
 
 def axes_along(axis: Array) -> Array:

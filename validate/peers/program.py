@@ -55,12 +55,16 @@ class Program(ABC):
     """A linkage in a program, which keeps the pose that was computed last; not for two threads.
 
     Attributes:
+        as_drawn: coordinates of the joints as the car is drawn.
+        driven_at: places among them of those that are driven.
         driven, unknown: places among the joints' rates, of those that are driven, and of all that are free.
         rows: that are solved.
         blocks: rows and columns of the diagonal blocks of J_u. drawn: signs of their determinants as drawn.
     """
 
     linkage: Linkage
+    as_drawn: Array
+    driven_at: NDArray[np.intp]
     driven: NDArray[np.intp]
     unknown: NDArray[np.intp]
     rows: slice | NDArray[np.int64] = slice(None)
@@ -75,14 +79,6 @@ class Program(ABC):
     @abstractmethod
     def put(self, coordinates: Array) -> None:
         """Set all joints."""
-
-    @abstractmethod
-    def drive(self, driven: Array) -> None:
-        """Set the driven joints, (drives,)."""
-
-    @abstractmethod
-    def put_as_drawn(self) -> None:
-        """Set all joints as the car is drawn."""
 
     @abstractmethod
     def move(self, step: Array) -> None:
@@ -120,16 +116,16 @@ class Program(ABC):
             PoseError: it cannot be closed, or only as another assembly.
         """
         counted, drawn = Counter[str](), self.linkage.drawn_inputs
-        self.put_as_drawn()
+        self.put(self.as_drawn)
         self._at(drawn)
         jacobian = self.misses()[1]
         unknown, count = jacobian[:, self.unknown], len(self.unknown)
-        rows = independent_rows(unknown, 0)
+        rows = independent_rows(unknown)
         if len(rows) < count:
             words = f"is free to move as drawn: {len(rows)} independent rows for {count} unknowns"
             raise HardpointsError("the mechanism", words, FREE)
         both = np.concatenate([self.unknown, self.driven])
-        if len(independent_rows(jacobian[:, both], 0)) > count:
+        if len(independent_rows(jacobian[:, both])) > count:
             raise HardpointsError("an input", "does not move the mechanism beside the others", FREE)
         self.rows = slice(None) if len(rows) == len(jacobian) else rows
         if count:  # an arm on one hinge, which is driven, has no loop
@@ -222,7 +218,9 @@ class Program(ABC):
     def _at(self, inputs: Array) -> None:
         """Set the driven joints to inputs, (drives,)."""
         series = np.stack([inputs, *np.zeros((2, len(inputs)))], axis=-1)
-        self.drive(self.linkage.coordinates(series)[:, 0])
+        coordinates = self.coordinates
+        coordinates[self.driven_at] = self.linkage.coordinates(series)[:, 0]
+        self.put(coordinates)
 
     def _go(self, start: Array, goal: Array, tolerance: float, counted: Counter[str]) -> tuple[float, float]:
         """Follow the inputs to a goal, by halves where Newton's method would step too far.
@@ -293,7 +291,7 @@ class Program(ABC):
         left, sizes, _ = np.linalg.svd(jacobian[:, self.unknown])
         share = np.abs(np.concatenate([left[:, -1], left[:, -1] @ jacobian[:, self.driven]]))
         of_rows = np.repeat([loop.name for loop in self.linkage.loops], 3)[self.rows]
-        names = [*of_rows.tolist(), *(driven.drive.input for driven in self.linkage.driven)]
+        names = [*of_rows.tolist(), *(driven.input for driven in self.linkage.driven)]
         order = np.argsort(-share, kind="stable")
         strong = [names[k] for k in order if share[k] > 0.5 * share[order[0]]]
         with np.errstate(divide="ignore"):

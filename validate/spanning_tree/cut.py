@@ -1,9 +1,25 @@
-r"""A mechanism, cut into a tree of joints with loop closures.
+r"""A mechanism as any multibody program takes it: bodies on joints, a tree, and ball joints that close it.
 
 Every body hangs on one joint, on another body or on the chassis. Joints with few coordinates are taken
-first, those at the chassis before others: hinges, sliding joints, then ball joints. What is not taken is a
-closure, and so is every rod. A body that only rods or lines hold hangs on the chassis by six coordinates,
-and a point of no body is a body of its own, which slides along its line or moves freely.
+first, those at the chassis before others: hinges, sliding joints, then ball joints. A body that only rods or
+lines hold hangs on the chassis by six coordinates, and a point of no body is a body of its own, which slides
+along its line or moves freely.
+
+What is not taken closes the tree, and so does every rod. Programs have few closures and drives in common, so
+that all are made of joints and of ball joints that close loops:
+
+    a point on a line      a body that slides along it, and a ball joint with the point
+    a rod                  a body on a ball joint at one end, whose spin is held, and one at the other end
+    a driven distance      likewise, and the rod is a driven slide
+    a driven height,       a body on three slides at right angles, of which the first is driven, and a ball
+    angle or travel        joint with the point; if it counts from a point that moves, on three slides more
+    a driven hinge         itself
+    directions at right    two points along the first one, as far along the second one: bodies on two slides
+    angles                 each, which stand on one slide
+    a wheel's contact      a body on a hinge about the wheel's axis, one radius down of which is driven; a
+    point                  line across it stays level, likewise
+
+An angle is driven by the height that it stands for, size x cos(angle).
 
 In the reference pose all joint coordinates are zero, and every body is where it is drawn with the axes of
 the car's frame. Only a point of no body that is drawn off its line starts on the line. Lengths are counted
@@ -15,7 +31,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, count
 from typing import Any, Literal
 
 import numpy as np
@@ -71,86 +87,48 @@ class Joint:
 
 
 @dataclass(frozen=True)
-class Coincide:
-    """Two points that are one ball joint: a - b = 0."""
-
-    name: str
-    first: Place
-    second: Place
-
-
-@dataclass(frozen=True)
-class OnLine:
-    """A point on a line of the second one's body: u . (a - b) = 0 for both u across the line.
+class Loop:
+    """A ball joint that closes the tree: a place of one body that a place of another one must meet.
 
     Attributes:
-        axis: unit vector along the line, (3,).
+        name: of the point, rod, slide or input that it stands for.
     """
 
     name: str
     first: Place
     second: Place
-    axis: Array
 
 
 @dataclass(frozen=True)
-class Square:
-    """Directions of two bodies that stay at right angles: u . v = 0."""
-
-    name: str
-    first: Place
-    second: Place
-
-
-@dataclass(frozen=True)
-class Rod:
-    """Two points at a distance: |a - b| = length."""
-
-    name: str
-    first: Place
-    second: Place
-    length: float
-
-
-Closure = Coincide | OnLine | Square | Rod
-
-
-@dataclass(frozen=True)
-class Drive:
-    """What an input gives; lengths in the tree's unit.
-
-        turn      size x the coordinate of `joint`                       = value
-        angle     axis . (first - second)                                = size x cos(value)
-        travel    axis . (first - second)                                = size x value
-        height    likewise, of size 1
-        contact   axis . (first - second) + size - size x sqrt(1 - s^2)  = value, and s = axis . axle
-        distance  |first - second|                                       = value
+class Driven:
+    """A joint that is driven: its coordinate is scale x f(input) + start, with f the cosine of an `angle`.
 
     Attributes:
-        axis: (3,), fixed in the body `of`. axle: unit vector along a wheel's axis, (3,), fixed in the first
-            one's body.
-        size: see above; of a contact the wheel's radius.
-        drawn: value of the input in the drawing, rad or in the unit.
-        joint: name of the body whose one coordinate is driven; empty if it is none. Of a travel the
-            coordinate counts from the reference pose, along `along` (1 or -1) times the line.
+        body: that the joint carries.
+        drawn: value of the input in the drawing, rad or in the tree's unit.
     """
 
     input: str
-    kind: Literal["turn", "angle", "travel", "height", "contact", "distance"]
-    first: Place
-    second: Place
-    axis: Array
-    of: str
-    size: float
+    kind: Literal["turn", "angle", "distance", "length"]
     drawn: float
-    joint: str = ""
-    along: float = 1.0
-    axle: Array = field(default_factory=lambda: np.zeros(3))
+    body: str
+    scale: float
+    start: float
 
     @property
     def is_angle(self) -> bool:
         """Whether its value is in rad."""
         return self.kind in ("turn", "angle")
+
+    def coordinate(self, law: Array) -> Array:
+        """The coordinate with two time derivatives, from the input's, (..., 3)."""
+        value, rate, bend = np.moveaxis(law, -1, 0)
+        if self.kind == "angle":
+            sine, cosine = np.sin(value), np.cos(value)
+            value, rate, bend = cosine, -sine * rate, -cosine * rate * rate - sine * bend
+        found = np.stack([value, rate, bend], axis=-1) * self.scale
+        found[..., 0] += self.start
+        return found
 
 
 @dataclass(frozen=True)
@@ -158,25 +136,28 @@ class SpanningTree:
     """A mechanism as a tree with closures.
 
     Attributes:
-        joints: parents before children; also of bodies between two joints, which no point is of.
+        joints: of the tree and of what closes and drives it, parents first; also of bodies between two
+            joints, which no point is of.
+        rods: bodies on a ball joint whose spin about the axis changes nothing.
         points: every point, as a place of the body that is nearest to the chassis.
         drawn: every point as drawn, (3,).
         origin, unit: mm.
     """
 
     joints: tuple[Joint, ...]
+    rods: Mapping[str, Array]
+    loops: tuple[Loop, ...]
+    driven: tuple[Driven, ...]
     points: Mapping[str, Place]
-    closures: tuple[Closure, ...]
-    drives: tuple[Drive, ...]
     drawn: Mapping[str, Array]
     origin: Array
     unit: float
 
     def told(self, values: Array) -> dict[str, float]:
-        """Inputs in rad and mm by name, from one value for each drive."""
+        """Inputs in rad and mm by name, from one value for each that is driven."""
         return {
-            drive.input: float(value) * (1.0 if drive.is_angle else self.unit)
-            for drive, value in zip(self.drives, values, strict=True)
+            driven.input: float(value) * (1.0 if driven.is_angle else self.unit)
+            for driven, value in zip(self.driven, values, strict=True)
         }
 
 
@@ -271,6 +252,9 @@ class _Cutter:
                 if p in self.free:
                     self.at[p] = self._foot(slide, p)
         self.sliding_rods = self._sliding_rods()
+        self.rods_made: dict[str, Array] = {}
+        self.loops: list[Loop] = []
+        self.driven: list[Driven] = []
 
     def _sliding_rods(self) -> dict[str, tuple[str, str, str, Array]]:
         """Rods along a line with one end on a point of a body: the other end rides on the rod, which slides.
@@ -296,21 +280,25 @@ class _Cutter:
     def tree(self) -> SpanningTree:
         edges = self._edges()
         taken = self._taken(edges)
-        joints = self._joints(taken)
+        self.joints = self._joints(taken)
         depth = {CHASSIS: 0}
-        for joint in joints:
+        for joint in self.joints:
             depth[joint.body] = depth[joint.parent] + COORDINATES[joint.kind]
         self.points = {
             name: Place(min(self.holders[name], key=lambda body: depth[body]), self.at[name])
             for name in self.drawn
             if name in self.holders
         }
-        closures = tuple(self._closures(edges, taken))
+        hung = tuple(self.joints)
+        self._close(edges, taken)
+        for number, (name, given) in enumerate(self._drives()):
+            self._drive(f"drive {number} {name}", name, given, hung, taken)
         return SpanningTree(
-            joints=tuple(joints),
+            joints=tuple(self.joints),
+            rods=self.rods_made,
+            loops=tuple(self.loops),
+            driven=tuple(self.driven),
             points=self.points,
-            closures=closures,
-            drives=tuple(self._drives(joints, taken)),
             drawn={name: self.drawn[name] for name in self.points},
             origin=self.origin,
             unit=self.unit,
@@ -444,9 +432,9 @@ class _Cutter:
     def _place(self, body: str, point: str) -> Place:
         return Place(body, self.at[point])
 
-    def _closures(self, edges: list[_Edge], taken: list[_Edge]) -> Iterator[Closure]:
-        """What the tree's joints leave open."""
-        met = _Groups()
+    def _close(self, edges: list[_Edge], taken: list[_Edge]) -> None:
+        """Close what the tree's joints leave open."""
+        met, numbers = _Groups(), count()
         for edge in taken:
             if not edge.slide:
                 for p in edge.points:
@@ -457,12 +445,12 @@ class _Cutter:
             one, other = edge.bodies
             apart = [p for p in edge.points if met.join((p, one), (p, other))]
             for p in apart:
-                ends = (self._place(other, p), self._place(one, p))
+                number, first, second = next(numbers), self._place(other, p), self._place(one, p)
                 # The first point that meets leaves the second one only to stay on the hinge's line.
                 if p != apart[0] or len(apart) < len(edge.points):
-                    yield OnLine(p, *ends, edge.axis)
+                    self._on_line(f"closure {number} {p}", p, first, second, edge.axis)
                 else:
-                    yield Coincide(p, *ends)
+                    self.loops.append(Loop(p, first, second))
         on_rods = {(slide, p) for slide, p, _, _ in self.sliding_rods.values()}
         for name, slide in self.slides.items():
             axis = self._line(slide)[1]
@@ -472,103 +460,184 @@ class _Cutter:
                     continue
                 for p in points[:2]:
                     if (name, p) not in on_rods:
-                        yield OnLine(p, self._place(body, p), through, axis)
+                        self._on_line(f"closure {next(numbers)} {p}", p, self._place(body, p), through, axis)
                 if len(points) > 1 and not slide["turns"]:
+                    # Of any two points of the body: its frame's origin, and one along the direction.
                     u, v = across(axis)
-                    yield Square(name, Place(body, u), Place(slide["body"], v))
+                    start = next(joint.at for joint in self.joints if joint.body == body)
+                    ends = Place(body, start), Place(body, start + u)
+                    self._level(f"closure {next(numbers)} {name}", name, slide["body"], v, *ends)
         for name, (one, other) in self.rods.items():
-            length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
-            if length == 0.0:
-                raise CutError(other, f"is where {one} is, so that {name} has no length", "points apart")
+            length, number = self._distance(one, other, f"{name} has no length"), next(numbers)
             if name in self.sliding_rods:
                 _, p, q, foot = self.sliding_rods[name]
-                yield Coincide(p, self.points[p], Place(self.free[q], foot))
-                continue
-            yield Rod(name, self.points[one], self.points[other], length)
+                self.loops.append(Loop(p, self.points[p], Place(self.free[q], foot)))
+            else:
+                self._rod(f"closure {number} {name}", name, self.points[one], self.points[other], length)
 
-    def _drives(self, joints: list[Joint], taken: list[_Edge]) -> Iterator[Drive]:
+    def _distance(self, one: str, other: str, without: str) -> float:
+        length = float(np.linalg.norm(self.drawn[one] - self.drawn[other]))
+        if length == 0.0:
+            raise CutError(other, f"is where {one} is, so that {without}", "points apart")
+        return length
+
+    def _slide(self, name: str, place: Place, axis: Array) -> Place:
+        self.joints.append(Joint(name, place.body, "slide", place.at, axis))
+        return Place(name, place.at)
+
+    def _slides(self, name: str, place: Place, axes: tuple[Array, ...]) -> Place:
+        for number, axis in enumerate(axes):
+            place = self._slide(f"{name} {number}", place, axis)
+        return place
+
+    def _on_line(self, name: str, of: str, point: Place, line: Place, axis: Array) -> None:
+        """A point that stays on a line of a body."""
+        foot = line.at + float((point.at - line.at) @ axis) * axis
+        self.loops.append(Loop(of, self._slide(name, Place(line.body, foot), axis), point))
+
+    def _level(self, name: str, of: str, body: str, axis: Array, first: Place, second: Place) -> None:
+        """Two places that stay equally far along an axis of a body."""
+        start = self._slide(name, Place(body, first.at), axis)
+        for label, place in (("first", first), ("second", second)):
+            level = place.at - float((place.at - first.at) @ axis) * axis
+            end = self._slides(f"{name} {label}", Place(start.body, level), across(axis))
+            self.loops.append(Loop(of, end, place))
+
+    def _rod(
+        self, name: str, of: str, first: Place, second: Place, length: float, is_driven: bool = False
+    ) -> None:
+        axis = second.at - first.at
+        axis = axis / float(np.linalg.norm(axis))
+        self.joints.append(Joint(name, first.body, "ball", first.at))
+        self.rods_made[name] = axis
+        end = Place(name, first.at + length * axis)
+        if is_driven:
+            end = self._slide(f"{name} length", end, axis)
+            self.driven.append(Driven(of, "distance", length, end.body, 1.0, -length))
+        self.loops.append(Loop(of, end, second))
+
+    def _drives(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
+        """Inputs that drive something; one of several slides for each of them."""
         for name, given in self.inputs.items():
-            if "angle" in given:
-                yield (
-                    self._turn(name, given, joints)
-                    if given["from"] == "drawing"
-                    else self._angle(name, given)
-                )
-            elif "travel" in given:
-                slides = given["travel"] if isinstance(given["travel"], list | tuple) else [given["travel"]]
-                for slide in slides:
-                    yield self._travel(name, slide, joints, taken)
-            elif "height" in given or "contact" in given:
-                yield self._height(name, given)
-            elif "distance" in given:
-                p, q = given["distance"]
-                drawn = float(np.linalg.norm(self.drawn[p] - self.drawn[q]))
-                if drawn == 0.0:
-                    raise CutError(p, f"is where {q} is, so that {name} has no direction", "points apart")
-                yield Drive(name, "distance", self.points[p], self.points[q], NO_AXIS, CHASSIS, drawn, drawn)
+            if "travel" in given and not isinstance(given["travel"], str):
+                yield from ((name, {**given, "travel": slide}) for slide in given["travel"])
+            elif not given.keys().isdisjoint(("angle", "travel", "height", "contact", "distance")):
+                yield name, given
 
-    def _turn(self, name: str, given: Mapping[str, Any], joints: list[Joint]) -> Drive:
+    def _drive(
+        self, label: str, name: str, given: Mapping[str, Any], hung: Sequence[Joint], taken: list[_Edge]
+    ) -> None:
+        if given.get("from") == "drawing":
+            self._turn(name, given, hung)
+        elif "angle" in given:
+            self._angle(label, name, given)
+        elif "travel" in given:
+            self._travel(label, name, self.slides[given["travel"]], given["travel"], hung, taken)
+        elif "height" in given:
+            p, axis = given["height"], self.directions[given.get("along", "up")]
+            still = Place(CHASSIS, self.drawn[p])
+            self._height(label, name, "length", (self.points[p], still), axis, CHASSIS, 1.0, 0.0)
+        elif "contact" in given:
+            rim, up = self._contact(label, name, *given["contact"]), self.directions["up"]
+            self._height(label, name, "length", (rim, Place(CHASSIS, rim.at)), up, CHASSIS, 1.0, 0.0)
+        else:
+            p, q = given["distance"]
+            length = self._distance(q, p, f"{name} has no direction")
+            self._rod(label, name, self.points[p], self.points[q], length, True)
+
+    def _turn(self, name: str, given: Mapping[str, Any], hung: Sequence[Joint]) -> None:
         body, on = given["angle"], given.get("on", CHASSIS)
-        for joint in joints:
+        for joint in hung:
             if joint.kind == "hinge" and {joint.body, joint.parent} == {body, on}:
                 p, q = (p for p in self.bodies[body] if p in self.bodies[on])
                 along = float(np.sign(joint.axis @ (self.drawn[q] - self.drawn[p])))
                 sign = along if joint.body == body else -along
-                place = self._place(body, p)
-                return Drive(name, "turn", place, place, joint.axis, on, sign, 0.0, joint.body)
+                self.driven.append(Driven(name, "turn", 0.0, joint.body, sign, 0.0))
+                return
         raise CutError(
             name, f"turns {body} on {on}, which is no hinge of the tree", "a hinge in no closed loop"
         )
 
-    def _angle(self, name: str, given: Mapping[str, Any]) -> Drive:
-        first, second = self.points[given["of"]], self.points[given["about"]]
-        axis, reach = self.directions[given["from"]], self.drawn[given["of"]] - self.drawn[given["about"]]
-        size = float(np.linalg.norm(reach))
-        if size == 0.0:
-            raise CutError(
-                given["of"], f"is where {given['about']} is, so that {name} is no angle", "points apart"
-            )
-        drawn = math.acos(min(1.0, max(-1.0, float(reach @ axis) / size)))
-        return Drive(name, "angle", first, second, axis, CHASSIS, size, drawn)
+    def _angle(self, label: str, name: str, given: Mapping[str, Any]) -> None:
+        of, about, axis = given["of"], given["about"], self.directions[given["from"]]
+        size = self._distance(about, of, f"{name} is no angle")
+        drawn = math.acos(min(1.0, max(-1.0, float((self.drawn[of] - self.drawn[about]) @ axis) / size)))
+        ends = self.points[of], self.points[about]
+        self._height(label, name, "angle", ends, axis, CHASSIS, size, drawn)
 
-    def _travel(self, name: str, slide_name: str, joints: list[Joint], taken: list[_Edge]) -> Drive:
-        slide = self.slides[slide_name]
-        body, p = slide["body"], slide["points"][0]
-        given = self._line(slide)[0]
-        through = Place(body, self.drawn[slide["through"]])
-        size = float(given @ given)
-        drawn = float((self.drawn[p] - through.at) @ given) / size
+    def _travel(
+        self,
+        label: str,
+        name: str,
+        slide: Mapping[str, Any],
+        slide_name: str,
+        hung: Sequence[Joint],
+        taken: list[_Edge],
+    ) -> None:
+        body, p, axis = slide["body"], slide["points"][0], self._line(slide)[0]
+        through, size = self.drawn[slide["through"]], float(axis @ axis)
+        drawn = float((self.drawn[p] - through) @ axis) / size
         holder = next(iter(self._sliding(slide)))
-        joint, along = "", 1.0
+        ends = self._place(holder, p), Place(body, through)
         if any(edge.slide == slide_name and holder in edge.bodies for edge in taken):
-            for found in joints:
-                ends = {found.body.removesuffix(" slide"), found.parent}
-                if found.kind == "slide" and ends == {holder, body}:
-                    joint, along = found.body, 1.0 if found.parent == body else -1.0
-        return Drive(name, "travel", self._place(holder, p), through, given, body, size, drawn, joint, along)
+            for joint in hung:
+                if joint.kind == "slide" and {joint.body.removesuffix(" slide"), joint.parent} == {
+                    holder,
+                    body,
+                }:
+                    # Its coordinate counts from the reference pose.
+                    scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
+                    start = float((ends[0].at - through) @ axis)
+                    self.driven.append(
+                        Driven(name, "length", drawn, joint.body, scale * size, -scale * start)
+                    )
+                    return
+        self._height(label, name, "length", ends, axis, body, size, drawn)
 
-    def _height(self, name: str, given: Mapping[str, Any]) -> Drive:
-        if "height" in given:
-            p = given["height"]
-            axis = self.directions[given.get("along", "up")]
-            second = Place(CHASSIS, self.drawn[p])
-            return Drive(name, "height", self.points[p], second, axis, CHASSIS, 1.0, 0.0)
-        inner, centre = given["contact"]
-        first, axis = self.points[centre], self.directions["up"]
+    def _height(
+        self,
+        label: str,
+        name: str,
+        kind: Literal["angle", "length"],
+        ends: tuple[Place, Place],
+        along: Array,
+        of: str,
+        size: float,
+        drawn: float,
+    ) -> None:
+        """Drive along . (first - second) = size x f(input), along a direction of the body `of`."""
+        first, second = ends
+        long = float(np.linalg.norm(along))
+        axis, start = along / long, float((first.at - second.at) @ along)
+        base = Place(of, first.at)
+        if second.body != of:
+            # A body that goes along with the second point, and turns as the body `of` does.
+            carried = self._slides(f"{label} from", Place(of, second.at), (axis, *across(axis)))
+            self.loops.append(Loop(name, carried, second))
+            base = Place(carried.body, first.at)
+        end = self._slide(label, base, axis)
+        self.driven.append(Driven(name, kind, drawn, end.body, size / long, -start / long))
+        self.loops.append(Loop(name, self._slides(f"{label} beside", end, across(axis)), first))
+
+    def _contact(self, label: str, name: str, inner: str, centre: str) -> Place:
+        """The lowest point of a wheel, as a place of a body that turns about the wheel's axis."""
+        up = self.directions["up"]
         holder = next((b for b in self.holders[inner] if b in self.holders[centre]), None)
         if holder is None or not self.radius > 0.0:
             raise CutError(
                 name, f"needs a wheel with {inner} and {centre}", "points of one body, and a wheel_radius"
             )
         axle = unit_vector(self.drawn[centre] - self.drawn[inner], inner, centre)
-        lean = float(axis @ axle)
-        if not abs(lean) < 1.0:
+        if not abs(float(up @ axle)) < 1.0:
             raise CutError(name, "has a wheel that lies flat, with no lowest point", "an upright wheel")
-        # Counted from the drawn contact point, which is lower by radius x sqrt(1 - s^2).
-        sunk = self.radius * (1.0 - math.sqrt((1.0 - lean) * (1.0 + lean)))
-        second = Place(CHASSIS, self.drawn[centre] + sunk * axis)
-        first = self._place(holder, centre)
-        return Drive(name, "contact", first, second, axis, CHASSIS, self.radius, 0.0, axle=axle)
+        hub = self.at[centre]
+        down = float(up @ axle) * axle - up
+        down = down / float(np.linalg.norm(down))
+        rim = f"{label} rim"
+        self.joints.append(Joint(rim, holder, "hinge", hub, axle))
+        tip = Place(rim, hub + np.cross(axle, down))
+        self._level(f"{label} level", name, CHASSIS, up, Place(rim, hub), tip)
+        return Place(rim, hub + self.radius * down)
 
 
 def car_directions(plain: Mapping[str, Any]) -> dict[str, Array]:

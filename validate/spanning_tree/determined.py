@@ -1,4 +1,4 @@
-"""Which rows of a Jacobian determine its columns, and in which order they do."""
+"""Which rows of a Jacobian determine its columns, and which of them together."""
 
 from __future__ import annotations
 
@@ -16,48 +16,26 @@ Numbers = NDArray[np.int64]
 DEPENDENT = 1e-9
 
 
-def independent_rows(jacobian: Array, last: int) -> Numbers:
+def independent_rows(jacobian: Array) -> Numbers:
     """As many rows as are independent, increasing, at a pose, (rows, columns).
 
-    The last ones are taken after all others. Rows are taken by pivoting (Golub and Van Loan, Matrix
-    Computations, 5.4.2), so that those that are left out are those that depend most on the others.
+    Rows are taken by pivoting (Golub and Van Loan, Matrix Computations, 5.4.2), so that those that are left
+    out are those that depend most on the others.
     """
-    first = len(jacobian) - last
-    chosen: list[int] = []
-    for rows, offset in ((jacobian[:first], 0), (jacobian[first:], first)):
-        # Without what the rows before span.
-        if chosen:
-            basis = np.linalg.qr(jacobian[chosen].T)[0]
-            rows = rows - (rows @ basis) @ basis.T
-        if rows.size:
-            _, triangle, order = qr(rows.T, mode="economic", pivoting=True)
-            sizes = np.abs(np.diag(triangle))
-            most = jacobian.shape[1] - len(chosen)
-            count = min(int((sizes > DEPENDENT).sum()), most)
-            chosen += [offset + int(k) for k in order[:count]]
-    return np.array(sorted(chosen), dtype=np.int64)
+    if not jacobian.size:
+        return np.zeros(0, dtype=np.int64)
+    _, triangle, order = qr(jacobian.T, mode="economic", pivoting=True)
+    count = int((np.abs(np.diag(triangle)) > DEPENDENT).sum())
+    return np.sort(order[:count]).astype(np.int64)
 
 
 def blocks(pattern: NDArray[np.bool_]) -> list[tuple[Numbers, Numbers]]:
-    """Rows and columns of the diagonal blocks of a square pattern in lower block triangular form.
+    """Rows and columns of the diagonal blocks of a square pattern in block triangular form.
 
-    Each block is solved after those before it (Duff and Reid, ACM Transactions on Mathematical Software 4,
-    1978), so that the determinant is the product of theirs.
+    The determinant is the product of theirs (Duff and Reid, ACM Transactions on Mathematical Software 4,
+    1978).
     """
-    graph = csr_matrix(pattern)
-    row_of = maximum_bipartite_matching(graph, perm_type="row")
-    matched = pattern[row_of]
-    count, label = connected_components(csr_matrix(matched), directed=True, connection="strong")
+    row_of = maximum_bipartite_matching(csr_matrix(pattern), perm_type="row")
+    count, label = connected_components(csr_matrix(pattern[row_of]), directed=True, connection="strong")
     members = [np.flatnonzero(label == k) for k in range(count)]
-    waiting, done, ordered = list(range(count)), np.zeros(len(label), dtype=bool), []
-    while waiting:
-        for k in waiting:
-            columns = members[k]
-            needed = matched[columns].any(axis=0)
-            needed[columns] = False
-            if not (needed & ~done).any():
-                ordered.append((np.asarray(row_of[columns], dtype=np.int64), columns))
-                done[columns] = True
-                waiting.remove(k)
-                break
-    return ordered
+    return [(np.asarray(row_of[columns], dtype=np.int64), columns) for columns in members]

@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import asdict
 from functools import partial
 from typing import Any, TypeVar
 
@@ -80,8 +79,7 @@ def examined(task: Task, seed: int) -> list[Row]:
 
 def held_pose(pose: NearPose) -> list[Row]:
     """The check of a car whose inputs are constant."""
-    laws = {name: [value] for name, value in pose.inputs.items()}
-    return _checked(pose, laws, np.zeros(1), stop=0.0)
+    return _checked(pose, {name: [value] for name, value in pose.inputs.items()}, np.zeros(1), stop=0.0)
 
 
 def moving_instants(number: int, seed: int) -> list[Row]:
@@ -173,20 +171,19 @@ def measured(rows: Sequence[Row]) -> pd.DataFrame:
     """The rows that answer, with what is made of their columns.
 
     Returns:
-        Also `share`, the larger error in parts of its bound: above 1 the bound is broken; `rounding`, what
-        rounding may do: eps (condition size + far), mm; `loss`, the error in parts of that; `solved points`
-        and `carried points`, bound over error, which is infinite where the error is zero.
+        Also `share`, the larger error in parts of its bound: above 1 the bound is broken; `loss`, the error
+        in parts of what rounding may do, eps (condition size + far); `loose`, bound over error of solved
+        points, which is infinite where the error is zero.
     """
     table = pd.DataFrame(rows, columns=list(dict.fromkeys(("part", "number", *COLUMNS))))
     table = table[table["refusal"].isna()].drop(columns="refusal").reset_index(drop=True)
     numbers = [name for name, kind in COLUMNS.items() if kind == "float64"]
     table[numbers] = table[numbers].astype(float)
+    # A mechanism without carried points has no share of them.
     solved, carried = table["error"] / table["bound"], table["carried_error"] / table["carried_bound"]
     table["share"] = np.where(table["carried_bound"].isna(), solved, np.maximum(solved, carried))
-    table["rounding"] = EPS * (table["condition"] * table["size"] + table["far"])
-    table["loss"] = table["error"] / table["rounding"]
-    table["solved points"] = table["bound"] / table["error"]
-    table["carried points"] = table["carried_bound"] / table["carried_error"]
+    table["loss"] = table["error"] / (EPS * (table["condition"] * table["size"] + table["far"]))
+    table["loose"] = table["bound"] / table["error"]
     return table
 
 
@@ -199,15 +196,14 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
     data: dict[str, Any] = {
         "seed": seed,
         "refusals": [{"reason": reason, "poses": count} for reason, count in reasons],
-        "broken": _records(broken),
+        "broken": broken.astype(object).where(broken.notna(), None).to_dict("records"),
     }
     for part, what in (
         (HELD, "poses held close to the end of an input"),
         (MOVING, "instants of motions that run towards the end of an input"),
     ):
         there = checks[checks["part"] == part]
-        by_variant = ((v.words, there[there["suspension"] == v.words]) for v in variants())
-        data[part] = {words: _looseness(here) for words, here in by_variant}
+        data[part] = {str(words): _looseness(here) for words, here in there.groupby("suspension", sort=False)}
         parts += ["", f"{len(there)} {what}; medians, unless it says largest", _by_distance(there)]
         for name in ("share", "loss") if len(there) else ():
             worst = there.iloc[[int(there[name].to_numpy().argmax())]].to_dict("records")[0]
@@ -226,13 +222,13 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
 def _summary(checks: pd.DataFrame, refused: Mapping[str, int]) -> Table:
     """A row for each suspension and closure."""
     rows = []
-    for variant in variants():
-        here = checks[checks["suspension"] == variant.words]
+    for words in (variant.words for variant in variants()):
+        here = checks[checks["suspension"] == words]
         sets = [int((here["part"] == part).sum()) for part in (HELD, MOVING)]
-        counts = (*sets, refused[variant.words], int((~(here["share"] <= 1.0)).sum()))
-        worst, loose = here["share"].max(skipna=False), here["solved points"].median()
-        ends = ("-", "-") if here.empty else (f"{worst:.7g}", f"{loose:.3g}")
-        rows.append((variant.words, *map(str, counts), *ends))
+        counts = (*sets, refused[words], int((~(here["share"] <= 1.0)).sum()))
+        ends = here["share"].max(skipna=False), here["loose"].median()
+        shown = ("-", "-") if here.empty else (f"{ends[0]:.7g}", f"{ends[1]:.3g}")
+        rows.append((words, *map(str, counts), *shown))
     head = ("suspension", "poses held", "instants of motions", "refused", "bounds below the error")
     return Table((*head, "largest error / bound", "median bound / error"), tuple(rows))
 
@@ -246,7 +242,7 @@ def _by_distance(checks: pd.DataFrame) -> Table:
             f"{part['condition'].median():.1e}",
             f"{(part['error'] / part['size']).median():.1e}",
             *(f"{of(part['loss']):.2g}" for of in (pd.Series.median, pd.Series.max)),
-            f"{part['solved points'].median():.3g}",
+            f"{part['loose'].median():.3g}",
             f"{part['share'].max():.2g}",
         )
         for decade, part in checks.groupby(np.floor(np.log10(checks["distance"])))
@@ -260,31 +256,17 @@ def _looseness(checks: pd.DataFrame) -> dict[str, Any]:
     return {
         "count": len(checks),
         "bound_over_error": {
-            points.replace(" ", "_"): {
-                f"{level:g}": float(np.quantile(ratio, level, method="nearest")) for level in LEVELS
-            }
-            for points in ("solved points", "carried points")
-            if len(ratio := checks[points].dropna())
+            f"{level:g}": float(np.quantile(checks["loose"], level, method="nearest")) for level in LEVELS
         },
-        "largest_loss": None if checks.empty else float(checks["loss"].max()),
-        "largest_error_over_bound": None if checks.empty else float(checks["share"].max()),
-        "checks": _records(checks),
+        "largest_loss": float(checks["loss"].max()),
+        "largest_error_over_bound": float(checks["share"].max()),
     }
 
 
 def _case(row: Mapping[Hashable, Any]) -> str:
-    carried = row["carried_error"]
     return (
         f"number {row['number']}, {row['suspension']}, "
         f"{row['driven']} {row['distance']:.2e} from the end ({row['lock']}), "
         f"t = {row['instant']!r} s: error / bound {row['share']:.3g}, error {row['error']:.2e} mm, "
-        + ("" if math.isnan(carried) else f"carried points {carried:.2e} mm, ")
-        + f"condition {row['condition']:.2e}, loss {row['loss']:.2g}"
+        f"condition {row['condition']:.2e}, loss {row['loss']:.2g}"
     )
-
-
-def _records(checks: pd.DataFrame) -> list[dict[Hashable, Any]]:
-    of = {variant.words: asdict(variant) for variant in variants()}
-    names = ["number", *(name for name in COLUMNS if name not in ("suspension", "refusal"))]
-    rows = checks[names].to_dict("records")
-    return [{"variant": of[words], **row} for words, row in zip(checks["suspension"], rows, strict=True)]

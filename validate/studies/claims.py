@@ -8,24 +8,22 @@ instant held against the reference:
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-import numpy as np
+import pandas as pd
 
 from pointcoord import SceneError
 from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import DUST, as_solution, off_by, reference_motion, scales
-from validate.cars.base_cars import variants
-from validate.cars.random_scenes import SEED, RandomScene, random_scene
+from validate.cars.random_scenes import SEED, random_scene
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 from validate.output.table import Table
-from validate.reference import Instant, NoReferenceError
+from validate.reference import NoReferenceError
 from validate.studies.study import Findings, Row, Study, Task
 
 LEVELS = (0.5, 0.9, 0.99)
@@ -49,45 +47,36 @@ def claims(count: int = 300, first: int = 0, formulation: str = "pointcoord", se
 def scene_rows(task: Task, name: str) -> list[Row]:
     """Every number of the scene of a number."""
     car = random_scene(task.number)
-    return [{"suspension": car.variant.words, "kind": car.kind, **row} for row in _held(car, name) or [{}]]
-
-
-def _held(car: RandomScene, formulation_name: str) -> list[Row]:
-    scene = car.scene
+    scene, of_all = car.scene, {"suspension": car.variant.words, "kind": car.kind}
     try:
-        solution = formulation(formulation_name).solve(scene)
+        solution = formulation(name).solve(scene)
         instants = reference_motion(scene, scene.instants.tolist())
     except (FormulationError, SceneError, NoReferenceError):
-        return []
+        return [of_all]
     reference = as_solution(scene, instants)
     rows: list[Row] = []
     for quantity in asked_numbers(scene):
         # The reference's own error is that of numbers as large as the largest ones that a number is made of.
-        dust = DUST * scales(reference.numbers)[quantity]
-        for name in (n for n in solution.numbers[quantity] if n in reference.numbers[quantity]):
-            numbers = solution.numbers[quantity][name].reshape(len(instants), -1)
-            claimed = solution.accuracy.claims[quantity][name].reshape(len(instants), -1)
-            for row, claim, instant in zip(numbers, claimed, instants, strict=True):
-                errors = (off_by(a, b) for a, b in zip(row, _exact(instant, quantity, name), strict=True))
+        dust, of_car = DUST * scales(reference.numbers)[quantity], QUANTITIES[quantity].of == "car"
+        for one in (n for n in solution.numbers[quantity] if n in reference.numbers[quantity]):
+            numbers = solution.numbers[quantity][one].reshape(len(instants), -1)
+            claimed = solution.accuracy.claims[quantity][one].reshape(len(instants), -1)
+            for ours, claim, instant in zip(numbers, claimed, instants, strict=True):
+                exact = [instant.effects[one]] if of_car else list(getattr(instant, quantity)[one])
+                errors = [off_by(a, b) for a, b in zip(ours, exact, strict=True)]
                 rows += [
-                    {"quantity": quantity, "error": e if e > dust else 0.0, "claim": float(c)}
+                    {**of_all, "quantity": quantity, "error": e if e > dust else 0.0, "claim": float(c)}
                     for e, c in zip(errors, claim, strict=True)
                 ]
-    return rows
-
-
-def _exact(instant: Instant, quantity: str, name: str) -> Sequence[Any]:
-    of_the_car = QUANTITIES[quantity].of == "car"
-    return [instant.effects[name]] if of_the_car else list(getattr(instant, quantity)[name])
+    return rows or [of_all]
 
 
 def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
     """By suspension and quantity: numbers, the largest error / claim, claim / error at levels."""
-    held = [row for row in rows if row.get("quantity") is not None]
-    data = [
-        {"suspension": variant.words, "quantity": quantity, **_looseness(part)}
-        for variant, quantity in itertools.product(variants(), QUANTITIES)
-        if (part := [r for r in held if (r["suspension"], r["quantity"]) == (variant.words, quantity)])
+    held = pd.DataFrame(rows, columns=["number", *COLUMNS]).dropna(subset="quantity")
+    data: list[dict[str, Any]] = [
+        {"suspension": suspension, "quantity": quantity, **_looseness(part)}
+        for (suspension, quantity), part in held.groupby(["suspension", "quantity"], sort=False)
     ]
     lines = [
         (
@@ -102,29 +91,26 @@ def found(rows: Sequence[Row], settings: Mapping[str, str | int]) -> Findings:
         for one in data
     ]
     head = ("suspension", "quantity", "numbers", "exact", "largest error / bound", "scene")
-    scenes = len({row["number"] for row in held})
+    scenes = held["number"].nunique()
     table = Table((*head, *(f"bound / error at {100 * level:g}%" for level in LEVELS)), tuple(lines))
     return Findings(
         (f"{scenes} scenes compared with the reference", table),
         {**settings, "scenes": scenes, "quantities": data},
-        ExitStatus.AGREE if all(row["error"] <= row["claim"] for row in held) else ExitStatus.DISAGREE,
+        ExitStatus.AGREE if (held["error"] <= held["claim"]).all() else ExitStatus.DISAGREE,
     )
 
 
-def _looseness(rows: Sequence[Row]) -> dict[str, Any]:
+def _looseness(rows: pd.DataFrame) -> dict[str, Any]:
     """What errors of one quantity come to, in parts of their claims; the scene is that of the largest."""
-    off = [row for row in rows if row["error"] != 0.0]
-    error, claim = np.array([(row["error"], row["claim"]) for row in off]).reshape(-1, 2).T
-    with np.errstate(divide="ignore"):
-        share, loose = error / claim, claim / error
-    worst = off[int(share.argmax())] if off else rows[0]
+    off = rows[rows["error"] != 0.0]
+    share = off["error"] / off["claim"]
+    levels = LEVELS if len(off) else ()
+    worst = rows.iloc[0] if off.empty else off.loc[share.idxmax()]
     return {
         "numbers": len(rows),
         "exact": len(rows) - len(off),
-        "largest_error_over_claim": float(share.max(initial=0.0)),
-        "scene": worst["number"],
+        "largest_error_over_claim": 0.0 if off.empty else float(share.max()),
+        "scene": int(worst["number"]),
         "kind": worst["kind"],
-        "claim_over_error": {f"{level:g}": float(np.quantile(loose, level)) for level in LEVELS}
-        if off
-        else {},
+        "claim_over_error": {f"{level:g}": float((1.0 / share).quantile(level)) for level in levels},
     }

@@ -11,7 +11,7 @@ from validate.hard.answer import Answer
 from validate.hard.case import Case
 from validate.hard.catalogue import chosen
 from validate.hard.report import results_data, summary_parts
-from validate.hard.run import Examined, as_expected, examined, tried
+from validate.hard.run import Examined, as_expected, tried
 from validate.hard.trial import Trial
 from validate.studies.study import Findings, Row, Study, Task
 
@@ -39,7 +39,7 @@ def hard(cases: Sequence[str] = ()) -> Study:
 def answers(task: Task) -> list[Row]:
     """Try one value by every formulation of its case."""
     (case,) = chosen([task.part])
-    trial = tried(case, task.number)
+    trial = tried(case, case.values[task.number])
     every = {"value": trial.value, "facts": json.dumps(dict(trial.facts))}
     return [{**every, **asdict(answer)} for answer in trial.answers]
 
@@ -65,4 +65,5 @@ def _examined(case: Case, rows: dict[int, list[Row]]) -> Examined:
     answers = ([Answer(**{name: row[name] for name in ANSWER}) for row in of] for of in rows.values())
     facts = (json.loads(of[0]["facts"]) for of in rows.values())
     trials = [Trial(value, tuple(of), also) for value, of, also in zip(values, answers, facts, strict=True)]
-    return examined(replace(case, values=values), trials, sum(of[0]["seconds"] for of in rows.values()))
+    seconds = sum(of[0]["seconds"] for of in rows.values())
+    return Examined(replace(case, values=values), tuple(trials), seconds)

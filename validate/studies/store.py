@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from validate.output.files import remove_left_over, unwritable, write_content, w
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
 
-HEAD, LOCK = "_study.json", "_lock"
+HEAD = "_study.json"
 EVERY = {"part": "string", "number": "int64", "seconds": "float64", "worker": "string"}
 ANOTHER = "give another folder by --records, or delete this one to begin again"
 
@@ -70,7 +70,7 @@ class Store:
         return [row for task in (sorted(found) if tasks is None else tasks) for row in found.get(task, ())]
 
     def _read(self, columns: Sequence[str]) -> Iterator[Row]:
-        # Two runs on a disk that knows no locks may have worked out the same task: it counts once.
+        # Two runs may have worked out the same task: it counts once.
         known: set[Task] = set()
         parquet = needed("study", "pyarrow.parquet", "cluster")
         for file in self.files():
@@ -88,9 +88,8 @@ class Store:
             known |= here
 
     def next_file(self) -> Path:
-        """The file for what is worked out next."""
-        last = max((int(file.stem) for file in self.files() if file.stem.isdigit()), default=-1)
-        return self.folder / f"{last + 1:06d}.parquet"
+        """A file for what is worked out next, which no other run has."""
+        return self.folder / f"{time.time_ns():020d}-{os.getpid()}.parquet"
 
     def write(self, file: Path, rows: Sequence[Row]) -> None:
         """Write a file: all rows of some tasks. Whoever was interrupted may write the same one again.
@@ -101,6 +100,13 @@ class Store:
         pa, parquet = (needed("study", name, "cluster") for name in ("pyarrow", "pyarrow.parquet"))
         schema = pa.schema([(name, getattr(pa, kind)()) for name, kind in self.columns.items()])
         table = pa.Table.from_pylist(list(rows), schema=schema)
+        if not self.files():
+            try:
+                self.folder.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise unwritable(str(self.folder), error) from None
+            head = {name: value for name, value in vars(self).items() if name != "folder"}
+            write_content(str(self.folder / HEAD), json.dumps(head, indent=1) + "\n")
         write_whole(str(file), lambda stream: parquet.write_table(table, stream))
 
 
@@ -115,68 +121,30 @@ def look(folder: Path) -> Store:
     return store
 
 
-@contextmanager
-def adding_to(folder: Path, study: Study) -> Iterator[Store]:
-    """The records in a folder, to be gone on with, or begun; one run at a time.
-
-    A folder that is made here goes again if nothing comes into it.
+def adding_to(folder: Path, study: Study) -> Store:
+    """The records in a folder, to be gone on with, or begun: the folder is made when something is recorded.
 
     Raises:
-        UsageError: they are of something else, another run adds to them now, or there is no room.
-        OutputError: the folder takes no files.
+        UsageError: they are of something else, or there is no room.
     """
     needed("study", "pyarrow.parquet", "cluster")
-    store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
-    new, there = not os.path.exists(folder), _found(folder)
-    if not new:
+    here, there = (
+        Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by()),
+        _found(folder),
+    )
+    if folder.exists() and not folder.is_dir():
+        raise _unusable(folder, "is a file, and records take a folder; give another name")
+    if folder.is_dir():
         remove_left_over(folder)
     # A run that ended before anything was recorded left nothing to be held to.
-    if there is not None and there.files():
-        _require_same(there, store)
-    elif not new and not folder.is_dir():
-        raise _unusable(folder, "is a file, and records take a folder; give another name")
-    elif not new and set(os.listdir(folder)) - {HEAD, LOCK}:
-        raise _unusable(folder, "holds something else than records of a study; give another folder")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        lock = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
-    except OSError as error:
-        raise unwritable(str(folder), error) from None
-    try:
-        _take(lock, folder)
-        if there is None or not there.files():
-            head = {name: value for name, value in vars(store).items() if name != "folder"}
-            write_content(str(folder / HEAD), json.dumps(head, indent=1) + "\n")
-        yield store
-    finally:
-        os.close(lock)
-        if new and set(os.listdir(folder)) <= {HEAD, LOCK}:
-            for name in (HEAD, LOCK):
-                (folder / name).unlink(missing_ok=True)
-            folder.rmdir()
-
-
-def _require_same(there: Store, here: Store) -> None:
-    if there.study != here.study:
-        raise _unusable(there.folder, f"holds the study {there.study!r}, not {here.study!r}; {ANOTHER}")
-    if told := differences({**there.settings, **there.made_by}, {**here.settings, **here.made_by}):
-        raise _unusable(there.folder, f"was begun with something else: {told}; {ANOTHER}")
-
-
-def _take(lock: int, folder: Path) -> None:
-    """Take the folder for this run alone; the lock goes with the process, however it ends.
-
-    Raises:
-        UsageError: another run has it.
-    """
-    import fcntl
-
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise _unusable(folder, "another run adds to them now; wait, or give another folder") from None
-    except OSError:
-        pass  # A disk that knows no locks: a task that two runs work out counts once.
+    if there is None or not there.files():
+        if folder.is_dir() and set(os.listdir(folder)) - {HEAD}:
+            raise _unusable(folder, "holds something else than records of a study; give another folder")
+    elif there.study != study.name:
+        raise _unusable(folder, f"holds the study {there.study!r}, not {study.name!r}; {ANOTHER}")
+    elif told := differences({**there.settings, **there.made_by}, {**here.settings, **here.made_by}):
+        raise _unusable(folder, f"was begun with something else: {told}; {ANOTHER}")
+    return here
 
 
 def _found(folder: Path) -> Store | None:

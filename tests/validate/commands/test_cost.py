@@ -107,11 +107,11 @@ def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
         (
             ["--ways", "series,mujoco"],
             {"series", "mujoco"},
-            {"bounce", "double-wishbone", "chain", ""},
-            {"accuracy", "growth", "loading"},
+            {"bounce", "double-wishbone", "chain"},
+            {"accuracy", "growth"},
         ),
         (["--parts", "growth"], None, {"bounce", "chain"}, {"growth"}),
-        (["--parts", "loading, accuracy", "double-wishbone"], None, {"double-wishbone"}, {"accuracy"}),
+        (["--parts", "growth, accuracy", "double-wishbone"], None, {"double-wishbone"}, {"accuracy"}),
     ],
 )
 def test_scenes_ways_and_parts_choose_rows(
@@ -126,7 +126,7 @@ def test_scenes_ways_and_parts_choose_rows(
     rows = document(capsys.readouterr().out)["rows"]
     assert {row["scene"] for row in rows} == scenes
     assert {row["part"] for row in rows} == parts
-    assert ways is None or {row["way"] for row in rows if row["part"] != "loading"} == ways
+    assert ways is None or {row["way"] for row in rows} == ways
 
 
 def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -203,14 +203,9 @@ def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
     [
         ([], STUDY_SCENES, PARTS),
         (["--quick"], ("bounce-and-steer",), ("accuracy",)),
-        (["--quick", "--parts", "growth,loading"], ("bounce-and-steer",), ("growth", "loading")),
-        (
-            ["steer", "near-toggle", "steer"],
-            ("steer", "near-toggle"),
-            ("accuracy", "effects", "growth", "unrelated"),
-        ),
-        (["--effects", "steer"], ("steer",), ("effects",)),
-        (["--parts", "loading,accuracy", "steer"], ("steer",), ("accuracy", "loading")),
+        (["--quick", "--parts", "growth"], ("bounce-and-steer",), ("growth",)),
+        (["steer", "near-toggle", "steer"], ("steer", "near-toggle"), PARTS),
+        (["--parts", "growth,accuracy", "steer"], ("steer",), ("accuracy", "growth")),
     ],
 )
 def test_what_is_measured_is_what_the_options_say(
@@ -231,7 +226,6 @@ def test_what_is_measured_is_what_the_options_say(
     (study,) = asked
     assert (tuple(scene.name for scene in study.scenes), study.parts) == (scenes, parts)
     assert study.quick == ("--quick" in words)
-    assert study.own == bool({"steer"} & {*words})
 
 
 def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(

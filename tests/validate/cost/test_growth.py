@@ -115,8 +115,8 @@ def rows_of(one: Line, measure: Any = None, known: Sequence[Row] = ()) -> list[R
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        (lambda size: (2.0 * size / 1000, 0), "it would take some 2e+02 s, as the smaller ones say"),
-        (lambda size: (1e-3, 2**20 * size), "it would need some 98 GiB, as the smaller ones say"),
+        (lambda size: (2.0 * size / 1000, 0), "it would take some 2e+02 s, as 1000 say"),
+        (lambda size: (1e-3, 2**20 * size), "it would need some 98 GiB, as 1000 say"),
     ],
 )
 def test_what_would_take_too_much_is_left_out_with_the_reason(law: Any, words: str) -> None:

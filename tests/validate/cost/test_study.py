@@ -7,17 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pointcoord import Scene, simulate, solve_poses
+from pointcoord import Scene, simulate
 from validate.cost import study as studying
-from validate.cost.parts import accuracy, effects, growth, loading, unrelated
-from validate.cost.parts.effects import NO_EFFECT
-from validate.cost.parts.unrelated import NEAR, OTHERS
+from validate.cost.parts import accuracy, growth
 from validate.cost.race import Effort, race
 from validate.cost.scenes import own_scene, study_instants, study_scene
 from validate.cost.study import Study, measure
 from validate.cost.table import Row, Store, measured_here, read_rows
 from validate.cost.way import Way
-from validate.cost.ways.registry import WAYS, ways_named
+from validate.cost.ways.registry import ways_named
 
 STEER = study_scene("steer", own_scene("steer"))
 FEW = Effort(repeats=2, least=0.0)
@@ -40,10 +38,10 @@ def test_instants_are_special_to_no_way_and_one_lies_in_each_part_of_the_time() 
 
 
 def test_every_setting_is_raced_for_positions_alone_and_for_everything() -> None:
-    ways = ways_named(["series", "absolute", "series-differences"])
+    ways = ways_named(["series", "absolute"])
     runners = accuracy.runners_of(STEER, ways)
     count = {way.name: sum(one.row.way == way.name for one in runners) for way in ways}
-    assert count == {"series": 24, "absolute": 2, "series-differences": 5}
+    assert count == {"series": 24, "absolute": 2}
     bare = study_scene("bare", STEER.positions_only())
     assert len(accuracy.runners_of(bare, ways)) == 13
     rows = race(accuracy.runners_of(STEER, ways, quick=True), FEW)
@@ -103,52 +101,3 @@ def test_growth_goes_on_with_the_size_that_it_was_stopped_at(
     rows = measure(study, Store(path, measured_here()))
     assert len(rows) == 8
     assert len(done) == 4 + 5
-
-
-def test_reading_each_effect_stands_beside_a_copy_of_the_same_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(effects, "INSTANTS_QUICK", 500)
-    rows = race(effects.runners_of(STEER, quick=True), FEW)
-    assert {(row.setting, row.quantity) for row in rows} == {
-        (c, q) for c in effects.choices(STEER.scene) for q in ("read", "copy")
-    }
-    numbers = {row.setting: row.numbers for row in rows}
-    assert numbers[NO_EFFECT] == 3 * len(STEER.scene.mechanism.topology.points)
-    assert numbers["velocity"] == 2 * (numbers[NO_EFFECT] or 0)
-    assert all(row.verdict == "measured" and row.poses == 500 for row in rows)
-
-
-def test_a_process_that_fails_is_a_failed_row_with_what_it_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    wrong = {"python": ("-c", "pass"), "wrong": ("-c", "raise SystemExit('no such thing')")}
-    monkeypatch.setattr(loading, "LOADED", wrong)
-    found = {row.way: row for row in race(loading.runners_of(quick=True), FEW)}
-    assert found["python"].verdict == found["Scene.load('steer')"].verdict == "measured"
-    assert (found["python"].time or 0.0) > 1e-3
-    assert found["wrong"].reason.startswith("CalledProcessError: ")
-
-
-@pytest.mark.parametrize("name", ["bounce-and-steer", "double-wishbone"])
-def test_every_way_at_unrelated_inputs_is_as_near_as_asked(name: str) -> None:
-    study = study_scene(name, own_scene(name))
-    rows = race(unrelated.runners_of(study, WAYS, quick=True, poses=(300, 10)), FEW)
-    assert {row.way for row in rows} == {"map", "one by one", *OTHERS}
-    for row in rows:
-        assert row.verdict == "measured", row
-        assert row.poses == (10 if row.way in OTHERS else 300)
-        assert 0.0 < (row.error or 0.0) < NEAR
-
-
-def test_poses_that_are_wrong_or_not_proven_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    study = study_scene("bounce-and-steer", own_scene("bounce-and-steer"))
-
-    def changed(**change: Any) -> Row:
-        def solve(scene: Scene, inputs: Any, tolerance: float) -> Any:
-            found = solve_poses(scene, inputs, tolerance)
-            return replace(found, **{name: how(getattr(found, name)) for name, how in change.items()})
-
-        monkeypatch.setattr(unrelated, "solve_poses", solve)
-        return race(unrelated.runners_of(study, (), poses=(300, 24)), FEW)[1]
-
-    off = changed(position=lambda places: {name: place + 1e-6 for name, place in places.items()})
-    assert off.error == pytest.approx(1e-6, rel=1e-3)
-    doubtful = changed(bound=lambda bound: np.where(np.arange(len(bound)) == 250, 2e-9, bound))
-    assert (doubtful.verdict, doubtful.reason) == ("failed", "is proven to 2e-09 mm only, not to 1e-09 mm")

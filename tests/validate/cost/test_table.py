@@ -1,13 +1,10 @@
 """What was measured is found again as it was, however a run ended, and never among what does not compare."""
 
-import json
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import pyarrow.parquet
 import pytest
 from made_rows import WHERE, study
 
@@ -65,29 +62,22 @@ def test_rows_that_do_not_compare_are_not_gone_on_with_but_can_be_read(tmp_path:
 WHOLE = frame([ROW]).to_parquet()
 
 
-def with_head(head: dict[str, Any]) -> bytes:
-    """The table with something else in the place of what pandas keeps in a file's head."""
-    stream = BytesIO()
-    table = pyarrow.Table.from_pandas(frame([ROW])).replace_schema_metadata({"pandas": json.dumps(head)})
-    pyarrow.parquet.write_table(table, stream)
-    return stream.getvalue()
-
-
 @pytest.mark.parametrize(
     ("content", "words"),
     [
         (b"hello", "Parquet"),
         (b"", "Parquet"),
         (WHOLE[:-1], "Parquet"),
-        (with_head({"index_columns": [{"kind": "range"}]}), "'columns'"),
         (frame([ROW]).drop(columns="time").to_parquet(), "the columns time are missing or unknown"),
         (frame([ROW]).assign(more=1).to_parquet(), "the columns more are missing or unknown"),
-        (frame([ROW]).assign(time="quick").to_parquet(), "quick"),
-        (frame([ROW]).assign(time="9" * 5000 + "x").to_parquet(), "could not convert string to float"),
-        (frame([ROW]).assign(scene=None, quick=None).to_parquet(), "there are rows without quick, scene"),
-        (frame([ROW]).assign(poses=1.5).to_parquet(), "cannot safely cast"),
-        (frame([ROW]).assign(part="speed").to_parquet(), "part is 'speed'; allowed: accuracy, effects"),
-        (frame([ROW]).assign(verdict="fine").to_parquet(), "verdict is 'fine'; allowed: measured, failed"),
+        (frame([ROW]).assign(time="quick").to_parquet(), "time of row 0: Input should be a valid number"),
+        (frame([ROW]).assign(scene=None).to_parquet(), "scene of row 0: Input should be a valid string"),
+        (frame([ROW]).assign(poses=1.5).to_parquet(), "poses of row 0: Input should be a valid integer"),
+        (
+            frame([ROW]).assign(part="speed").to_parquet(),
+            "part of row 0: Input should be 'accuracy'",
+        ),
+        (frame([ROW]).assign(verdict="fine").to_parquet(), "verdict of row 0: Input should be 'measured'"),
     ],
 )
 def test_a_file_that_is_no_such_table_is_refused_with_the_reason(

@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from stand_in import stand_in
 
-from pointcoord import Scene
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.hard import trial
 from validate.hard.cars import PAPER_CAR, scene_content
-from validate.hard.case import REFUSED, RIGHT, Case, case, decades
+from validate.hard.case import MAP, RIGHT, Case, case, decades
 from validate.hard.report import summary_parts
-from validate.hard.run import MAP, as_expected, examine
+from validate.hard.run import as_expected, examine
 from validate.hard.trial import OURS
 from validate.output.table import text_of
 
@@ -52,20 +51,6 @@ def test_a_wrong_number_of_the_map_is_neither_expected_nor_passed_over(
     assert {(a.formulation, a.outcome) for _, a in result.unexpected} == {(MAP, "wrong")}
     assert len(result.wrong) == 2
     assert not as_expected([result])
-
-
-def test_what_the_map_answers_where_there_is_no_pose_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    beyond = replace(steered(lambda value: 131.0 + value), expected={OURS: REFUSED})
-    honest = examine(beyond)
-    assert {a.outcome for _, a in honest.answers(MAP)} == {"refused"}
-    assert as_expected([honest])
-    drawn = formulation(OURS).solve(
-        Scene.from_mapping(scene_content(PAPER_CAR, [1.5, 0.1], stop=0.2, samples=2))
-    )
-    stand_in(monkeypatch, lambda scene: drawn, MAP)
-    made_up = examine(beyond)
-    assert {a.outcome for _, a in made_up.answers(MAP)} == {"wrong"}
-    assert not as_expected([made_up])
 
 
 def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(

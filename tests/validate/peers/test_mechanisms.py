@@ -181,7 +181,7 @@ def test_every_scene_of_a_moved_chassis_is_moved_as_a_whole() -> None:
     linkage, step, times = linkage_of(mechanism), 1e-3, 0.4 + 1e-3 * np.arange(-2.0, 3.0)
     laws = {
         drive.input: sine(drive.drawn * (1.0 if drive.is_angle else linkage.unit), 0.1, 2.0, times)
-        for drive in linkage.tree.drives
+        for drive in linkage.driven
     }
     laws |= {"roll": sine(0.02, 0.1, 3.0, times), "heave": sine(0.0, 20.0, 1.0, times)}
     program, inputs = InPinocchio(linkage), linkage.inputs(laws)

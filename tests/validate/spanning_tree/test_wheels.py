@@ -35,7 +35,7 @@ def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
         "up": {"moves": "chassis", "along": "up"},
     }
     tree = linkage_of(plain).tree
-    drawn, unit = {drive.input: drive for drive in tree.drives}, tree.unit
+    drawn, unit = {driven.input: driven for driven in tree.driven}, tree.unit
     values = {n: d.drawn if d.is_angle else d.drawn * unit for n, d in drawn.items()}
     sizes = {n: 0.1 if d.is_angle else 8.0 for n, d in drawn.items()}
     values |= {"roll": 0.03, "pitch": -0.02, "aside": 40.0, "up": -70.0, "heave": 5.0}

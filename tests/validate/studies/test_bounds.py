@@ -9,26 +9,19 @@ import pytest
 from hypothesis import assume, given, settings, target
 from hypothesis import strategies as st
 
-from pointcoord import Scene
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.near_singular import NearPose, approach, near_pose
-from validate.cars.scene_content import content_of
 from validate.exit_status import ExitStatus
 from validate.output.table import text_of
-from validate.reference import InfeasibleError
 from validate.strategies import cars
 from validate.studies.bounds import (
     bounds,
     held_pose,
     measured,
 )
-from validate.studies.study import Row
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # An end and its pose take a second, so the short profile searches briefly and the deep one as long as any.
 searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 5)
-# Ends of four mechanisms whose way there is short, by their numbers.
-ENDS = (4, 5, 7, 8)
 
 
 @st.composite
@@ -72,22 +65,7 @@ def beside(pose: NearPose, distance: float) -> NearPose:
     return replace(pose, inputs=pose.inputs | {pose.driven: near}, distance=distance)
 
 
-@pytest.fixture(scope="module")
-def poses() -> list[NearPose]:
-    return [near_pose(number) for number in ENDS]
-
-
-@pytest.fixture(scope="module")
-def held(poses: list[NearPose]) -> list[Row]:
-    """Each end from seven distances, over the decades from 1e-8 to 1e-2."""
-    near = [beside(pose, 10.0**-k) for pose in poses for k in range(2, 9)]
-    common = {"part": "held", "seconds": 0.0, "worker": "here"}
-    return [{**common, "number": i, **row} for i, pose in enumerate(near) for row in held_pose(pose)]
-
-
-def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
-    poses: list[NearPose], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: pytest.MonkeyPatch) -> None:
     from pointcoord.bounds import proof
 
     honest = proof._of_poses
@@ -97,20 +75,7 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(
         return own, 1e-6 * bound, *others
 
     monkeypatch.setattr(proof, "_of_poses", short)
-    (row,) = held_pose(beside(poses[0], 1e-4))
+    (row,) = held_pose(beside(near_pose(4), 1e-4))
     findings = bounds().summary([{"part": "held", "number": 0, **row}])
     assert findings.status == ExitStatus.DISAGREE
     assert "bounds below the error: 1" in text_of(findings.parts)
-
-
-@pytest.mark.parametrize("number", range(4))
-def test_an_input_stepped_beyond_its_end_has_no_assembly(number: int, poses: list[NearPose]) -> None:
-    # The end is where the reference says so too, to 1e-11 of the range on either side.
-    for distance, there in ((1e-11, True), (-1e-11, False)):
-        pose = beside(poses[number], distance)
-        scene = Scene.from_mapping(content_of(pose.car, pose.inputs, effects=()))
-        if there:
-            reference_instant(scene, inputs_at(scene, 0.0))
-        else:
-            with pytest.raises(InfeasibleError):
-                reference_instant(scene, inputs_at(scene, 0.0))

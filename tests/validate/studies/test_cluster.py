@@ -47,7 +47,8 @@ def test_a_worker_killed_in_the_middle_loses_and_repeats_nothing_that_was_record
     monkeypatch.setattr(cluster, "WRITTEN", 0.3)
     study = counted(60, tmp_path / "marks", pause=0.05)
     before = dict[Path, bytes]()
-    with adding_to(tmp_path / "records", study) as store, cluster.opened("local", 2) as client:
+    store = adding_to(tmp_path / "records", study)
+    with cluster.opened("local", 2) as client:
         pids = client.run(os.getpid)
         assert len(set(pids.values())) == 2
 
@@ -87,8 +88,8 @@ def test_a_worker_of_another_version_records_nothing(
 
 
 def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> None:
-    with adding_to(folder, study) as store, cluster.opened(other.scheduler_address) as client:
-        cluster.run(study, study.tasks, store, client, told)
+    with cluster.opened(other.scheduler_address) as client:
+        cluster.run(study, study.tasks, adding_to(folder, study), client, told)
 
 
 def test_a_worker_of_several_tasks_is_refused(tmp_path: Path) -> None:

@@ -25,9 +25,9 @@ def row(number: int, **more: object) -> Row:
 
 def recorded(folder: Path, *numbers: Sequence[int], study: Study = BOUNDS) -> Store:
     """A folder with a file for each group of numbers."""
-    with adding_to(folder, study) as there:
-        for group in numbers:
-            there.write(there.next_file(), [row(number) for number in group])
+    there = adding_to(folder, study)
+    for group in numbers:
+        there.write(there.next_file(), [row(number) for number in group])
     return there
 
 
@@ -45,8 +45,8 @@ def test_what_is_added_is_there_and_what_was_there_stays_as_it_is(tmp_path: Path
 
 def test_numbers_come_back_to_the_last_bit_and_none_as_none(tmp_path: Path) -> None:
     values = [0.1 + 0.2, 5e-324, float("inf"), -0.0, 1.7976931348623157e308, None]
-    with adding_to(tmp_path, BOUNDS) as there:
-        there.write(there.next_file(), [row(i, bound=value) for i, value in enumerate(values)])
+    there = adding_to(tmp_path, BOUNDS)
+    there.write(there.next_file(), [row(i, bound=value) for i, value in enumerate(values)])
     assert [repr(one["bound"]) for one in there.rows()] == [repr(value) for value in values]
 
 
@@ -87,7 +87,7 @@ def test_a_broken_file_is_named_with_what_to_do(tmp_path: Path) -> None:
     whole = there.files()[0].read_bytes()
     for broken in (whole[: len(whole) // 2], b"", b"number\n1\n"):
         there.files()[0].write_bytes(broken)
-        with pytest.raises(UsageError, match=r"000000.parquet cannot be read .* delete this file"):
+        with pytest.raises(UsageError, match=r"\.parquet cannot be read .* delete this file"):
             there.tasks()
 
 
@@ -95,8 +95,8 @@ def test_the_findings_of_records_are_said_without_working_anything_out(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     refused = {"suspension": "double wishbone", "distance": 0.5, "refusal": "no bound"}
-    with adding_to(tmp_path, replace(BOUNDS, tasks=())) as there:
-        there.write(there.next_file(), [row(number, **refused) for number in range(3)])
+    there = adding_to(tmp_path, replace(BOUNDS, tasks=()))
+    there.write(there.next_file(), [row(number, **refused) for number in range(3)])
     words = ["study", "bounds", "--from-records", "--records", str(tmp_path)]
     assert main([*words, "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)

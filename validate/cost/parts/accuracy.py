@@ -43,7 +43,6 @@ def runners_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> l
         for way in ways
         for value in chosen(way.values, SETTINGS_QUICK if quick else None)
         for part in asked
-        if part.effects or not way.rates_only
     ]
 
 

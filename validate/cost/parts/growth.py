@@ -1,7 +1,7 @@
 """How time and memory grow with instants of a scene, designs of a car, and unknowns of a chain of four-bars.
 
-Smaller sizes are measured first. A size whose run would take too long or too much memory, as the sizes before
-it say, is left out with that reason; so are the sizes above one that failed.
+Smaller sizes are measured first. A size whose run would take too long or too much memory, if both went in
+proportion to the size before it, is left out with that reason; so are the sizes above one that failed.
 
 A design is the car with every moving hardpoint moved at random; its drawing is put together by whoever
 solves it. Design number k is the same car in however large a batch.
@@ -91,11 +91,9 @@ class Line:
             yield found
 
 
-def lines_of(
-    study: StudyScene, ways: Sequence[Way], quick: bool = False, plan: Plan | None = None
-) -> list[Line]:
+def lines_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Line]:
     """All that grows, for one scene: how costs grow is a matter of the way, and of the scene hardly."""
-    plan = plan or (QUICK if quick else FULL)
+    plan = QUICK if quick else FULL
     alone = StudyScene(f"{study.name}, positions alone", study.positions_only())
     lines = []
 
@@ -206,41 +204,23 @@ def some_of(size: int, most: int) -> list[int]:
     return sorted({int(place) for place in np.linspace(0, size - 1, most)})
 
 
-def whole_run(row: Row) -> float:
-    """What a run takes; s. Against instants without its set-up, which is the same for any number of them."""
-    return (row.time or 0.0) * row.poses + (0.0 if row.against == "instants" else row.set_up or 0.0)
-
-
-def foreseen(sizes: Sequence[float], costs: Sequence[float], size: float) -> float | None:
-    """Extrapolates the cost of a larger size from the last two: the more of two laws.
-
-    c size^p is right where a cost grows faster than its size; fixed + each size where a part that does not
-    grow still hides the part that does. None if fewer than two sizes are known.
-    """
-    kept = [(known, cost) for known, cost in zip(sizes, costs, strict=True) if cost > 0.0]
-    if len(kept) < 2:
-        return None
-    (smaller, less), (larger, more) = kept[-2:]
-    exponent = max(np.log(more / less) / np.log(larger / smaller), 0.0)
-    each = max((more - less) / (larger - smaller), 0.0)
-    return float(max(more * (size / larger) ** exponent, more + each * (size - larger)))
-
-
 def _too_much(size: int, before: Sequence[Row], limits: Limits) -> str:
-    """Why a size is not tried; empty if it is."""
+    """Why a size is not tried, in proportion to the largest one that was timed; empty if it is."""
     for row in before:
         if row.verdict == "failed":
             return f"{row.size} {row.against} failed"
-    known = {row.size or 0: row for row in before if row.time is not None}
-    seconds = [whole_run(row) for row in known.values()]
-    memory = [(row.peak_bytes or 0) / 2**30 for row in known.values()]
-    for what, unit, allowed, costs in (
-        ("it would take", "s", limits.seconds, seconds),
-        ("it would need", "GiB", limits.memory / 2**30, memory),
+    known = max((row for row in before if row.time is not None), key=lambda row: row.size or 0, default=None)
+    if known is None:
+        return ""
+    # Against instants without the set-up, which is the same for any number of them.
+    set_up = 0.0 if known.against == "instants" else known.set_up or 0.0
+    times = size / (known.size or size)
+    for what, unit, cost, allowed in (
+        ("it would take", "s", times * ((known.time or 0.0) * known.poses + set_up), limits.seconds),
+        ("it would need", "GiB", times * (known.peak_bytes or 0) / 2**30, limits.memory / 2**30),
     ):
-        cost = foreseen(list(known), costs, size)
-        if cost is not None and cost > allowed:
-            return f"{what} some {cost:.2g} {unit}, as the smaller ones say; allowed: {allowed:g} {unit}"
+        if cost > allowed:
+            return f"{what} some {cost:.2g} {unit}, as {known.size} say; allowed: {allowed:g} {unit}"
     return ""
 
 

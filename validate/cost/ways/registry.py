@@ -8,7 +8,6 @@ from pointcoord import UnknownName
 from validate.cost.way import Way
 from validate.cost.ways import (
     absolute,
-    differences,
     peers,
     point_coordinates,
     printed,
@@ -17,7 +16,6 @@ from validate.cost.ways import (
 
 WAYS: tuple[Way, ...] = (
     *point_coordinates.WAYS,
-    *differences.WAYS,
     *printed.WAYS,
     *absolute.WAYS,
     *scipy_solvers.WAYS,

@@ -16,7 +16,7 @@ is to be had of it nothing is judged here, and the tests of mechanisms hold it t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 
 import numpy as np
@@ -24,7 +24,7 @@ import numpy as np
 from validate.adjudication.reference_solution import design_of, inputs_at
 from validate.cars.scene_content import Law, content_of
 from validate.hard.cars import SQUARE, drawn_angle, scene_content
-from validate.hard.case import REFUSED, RIGHT, Case, Expected, Values, case, coarse, decades, expected_of
+from validate.hard.case import REFUSED, RIGHT, Expected, Values, case, coarse, decades, expected_of
 from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
@@ -73,12 +73,8 @@ def flat_drawing(side: float, subject: Subject, share: float) -> Content:
     Of a wishbone the arm does: its upper ball joint is drawn near the plane of its pivots and the lower one.
     """
     if subject is PAPER:
-        car, start, rack = (
-            subject.car.drawn_as(flat_car(side * share)),
-            subject.drawn["arm_angle"],
-            (0.0, 0.0, 20.0),
-        )
-        return scene_content(car, start, rack, stop=1.0, samples=3)
+        car, start = subject.car.drawn_as(flat_car(side * share)), subject.drawn["arm_angle"]
+        return scene_content(car, start, (0.0, 0.0, 20.0), stop=1.0, samples=3)
     car = subject.car.drawn_as(upper_arm_flat(assembled(subject.name), side * share))
     inputs: dict[str, Law] = {"arm_angle": (drawn_angle(car), 0.0, -0.02), "rack": 0.0}
     return content_of(car, inputs, stop=1.0, samples=3)
@@ -111,10 +107,6 @@ def whole_range(driven: str, subject: Subject, share: float) -> Content:
     return subject.absolute({**subject.home, driven: (high, low - high)}, stop=1.0, samples=2)
 
 
-_branch = partial(case, group="Branches")
-_clear = partial(_branch, expected=CLEAR)
-
-
 # Poses near a singular one, or at the drawing, of which the assemblies are counted.
 STARTS = 1000
 DEGREE = 64  # of the polynomial of the collinear strut in the literature
@@ -136,38 +128,24 @@ ORDINARY = "Of all assemblies of an ordinary pose, up to sixteen by closed forms
 NEAR = decades(-12, -1)[::3]
 FEWER = (1e-1, 1e-10)  # each value is a search from a thousand starts
 # Name, why, parameter, pose, values of the strut and of the wishbone.
-POSES: tuple[tuple[str, str, str, Pose, tuple[float, ...], tuple[float, ...]], ...] = (
+POSES: tuple[tuple[str, str, str, Pose, Values, Values], ...] = (
     (
-        "drawing",
-        ORDINARY,
-        "arm and rack from the drawing, in parts of 0.2 rad and 30 mm; then at it",
-        _beside_drawing,
-        (1.0, 0.1, 0.0),
-        (1.0, 0.0),
+        *("drawing", ORDINARY, "arm and rack from the drawing, in parts of 0.2 rad and 30 mm; then at it"),
+        *(_beside_drawing, (1.0, 0.1, 0.0), (1.0, 0.0)),
     ),
     (
-        "rack",
-        MERGING,
-        "distance from the greatest rack travel, in parts of its range",
+        *("rack", MERGING, "distance from the greatest rack travel, in parts of its range"),
         lambda subject, share: (SQUARE, last_value(subject, "rack", True).beyond(-share)),
-        NEAR,
-        FEWER,
+        *(NEAR, FEWER),
     ),
     (
-        "arm",
-        MERGING,
-        "distance from the greatest arm angle, in parts of its range",
+        *("arm", MERGING, "distance from the greatest arm angle, in parts of its range"),
         lambda subject, share: (last_value(subject, "arm_angle", True).beyond(-share), 0.0),
-        NEAR,
-        FEWER,
+        *(NEAR, FEWER),
     ),
     (
-        "meeting",
-        MERGING,
-        "rack travel beyond the meeting of two branches, in parts of 10 mm",
-        _beside_meeting,
-        NEAR,
-        (),
+        *("meeting", MERGING, "rack travel beyond the meeting of two branches, in parts of 10 mm"),
+        *(_beside_meeting, NEAR, ()),
     ),
 )
 
@@ -183,46 +161,7 @@ def counted(_: Subject, share: float, trial: Trial) -> Trial:
         return trial
     scene = trial.tried.scene
     listed = count_assemblies(design_of(scene), inputs_at(scene, 0.0), starts=STARTS)
-    return trial.noting(
-        {"assemblies found, proven": float(len(listed.found)), "starts": float(listed.starts)}
-    )
-
-
-NEAR_MEETING = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
-BEYOND, SHORT = (f"rack travel {where} the meeting, in parts of 10 mm" for where in ("beyond", "short of"))
-PASSING, MEETING = partial(through_the_meeting, 1.0), partial(through_the_meeting, -1.0)
-FAR = "distance of the first instant from the end, in parts of half the range"
-WHOLE = "distance of both instants from their ends, in parts of half the range"
-# Mechanism, what the name says of the input, the input, at which end, values.
-FAR_STARTS = (
-    (PAPER, "high", "arm_angle", False, FEW),
-    (PAPER, "rack", "rack", True, FEW),
-    (WISHBONE, "high", "arm_angle", False, FEW[::3]),
-    (WISHBONE, "rack", "rack", True, FEW[::3]),
-    *((one, hyphens(name), name, True, (1e-4,)) for one in OTHERS for name, up in ends_of(one) if up),
-)
-ALSO: Mapping[str, Values] = {"also_answered": FEW[2:3]}
-# Mechanism, what the name says of the input, the input, values, and where there is an answer as well.
-WHOLE_RANGES: tuple[tuple[Subject, str, str, Values, Mapping[str, Values]], ...] = (
-    (PAPER, "arm", "arm_angle", FEW[1:], {}),
-    (PAPER, "rack", "rack", FEW[1:], {}),
-    (WISHBONE, "arm", "arm_angle", FEW[2:], ALSO),
-    (WISHBONE, "rack", "rack", FEW[2:], ALSO),
-    *(
-        (one, hyphens(name), name, (1e-4,), {})
-        for one in OTHERS
-        for name in one.kinds
-        if {(name, False), (name, True)} <= set(ends_of(one))
-    ),
-)
-SIDES = (("", 1.0), ("-mirrored", -1.0))
-MIRROR = "The drawing is close to its mirror image in the plane of {}: rounding may choose."
-
-
-def _flat_drawings(subject: Subject, plane: str, parameter: str, values: tuple[float, ...]) -> Iterator[Case]:
-    for label, side in SIDES:
-        scene, name = partial(flat_drawing, side), f"flat-drawing{label}"
-        yield _clear(scene, parameter, values, subject=subject, name=name, why=MIRROR.format(plane))
+    return trial.noting({"assemblies found, proven": len(listed.found), "starts": listed.starts})
 
 
 # Turn of the drawing, rad, at which branches cross, or beyond which there is none.
@@ -248,46 +187,54 @@ def to_the_line(beyond: bool, moving: bool, subject: Subject, value: float) -> C
     return subject.absolute({driven: goal})
 
 
+_branch = partial(case, group="Branches")
+_clear = partial(_branch, expected=CLEAR)
+BESIDE = NAMED["beside"]
+APPROACH = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
+MEET = f"{APPROACH} and meet, so that there is a gap that a large step may leap."
+NEARLY_MEET = f"{APPROACH}, and a step may end on the other one."
+# Name, why, side of the meeting, in words, what has to come, values of the paper's strut and of that beside.
+MEETING = (
+    ("branches-nearly-meet", NEARLY_MEET, 1.0, "beyond", CLEAR, EVEN, FEW),
+    ("branches-met", MEET, -1.0, "short of", REFUSED, ODD, ODD[::2]),
+)
+FAR = "distance of the first instant from the end, in parts of half the range"
+ALL = "distance of both instants from their ends, in parts of half the range"
+# Mechanism, what the name says of the input, the input, at which end, values.
+FAR_STARTS = (
+    *((PAPER, *row, FEW) for row in (("high", "arm_angle", False), ("rack", "rack", True))),
+    *((WISHBONE, *row, FEW[::3]) for row in (("high", "arm_angle", False), ("rack", "rack", True))),
+    *((one, hyphens(name), name, True, (1e-4,)) for one in OTHERS for name, up in ends_of(one) if up),
+)
+# Mechanism, what the name says of the input, the input, values, and where there is an answer as well.
+WHOLE_RANGES: tuple[tuple[Subject, str, str, Values, Values], ...] = (
+    *((PAPER, *row, FEW[1:], ()) for row in (("arm", "arm_angle"), ("rack", "rack"))),
+    *((WISHBONE, *row, FEW[2:], FEW[2:3]) for row in (("arm", "arm_angle"), ("rack", "rack"))),
+    *(
+        (one, hyphens(name), name, (1e-4,), ())
+        for one in OTHERS
+        for name in one.kinds
+        if {(name, False), (name, True)} <= set(ends_of(one))
+    ),
+)
+FLAT = (
+    (PAPER, "kingpin and rack", "tie rod's outer end over that plane, in parts of the paper's", decades()),
+    (WISHBONE, "the upper arm", "upper ball joint over that plane, in parts of the car's", coarse(decades())),
+)
+
 CASES = (
-    _branch(
-        PASSING,
-        BEYOND,
-        EVEN,
-        CLEAR,
-        name="branches-nearly-meet",
-        why=f"{NEAR_MEETING}, and a step may end on the other one.",
-    ),
-    _branch(
-        MEETING,
-        SHORT,
-        ODD,
-        REFUSED,
-        name="branches-met",
-        why=f"{NEAR_MEETING} and meet, so that there is a gap that a large step may leap.",
-    ),
-    _branch(
-        PASSING,
-        BEYOND,
-        FEW,
-        CLEAR,
-        NAMED["beside"],
-        name="branches-nearly-meet",
-        why=f"{NEAR_MEETING} in the car whose strut passes beside the ball joint as well.",
-    ),
-    _branch(
-        MEETING,
-        SHORT,
-        ODD[::2],
-        REFUSED,
-        NAMED["beside"],
-        name="branches-met",
-        why=f"{NEAR_MEETING} and meet, in the car whose strut passes beside the ball joint.",
-    ),
-    *_flat_drawings(
-        PAPER,
-        "kingpin and rack",
-        "height of the tie rod's outer end over that plane, in parts of the paper's",
-        decades(),
+    *(
+        _branch(
+            partial(through_the_meeting, side),
+            f"rack travel {where} the meeting, in parts of 10 mm",
+            values,
+            expected,
+            subject,
+            name=name,
+            why=why,
+        )
+        for name, why, side, where, expected, *both in MEETING
+        for subject, values in zip((PAPER, BESIDE), both, strict=True)
     ),
     _branch(
         crooked_drawing,
@@ -302,15 +249,22 @@ CASES = (
     ),
     *(
         _clear(
-            partial(whole_range, driven), WHOLE, values, subject=subject, name=f"whole-range-{where}", **more
+            *(partial(whole_range, driven), ALL, values),
+            subject=subject,
+            name=f"whole-range-{where}",
+            also_answered=also,
         )
-        for subject, where, driven, values, more in WHOLE_RANGES
+        for subject, where, driven, values, also in WHOLE_RANGES
     ),
-    *_flat_drawings(
-        WISHBONE,
-        "the upper arm",
-        "height of the upper ball joint over that plane, in parts of the car's",
-        coarse(decades()),
+    *(
+        _clear(
+            *(partial(flat_drawing, side), f"height of the {parameter}", values),
+            subject=subject,
+            name=f"flat-drawing{label}",
+            why=f"The drawing is close to its mirror image in the plane of {plane}: rounding may choose.",
+        )
+        for subject, plane, parameter, values in FLAT
+        for label, side in (("", 1.0), ("-mirrored", -1.0))
     ),
     *(
         _branch(
@@ -321,7 +275,6 @@ CASES = (
             subject,
             name=f"assemblies-counted-{where}",
             why=why,
-            behaviour="of all assemblies that a search finds, the one of the drawing",
             judged=counted,
         )
         for where, why, parameter, pose, *both in POSES

@@ -8,12 +8,12 @@ of what is driven beyond it is compared with the true end (see `reach`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import NamedTuple
 
 from validate.hard.cars import SQUARE
 from validate.hard.case import REFUSED, Case, Expected, Values, case, decades
-from validate.hard.cases.reach import ANY, ARM, SLIDE, TIE_ROD, UPPER_ARM, Drive, driven_beyond
+from validate.hard.cases.reach import End, Lock, driven_beyond, first_three, tie_rod_within
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS, Content, Subject, hyphens
 
@@ -41,97 +41,76 @@ LAWS = {
 }
 
 
-class End(NamedTuple):
-    """An end of an input.
-
-    Attributes:
-        ahead: whether the upper one.
-        where: what happens there.
-        lock: what lies in line there.
-        group: of the cases near it.
-    """
-
-    driven: str
-    ahead: bool
-    where: str
-    lock: str = ANY
-    group: str = "Inputs at their ends, of every mechanism"
-
-
-def near_end(end: End, arm_angle: float | None, law: str, subject: Subject, value: float) -> Content:
+def near_end(end: End, arm_angle: float | None, law: str, _: Subject, value: float) -> Content:
     """The scene near an end of an input, or beyond it.
 
     Args:
         arm_angle: at which a rack is driven; the other inputs are as drawn.
         law: held near the end, moving from the middle of the range to there in one second, or held beyond.
     """
-    held = dict(subject.drawn) | ({} if arm_angle is None else {"arm_angle": arm_angle})
-    last = last_value(subject, end.driven, end.ahead, held)
+    held = dict(end.subject.drawn) | ({} if arm_angle is None else {"arm_angle": arm_angle})
+    last = last_value(end.subject, end.driven, end.ahead, held)
     at, across = float(last.value), -last.reach if end.ahead else last.reach
     near = at + (-value if law == "beyond" else value) * across
     middle = at + 0.5 * across
     way: float | Sequence[float] = [middle, near - middle] if law == "moving" else near
-    return subject.absolute({**held, end.driven: way}, stop=1.0 if law == "moving" else None)
+    return end.subject.absolute({**held, end.driven: way}, stop=1.0 if law == "moving" else None)
 
 
 def _near(
     name: str,
     end: End,
-    subject: Subject,
     suffix: str,
+    group: str,
     values: Values,
-    arm_angle: float | None = None,
-    laws: Sequence[str] = tuple(LAWS),
+    laws: Sequence[str],
+    arm: float | None = None,
 ) -> Iterator[Case]:
     for law in laws:
         expected = dict.fromkeys(NEAR_END, REFUSED) if law == "beyond" else NEAR_END
-        newton = {"pointcoord-newton": expected["pointcoord"]} if end.group == UPPER else {}
-        at = "" if arm_angle is None else f", the arm at {arm_angle:.4g} rad"
+        newton = {"pointcoord-newton": expected["pointcoord"]} if group == UPPER else {}
+        at = "" if arm is None else f", the arm at {arm:.4g} rad"
         yield case(
-            partial(near_end, end, arm_angle, law),
+            partial(near_end, end, arm, law),
             f"distance from the end, in parts of the input's range{', beyond it' * (law == 'beyond')}",
             # A motion takes longest; with another car than the first few values must do.
             values or (COARSE if law == "moving" and suffix else FULL),
             expected | newton,
-            subject,
+            end.subject,
             name=f"{name}-{law}" if len(laws) > 1 else name,
             suffix=suffix,
-            group=end.group,
+            group=group,
             why=f"{end.where}{at}{LAWS[law]}.",
         )
 
 
-def _beyond(name: str, end: End, subject: Subject, suffix: str, moving: bool, values: Values) -> Case:
-    drive = Drive(subject, end.driven, end.ahead, end.lock, moving)
-    turned = ", in a car mirrored, turned and 4e6 mm from the origin" if suffix.endswith("-turned") else ""
-    return driven_beyond(drive, f"{name}{suffix}", end.where + turned, values)
-
-
-ARM_GROUP, RACK_GROUP = "The arm at its dead points", "Tie rod and steering arm in line"
 UPPER = "The knuckle's upper end out of reach"
-IN_LINE, ON_CIRCLE = (
-    "Tie rod and steering arm lie in line",
-    "The ball joint is {} on its circle, where height says no more",
-)
-ENDS = {
-    "arm-highest": End("arm_angle", False, ON_CIRCLE.format("highest"), ARM, ARM_GROUP),
-    "arm-lowest": End("arm_angle", True, ON_CIRCLE.format("lowest"), ARM, ARM_GROUP),
-    "rack-least": End("rack", False, IN_LINE, TIE_ROD, RACK_GROUP),
-    "rack-greatest": End("rack", True, IN_LINE, TIE_ROD, RACK_GROUP),
-    "slide-runs-out": End(
-        "arm_angle",
-        False,
+BALL_JOINT = "The ball joint is {} on its circle, where height says no more"
+IN_LINE = "Tie rod and steering arm lie in line"
+ARM = first_three("link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear")
+# Group, input, whether the upper end, what lies in line, and in words.
+ENDS: dict[str, tuple[str, str, bool, Lock, str]] = {
+    "arm-highest": ("The arm at its dead points", "arm_angle", False, ARM, BALL_JOINT.format("highest")),
+    "arm-lowest": ("The arm at its dead points", "arm_angle", True, ARM, BALL_JOINT.format("lowest")),
+    "rack-least": (IN_LINE.replace(" lie", ""), "rack", False, tie_rod_within(3), IN_LINE),
+    "rack-greatest": (IN_LINE.replace(" lie", ""), "rack", True, tie_rod_within(3), IN_LINE),
+    "slide-runs-out": (
+        *(UPPER, "arm_angle", False, lambda limits: "strut_top on the strut axis" in limits),
         "The ball joint is as near to the strut's top as it lies beside the axis: the slide has no more way",
-        *(SLIDE, UPPER),
     ),
-    "upper-arm-locks": End(
-        "arm_angle",
-        True,
+    "upper-arm-locks": (
+        *(UPPER, "arm_angle", True),
+        first_three(
+            "link upper_ball_joint - lower_ball_joint",
+            "link upper_ball_joint - upper_arm_front",
+            "link upper_ball_joint - upper_arm_rear",
+        ),
         "Upper arm and kingpin of a double wishbone lie in one plane with the upper pivots",
-        *(UPPER_ARM, UPPER),
     ),
-    "tie-rod-locks-the-arm": End(
-        "arm_angle", False, "The arm turns until tie rod and steering arm lie in line", TIE_ROD, UPPER
+    # Where the arm drives, what holds the knuckle's upper end is under the same force as the steering arm.
+    "tie-rod-locks-the-arm": (
+        *(UPPER, "arm_angle", False, tie_rod_within(5)),
+        "The arm turns until tie rod and steering arm lie in line",
     ),
 }
 ARMS, RACKS = ("arm-highest", "arm-lowest"), ("rack-least", "rack-greatest")
@@ -163,38 +142,46 @@ BEYOND: tuple[tuple[Sequence[str], str, str, Values, Values], ...] = (
 OF_OTHERS = tuple(
     (
         f"{hyphens(driven)}-{size}",
-        End(driven, ahead, f"{driven} is at its {size}, the other inputs as drawn"),
-        subject,
+        End(subject, driven, ahead, f"{driven} is at its {size}, the others as drawn"),
     )
     for subject in OTHERS
     for driven, ahead in ends_of(subject)
     for size in (("least", "greatest")[ahead],)
 )
 
+
+def _end(name: str, car: str) -> End:
+    _, driven, ahead, lock, where = ENDS[name]
+    return End(NAMED[car], driven, ahead, where, lock)
+
+
 CASES = (
     *(
         case
-        for names, car, suffix, values, arm_angle in NEAR
+        for names, car, suffix, values, arm in NEAR
         # Where the arm stands high or low the rack is only held.
-        for laws in (tuple(LAWS) if arm_angle in (None, SQUARE) else ("held",),)
+        for laws in (tuple(LAWS) if arm in (None, SQUARE) else ("held",),)
         for name in names
-        for case in _near(name, ENDS[name], NAMED[car], suffix, values, arm_angle, laws)
+        for case in _near(name, _end(name, car), suffix, ENDS[name][0], values, laws, arm)
     ),
     *(
         case
-        for name, end, subject in OF_OTHERS
-        for case in _near(name, end, subject, subject.suffix, (1e-4,), laws=("held", "beyond"))
+        for name, end in OF_OTHERS
+        for case in _near(
+            *(name, end, end.subject.suffix, "Inputs at their ends, of every mechanism"),
+            *((1e-4,), ("held", "beyond")),
+        )
     ),
     *(
-        _beyond(name, ENDS[name], NAMED[car], suffix, moving, values)
+        driven_beyond(replace(_end(name, car), moving=moving), f"{name}{suffix}", values)
         for names, car, suffix, *both in BEYOND
         for moving, values in zip((True, False), both, strict=True)
         for name in names
         if values
     ),
     *(
-        _beyond(name, end, subject, subject.suffix, moving, (1e-3,))
-        for name, end, subject in OF_OTHERS
+        driven_beyond(replace(end, moving=moving), f"{name}{end.subject.suffix}", (1e-3,))
+        for name, end in OF_OTHERS
         for moving in (True, False)
     ),
 )

@@ -7,7 +7,6 @@ two: nothing changes but the place or the unit. The car at home says what a rate
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache, partial
 
@@ -17,7 +16,6 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
-from validate.adjudication.reference_solution import reference_solution
 from validate.cars.car import moved, scaled
 from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.answer import Answer, judged_answer
@@ -48,24 +46,11 @@ def moved_car(distance: float, subject: Subject = SUBJECTS[0]) -> Content:
 
 
 @cache
-def at_home(name: str, subject: Subject) -> tuple[Solution, Mapping[str, float]]:
-    """A formulation's solution of the car at home, and its largest error of each quantity."""
-    scene = Scene.from_mapping(moved_car(0.0, subject))
-    solution = solved(name, scene)
+def at_home(name: str, subject: Subject) -> Solution:
+    """A formulation's solution of the car at home."""
+    solution = solved(name, Scene.from_mapping(moved_car(0.0, subject)))
     assert isinstance(solution, Solution)  # nothing about it is hard
-    return solution, errors(solution, reference_solution(scene))
-
-
-def errors(solution: Solution, reference: Solution) -> dict[str, float]:
-    """Largest error of each quantity that does not know where the origin is."""
-    return {
-        quantity: max(
-            float(np.abs(array - reference.numbers[quantity][name]).max())
-            for name, array in solution.numbers[quantity].items()
-        )
-        for quantity in RATES
-        if solution.numbers.get(quantity)
-    }
+    return solution
 
 
 def far_from_the_origin(subject: Subject, value: float) -> Content:
@@ -78,14 +63,8 @@ def as_at_home(subject: Subject, value: float, trial: Trial) -> Trial:
     tried = trial.tried
     if tried is None or tried.known is None:
         return trial
-    ratios: dict[str, float | str] = {}
-    for name, solution in tried.solutions.items():
-        home = at_home(name, subject)[1]
-        for quantity, error in errors(solution, tried.known).items():
-            text = f"error of {quantity.replace('_', ' ')} of {name}, times that at home"
-            ratios[text] = error / home[quantity] if home[quantity] else float(error > 0.0)
-    answers = tuple(_as_at_home(a, tried, subject) if a.outcome == "right" else a for a in trial.answers)
-    return replace(trial, answers=answers).noting(ratios)
+    answers = (_as_at_home(a, tried, subject) if a.outcome == "right" else a for a in trial.answers)
+    return replace(trial, answers=tuple(answers))
 
 
 def _as_at_home(answer: Answer, tried: Tried, subject: Subject) -> Answer:
@@ -94,7 +73,7 @@ def _as_at_home(answer: Answer, tried: Tried, subject: Subject) -> Answer:
     Positions are allowed one rounding of a far coordinate more; then they are taken as true, and rates and
     angles are allowed nothing more than at home.
     """
-    solution, home = tried.solutions[answer.formulation], at_home(answer.formulation, subject)[0]
+    solution, home = tried.solutions[answer.formulation], at_home(answer.formulation, subject)
     assert tried.known is not None  # else nothing is right
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
@@ -138,8 +117,9 @@ WHYS = {
     BESIDE: "The same with the strut's axis beside the ball joint: one more difference of places.",
     WISHBONE: "The same of a double wishbone, whose knuckle has no direction of its own.",
 }
+TWOS = "Squares of small and large lengths differ by twice as many decades as the lengths."
+TENS = f"{TWOS[:-1]}, and every coordinate is rounded anew."
 _far = partial(family, group="Far from the origin, and mixed sizes")
-_sizes = partial(_far, scaled_car, "size, in parts of a car of some 500 mm")
 
 CASES = (
     *(
@@ -153,7 +133,6 @@ CASES = (
             [subject],
             strict=True,
             why=WHYS.get(subject, ""),
-            behaviour="rates and angles as right as at home, positions but for one rounding of a coordinate",
             judged=as_at_home,
         )
     ),
@@ -163,22 +142,18 @@ CASES = (
         decades(-9),
         subjects=HEAVING,
     ),
-    *_sizes(
-        tuple(2.0**k for k in range(11, -20, -3)),
-        subjects=SUBJECTS[:1],
-        name="sizes-by-powers-of-two",
-        why="Squares of small and large lengths differ by twice as many decades as the lengths.",
-    ),
-    *_sizes(
-        decades(-6, 4),
-        subjects=SUBJECTS[:1],
-        name="sizes-by-powers-of-ten",
-        why="As by powers of two, and every coordinate is rounded anew.",
-    ),
-    *_sizes(
-        decades(-6, 4),
-        subjects=(BESIDE, *SUBJECTS[1:]),
-        name="sizes",
-        why="By powers of ten, another mechanism.",
+    *(
+        case
+        for name, why, values, subjects in (
+            ("sizes-by-powers-of-two", TWOS, tuple(2.0**k for k in range(11, -20, -3)), SUBJECTS[:1]),
+            ("sizes-by-powers-of-ten", TENS, decades(-6, 4), SUBJECTS[:1]),
+            ("sizes", TENS, decades(-6, 4), (BESIDE, *SUBJECTS[1:])),
+        )
+        for case in _far(
+            *(scaled_car, "size, in parts of a car of some 500 mm", values),
+            subjects=subjects,
+            name=name,
+            why=why,
+        )
     ),
 )

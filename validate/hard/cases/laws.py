@@ -10,14 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from validate.formulations.input_rates import rates
+from validate.cars.scene_content import Law
 from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, SOLVERS, Case, Expected, decades, family
 from validate.hard.cases.ends import NEAR_END
 from validate.hard.last_values import ends_of, last_value
@@ -34,14 +31,9 @@ JUMP = BY_STEPS | {"pointcoord": Expected(("right", "refused"), right_from=1e-6)
 TURN = 2.0 * math.pi
 
 
-def slow_inputs(subject: Subject, rate: float) -> Content:
-    """The same way in ever longer time: rates lie far below the lengths."""
+def at_a_rate(subject: Subject, rate: float) -> Content:
+    """The same way in another time."""
     return subject.content([-0.1, rate], [0.0, 100.0 * rate], stop=0.2 / rate)
-
-
-def fast_inputs(subject: Subject, rate: float) -> Content:
-    """The same way in ever shorter time: rates and their squares lie far above the lengths."""
-    return slow_inputs(subject, rate)
 
 
 def long_sine(subject: Subject, duration: float) -> Content:
@@ -59,43 +51,25 @@ def phase_of_many_turns(subject: Subject, turns: float) -> Content:
     return subject.content(mm={"sine": wave | {"amplitude": 20.0}}, stop=0.5)
 
 
-# 16 t^2 (1 - t)^2: from rest to 1 and back to rest in a second.
-STOPPING = (0.0, 0.0, 16.0, -32.0, 16.0)
-
-
-def _stopping(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
-    """That way of every input, of some size, from one time to another."""
-    laws = ([0.2 * size * c for c in STOPPING], [30.0 * size * c for c in STOPPING])
+def stopping(subject: Subject, start: float, stop: float, size: float = 1.0) -> Content:
+    """Part of the way 16 t^2 (1 - t)^2, from rest to 1 and back to rest in a second, times some size."""
+    laws = ([amount * size * c for c in (0.0, 0.0, 16.0, -32.0, 16.0)] for amount in (0.2, 30.0))
     return subject.content(*laws, start=start, stop=stop)
 
 
 def start_from_rest(subject: Subject, value: float) -> Content:
     """The inputs start from rest: rates tend to zero, accelerations do not."""
-    return _stopping(subject, 0.0, value)
+    return stopping(subject, 0.0, value)
 
 
 def come_to_rest(subject: Subject, value: float) -> Content:
     """The inputs come to rest: rates tend to zero as a difference of large terms."""
-    return _stopping(subject, 1.0 - value, 1.0)
+    return stopping(subject, 1.0 - value, 1.0)
 
 
 def seen_at_rest_only(subject: Subject, size: float) -> Content:
     """Every instant of the scene is one where the inputs rest for a moment, between which they move."""
-    return _stopping(subject, 0.0, 1.0, size)
-
-
-def rate_rounding(_: Subject, value: float, trial: Trial) -> Trial:
-    """What a rate of the last input is off in doubles, where the reference takes it; 0 is no error."""
-    if trial.tried is None:
-        return trial
-    part, instants = list(trial.tried.scene.inputs.values())[-1], trial.tried.scene.instants
-    slope = [k * Fraction(c) for k, c in enumerate(part.polynomial or ())][1:]
-    given = rates(part, instants)[:, 1]
-    worst = max(
-        abs(Fraction(rate) - sum((c * Fraction(t) ** k for k, c in enumerate(slope)), Fraction(0)))
-        for t, rate in zip(instants.tolist(), given.tolist(), strict=True)
-    )
-    return trial.noting({"rounding of a rate": float(worst), "largest rate": float(np.abs(given).max())})
+    return stopping(subject, 0.0, 1.0, size)
 
 
 # Up, down and up again, with a sharp bend of the acceleration at each inner time.
@@ -125,8 +99,8 @@ def jump_of_a_table(subject: Subject, value: float) -> Content:
     times, first = (0.0, 0.2, 0.5, 0.5 + value, 0.8, 1.0), next(iter(subject.units))
     step = 0.01 if subject.units[first] == "rad" else 1.0
     jump = moved_by(_table(times, [step if t > 0.5 else 0.0 for t in times]), subject.home[first])
-    whole = subject.content(0.0, [0.0, 20.0], start=0.5 - 0.5 * value, stop=0.5 + 1.5 * value, samples=5)
-    return {**whole, "inputs": {**whole["inputs"], first: jump}}
+    content = subject.content(0.0, [0.0, 20.0], start=0.5 - 0.5 * value, stop=0.5 + 1.5 * value, samples=5)
+    return {**content, "inputs": {**content["inputs"], first: jump}}
 
 
 def told_as_rough(subject: Subject, value: float, trial: Trial) -> Trial:
@@ -156,14 +130,9 @@ def only_heave(subject: Subject, value: float) -> Content:
     return subject.content(heave={"sine": wave}, stop=1.0)
 
 
-def short_scene(subject: Subject, value: float, start: float = 0.0) -> Content:
+def short_scene(start: float, subject: Subject, value: float) -> Content:
     """Every instant must stay inside a scene however short."""
     return subject.content([0.0, 0.3, 0.2], [0.0, 40.0, 5.0], start=start, stop=start + value, samples=4)
-
-
-def short_scene_late(subject: Subject, value: float) -> Content:
-    """A scene of a few roundings of its time."""
-    return short_scene(subject, value, 1.0)
 
 
 def stop_before_a_lock(subject: Subject, value: float) -> Content:
@@ -176,14 +145,9 @@ def stop_before_a_lock(subject: Subject, value: float) -> Content:
     return subject.content([0.0, way], [0.0, way], only=driven, stop=1.0 - value)
 
 
-def fine_tolerance(subject: Subject, value: float) -> Content:
-    """A tolerance below what rounding allows."""
+def to_a_tolerance(subject: Subject, value: float) -> Content:
+    """A motion to some tolerance."""
     return subject.content([-0.1, 0.5], [0.0, 40.0], stop=0.4, tolerance=value)
-
-
-def loose_tolerance(subject: Subject, value: float) -> Content:
-    """A tolerance above the size of the car."""
-    return fine_tolerance(subject, value)
 
 
 # Sums whose terms all but cancel.
@@ -191,11 +155,9 @@ PHASE = 0.5  # rad: neither the sine nor its slope is near zero
 AMPLITUDES = tuple(float(f"1e{k}") for k in range(10))
 # How far from home each input is while its swing passes, and how fast: rad or mm, per s.
 ORDINARY: Mapping[str, tuple[float, float]] = {"rad": (0.0, 0.1), "mm": (10.0, 20.0)}
-POWERS = (4, 6)
-MOST = 20
 
 
-def _cancelling_sine(unit: str, value: float) -> dict[str, Any]:
+def _cancelling_sine(unit: str, value: float) -> Law:
     """An offset that all but cancels the swing at time 0, by the reciprocal of the amplitude."""
     (wanted, rate), amplitude = ORDINARY[unit], 1.0 / value
     wave = {
@@ -242,54 +204,55 @@ def right_from(power: int) -> float:
 
 def _cancelling_polynomials(power: int) -> tuple[Case, ...]:
     ours = Expected(("right", "refused"), right_from(power))
-    times = math.floor(math.log10(2.0 ** ((MOST + 1) * power)))
+    latest = 20  # the power of two at which a motion starts at the latest
+    times = math.floor(math.log10(2.0 ** ((latest + 1) * power)))
     return _laws(
         partial(cancelling_polynomial, power),
         "1 s over the start of a motion of 1 s",
-        tuple(2.0**-k for k in range(1, MOST + 1)),
+        tuple(2.0**-k for k in range(1, latest + 1)),
         {"pointcoord": ours, "pointcoord-newton": ours, "absolute": RIGHT, "relative": RIGHT},
         name=f"cancelling-polynomial-{power}",
         why=f"16 (t - start)^{power}, multiplied out: terms up to 1e{times} times their sum.",
     )
 
 
+def _long(subject: Subject) -> tuple[float, ...]:
+    """Few, as each refusal takes two thousand segments."""
+    return {"paper": (1.0, 1e3, 1e6), "wishbone": (1e3,)}.get(subject.name, (1.0,))
+
+
 _laws = partial(family, group="Laws of the inputs")
+_paced = partial(_laws, at_a_rate, "rate of the arm, rad/s")
+_tolerated = partial(_laws, to_a_tolerance, "tolerance of the scene, mm")
 RISING, FALLING, WITHIN = decades(0, 12)[::-1], decades(-12, 0), decades(-12, -1)
 BY_25 = tuple(float(f"1e{-25 * k}") for k in range(13))
-ARM_RATE, TOLERANCE = "rate of the arm, rad/s", "tolerance of the scene, mm"
+SLOW = "The same way in ever longer time: rates lie far below the lengths."
+FAST = "The same way in ever shorter time: rates and their squares lie far above the lengths."
 # The lock is at the end of the whole way.
 BEFORE_A_LOCK = NEAR_END | {"pointcoord-newton": NEAR_END["pointcoord"]}
 
 CASES = (
-    *_laws(slow_inputs, ARM_RATE, FALLING),
-    *_laws(fast_inputs, ARM_RATE, RISING),
-    *_laws(
-        long_sine,
-        "duration, s",
-        (1.0, 1e3, 1e6),  # few: each refusal takes two thousand segments
-        BY_STEPS,
-        second=(1e3,),
-        others=(1.0,),
-        also_answered=(1e2,),  # few enough swings for any solver
-    ),
+    *_paced(FALLING, name="slow-inputs", why=SLOW),
+    *_paced(RISING, name="fast-inputs", why=FAST),
+    # A hundred swings are few enough for any solver.
+    *_laws(long_sine, "duration, s", _long, BY_STEPS, also_answered=(1e2,)),
     *_laws(phase_of_many_turns, "turns in the phase of a sine", RISING),
     *_laws(start_from_rest, "time since the start, s", WITHIN),
-    *_laws(come_to_rest, "time to the end, s", WITHIN, judged=rate_rounding),
+    *_laws(come_to_rest, "time to the end, s", WITHIN),
     *_laws(seen_at_rest_only, "size of the motion: 0.2 rad and 30 mm times this", FALLING),
     *_laws(kink_of_a_table, "time before and after the kink, s", WITHIN),
     *_laws(close_times_of_a_table, "distance of the times, s", WITHIN),
-    *_laws(
-        jump_of_a_table,
-        "time of the jump, s",
-        WITHIN,
-        JUMP,
-        behaviour="by series right, or refused as too rough, the input named; at its instants right",
-        judged=told_as_rough,
-    ),
+    *_laws(jump_of_a_table, "time of the jump, s", WITHIN, JUMP, judged=told_as_rough),
     *_laws(far_in_time, "start of a second of a sine, s", RISING),
     *_laws(only_heave, "amplitude of the heave, 100 mm", (*FALLING, 0.0), subjects=HEAVING),
-    *_laws(short_scene, "duration, s", (*BY_25, 5e-324)),
-    *_laws(short_scene_late, "duration after t = 1 s, s", (*decades(-15, -1), 2.0**-52)),
+    *_laws(partial(short_scene, 0.0), "duration, s", (*BY_25, 5e-324)),
+    *_laws(
+        partial(short_scene, 1.0),
+        "duration after t = 1 s, s",
+        (*decades(-15, -1), 2.0**-52),
+        name="short-scene-late",
+        why="A scene of a few roundings of its time.",
+    ),
     *_laws(
         stop_before_a_lock,
         "time left to the lock, s, of a way that takes one second",
@@ -297,8 +260,13 @@ CASES = (
         BEFORE_A_LOCK,
         [one for one in SUBJECTS if one.level or ends_of(one)],
     ),
-    *_laws(fine_tolerance, TOLERANCE, BY_25[1:]),
-    *_laws(loose_tolerance, TOLERANCE, tuple(1.0 / x for x in BY_25), OURS | {"pointcoord-as-asked": RIGHT}),
+    *_tolerated(BY_25[1:], name="fine-tolerance", why="A tolerance below what rounding allows."),
+    *_tolerated(
+        tuple(1.0 / x for x in BY_25),
+        OURS | {"pointcoord-as-asked": RIGHT},
+        name="loose-tolerance",
+        why="A tolerance above the size of the car.",
+    ),
     *(
         case
         for driven in dict.fromkeys(name for subject in SUBJECTS for name in (*subject.kinds, "heave"))
@@ -310,5 +278,5 @@ CASES = (
             name=f"cancelling-sine-{hyphens(driven)}",
         )
     ),
-    *(case for power in POWERS for case in _cancelling_polynomials(power)),
+    *(case for power in (4, 6) for case in _cancelling_polynomials(power)),
 )

@@ -31,18 +31,15 @@ from validate.hard.case import (
     counted,
     decades,
     family,
-    name_of,
     reason_of,
     values_of,
 )
 from validate.hard.last_values import last_value
-from validate.hard.subjects import BESIDE, SUBJECTS, Content, Kind, Subject
+from validate.hard.subjects import BESIDE, SUBJECTS, Content, Kind, Subject, hyphens
 from validate.hard.trial import Trial
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
-ANY_LENGTH = ("slider_crank",)  # its slide goes along with a rod however long
-TABLES = ("bodies", "rods", "slides", "inputs", "roles")
 AGAIN, PIVOT, LENGTH = "again", "second_pivot", "rod_length"
 Tables = dict[str, Any]
 # Two links that are nearly one differ by the distance of their pivots, and the condition number grows as its
@@ -93,15 +90,10 @@ def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
 def pieces(plain: Mapping[str, Any]) -> tuple[Piece, ...]:
     """Everything without which a mechanism is another one, or none."""
     bodies = plain["bodies"]
-    hinges = [
-        {one, other}
-        for one, other in itertools.combinations(bodies, 2)
-        if len(set(bodies[one]) & set(bodies[other])) == 2
-    ]
 
     def rows(body: str, point: str) -> int:
-        hinged = any({body, other} in hinges and point in bodies[other] for other in bodies)
-        return 2 if hinged else 3
+        others = (set(points) & set(bodies[body]) for other, points in bodies.items() if other != body)
+        return 2 if any(len(shared) == 2 and point in shared for shared in others) else 3
 
     return (
         *(Piece("rods", rod, "", frozenset((rod, *ends)), 1) for rod, ends in plain["rods"].items()),
@@ -126,7 +118,7 @@ def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
 
 def tables_of(subject: Subject) -> Tables:
     """A mechanism's tables, to be changed."""
-    return {name: deepcopy(dict(subject.plain[name])) for name in TABLES}
+    return {n: deepcopy(dict(subject.plain[n])) for n in ("bodies", "rods", "slides", "inputs", "roles")}
 
 
 @cache
@@ -223,10 +215,18 @@ def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
         for pair in held_apart(subject.plain)
         if (pair[0] in chassis) != (pair[1] in chassis)
     )
-    length = float(np.linalg.norm(places[moving] - places[ground]))
     # Along the hinge of a plane mechanism it would be the same link.
-    aside = subject.car.right if _turns_about_up(subject, places, moving) else subject.car.up
-    pivot = places[ground] + share * length * np.array(aside)
+    hinges = (
+        itertools.combinations([name for name in points if name in chassis], 2)
+        for points in subject.plain["bodies"].values()
+        if moving in points
+    )
+    along_up = any(
+        not np.cross(places[first] - places[last], subject.car.up).any()
+        for first, last in itertools.chain.from_iterable(hinges)
+    )
+    aside = np.array(subject.car.right if along_up else subject.car.up)
+    pivot = places[ground] + share * float(np.linalg.norm(places[moving] - places[ground])) * aside
     chassis.append(PIVOT)
     tables["rods"][AGAIN] = [PIVOT, moving]
     rates = {"rad": 0.5, "mm": 50.0}
@@ -239,17 +239,6 @@ def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
 def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
     """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
     return _with_third_link(subject, share, False)
-
-
-def _turns_about_up(subject: Subject, places: Mapping[str, np.ndarray], moving: str) -> bool:
-    """Whether a body with this point is hinged on the chassis along up."""
-    chassis = subject.plain["bodies"]["chassis"]
-    return any(
-        not np.cross(places[first] - places[last], subject.car.up).any()
-        for points in subject.plain["bodies"].values()
-        if moving in points
-        for first, last in itertools.combinations([name for name in points if name in chassis], 2)
-    )
 
 
 @cache
@@ -270,97 +259,76 @@ def link_too_long(subject: Subject, share: float) -> Content:
     return other.absolute({**other.drawn, LENGTH: float(longest * (1 + Fraction(share)))})
 
 
-def _content(change: Callable[[Subject, float], Change], subject: Subject, value: float) -> Content:
-    return change(subject, value)[0]
-
-
-def _told(change: Callable[[Subject, float], Change], subject: Subject, value: float, trial: Trial) -> Trial:
-    _, names, facts = change(subject, value)
-    return named(replace(trial, facts=facts) if facts else trial, names)
+_links = partial(family, group=GROUP)
 
 
 def _changes(
     change: Callable[[Subject, float], Change],
     parameter: str,
-    behaviour: str,
     values: Values | Callable[[Subject], Values],
     subjects: Sequence[Subject],
     expected: Expected = REFUSED,
     name: str = "",
 ) -> tuple[Case, ...]:
     """Changes of mechanisms, of which pointcoord has to name what is at fault."""
+
+    def judged(subject: Subject, value: float, trial: Trial) -> Trial:
+        _, names, facts = change(subject, value)
+        return named(trial.noting(facts), names)
+
     return _links(
-        partial(_content, change),
+        lambda subject, value: change(subject, value)[0],
         parameter,
         values,
         dict.fromkeys(SOLVERS, expected),
         subjects,
-        name=name or name_of(change),
+        name=name or hyphens(change.__name__),
         why=reason_of(change),
-        behaviour=behaviour,
-        judged=partial(_told, change),
+        judged=judged,
         given=False,
     )
 
 
-def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject], tuple[float, ...]]:
+def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject], Values]:
     """A number for each thing that a mechanism has; of mechanisms after the second, one amid them."""
 
-    def values(subject: Subject) -> tuple[float, ...]:
+    def values(subject: Subject) -> Values:
         numbers = counted(len(found(subject)))
         return numbers if subject.level else values_of(subject, numbers)
 
     return values
 
 
-_links = partial(family, group=GROUP)
 PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
-FREE = "refused; pointcoord names what is missing, or what is free without it"
 EVERY = (*SUBJECTS, BESIDE)
 WITH_RODS = [subject for subject in SUBJECTS if subject.plain["rods"]]
 PIECES = _numbers(lambda subject: pieces(subject.plain))
 
 CASES = (
-    *_changes(link_missing, PIECE, FREE, PIECES, SUBJECTS),
-    *_changes(link_missing, PIECE, FREE, PIECES, [BESIDE], name="constraint-missing"),
+    *_changes(link_missing, PIECE, PIECES, SUBJECTS),
+    *_changes(link_missing, PIECE, PIECES, [BESIDE], name="constraint-missing"),
     *_changes(
         link_twice,
         "number of the pair of points that are held apart",
-        "right without it, or refused; pointcoord names one of the two, or the inputs that are too many then",
         _numbers(lambda subject: held_apart(subject.plain)),
         [one for one in EVERY if held_apart(one.plain)],
         IF_ANY,
     ),
     *_changes(
-        link_twice_for_another,
-        PIECE,
-        "refused; pointcoord names what is missing or there twice",
-        _numbers(exchangeable),
-        [one for one in EVERY if exchangeable(one)],
+        *(link_twice_for_another, PIECE, _numbers(exchangeable)), [one for one in EVERY if exchangeable(one)]
     ),
-    *_changes(
-        input_twice,
-        "difference of their values, rad or mm",
-        "refused, by pointcoord before there are values; it names one of them",
-        (*decades(), 0.0),
-        WITH_RODS,
-    ),
-    *_changes(
-        contradictory_links,
-        PIVOT_AT,
-        "refused as soon as anything moves; pointcoord names the further link, or the inputs",
-        # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
-        # nearer to another than this is that one again, as in `link_twice`.
-        decades(low=-11),
-        WITH_RODS,
-    ),
+    *_changes(input_twice, "difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS),
+    # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
+    # nearer to another than this is that one again, as in `link_twice`.
+    *_changes(contradictory_links, PIVOT_AT, decades(low=-11), WITH_RODS),
     *_links(
         link_too_long,
         "what it is too long by, in parts of the longest that closes",
         decades(),
         dict.fromkeys(SOLVERS, REFUSED),
-        [one for one in WITH_RODS if one.name not in ANY_LENGTH],
+        # The slide of a slider-crank goes along with a rod however long.
+        [one for one in WITH_RODS if one.name != "slider_crank"],
     ),
     *_links(
         arm_held_by_a_third_link,

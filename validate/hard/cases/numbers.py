@@ -4,20 +4,20 @@ A number that is none, infinite, huge or below the smallest normal one must be r
 answer must be right. Every place of a scene that holds a number is tried, with the other numbers left alone.
 
 Heave is tried by a law of every kind. It drives no coordinate: it is added to what was solved, so that
-nothing else meets its numbers and refuses them. What is too large to be added to anything must be refused
-with a reason. The reference gives up on a car that is displaced by 1e308 times its size. There it is the
-reference without heave, with the law's value, rate and acceleration added along up.
+nothing else meets its numbers and refuses them. The reference gives up on a car that is displaced by 1e308
+times its size. There it is the reference without heave, with the law's value, rate and acceleration added
+along up.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from copy import deepcopy
 from dataclasses import replace
 from functools import cache, partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,8 @@ from pointcoord.numerics.rounding import EPS
 from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
-from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Case, Expected, counted, family
+from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Case, Expected, Values, counted, values_of
+from validate.hard.case import case as case_of
 from validate.hard.cases.links import GROUP, held_apart
 from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, Content, Subject
 from validate.hard.trial import Trial, compared, solved
@@ -36,6 +37,54 @@ Array = NDArray[np.float64]
 LEAST = math.ulp(0.0)  # 5e-324
 Place = tuple[str | int, ...]
 Pair = tuple[str, str]
+Heave = tuple[Place, float]
+One = TypeVar("One")
+
+
+def _numbered(
+    subject: Subject,
+    name: str,
+    why: str,
+    parameter: str,
+    every: Sequence[One],
+    scene: Callable[[Subject, One], Content],
+    expected: Expected,
+    facts: Callable[[One], dict[str, str]],
+    *,
+    values: Values = (),
+    given: bool = True,
+    is_harmless: Callable[[One], bool] = lambda _: False,
+    judged: Callable[[Subject, One, Trial], Trial] = lambda _, __, trial: trial,
+) -> Case:
+    """A case whose parameter counts things that may be in a scene, from 1.
+
+    Args:
+        values: the numbers that are tried; as a family has it if not given.
+        is_harmless: whether a scene with one of them has an answer although it may be refused.
+    """
+
+    def at(value: float) -> One:
+        return every[int(value) - 1]
+
+    values = values or values_of(subject, counted(len(every)))
+    return case_of(
+        lambda one, value: scene(one, at(value)),
+        parameter,
+        values,
+        expected,
+        subject,
+        name=name,
+        why=why,
+        group=GROUP,
+        judged=lambda one, value, trial: judged(one, at(value), trial).noting(facts(at(value))),
+        given=given,
+        also_answered=tuple(v for v in values if given and is_harmless(at(v))),
+    )
+
+
+def _some(subject: Subject, every: Sequence[Any], step: int = 1) -> Values:
+    """Every number of the strut, or each of a step; a seventh of these of the wishbone."""
+    return counted(len(every))[:: step * (1 if subject is SUBJECTS[0] else 7)] if subject.level else ()
 
 
 def content(subject: Subject = SUBJECTS[0]) -> Content:
@@ -78,19 +127,6 @@ def with_number(whole: Content, place: Place, number: object) -> Content:
     return whole
 
 
-def _place_at(subject: Subject, value: float) -> Place:
-    return places(subject)[int(value) - 1]
-
-
-def _some(subject: Subject, count: int, step: int = 1) -> tuple[float, ...]:
-    """Every number of the first car, or each of a step; a seventh of these of the second; one of others."""
-    numbers = counted(count)
-    if not subject.level:
-        return numbers[count // 2 : count // 2 + 1]
-    return numbers[:: step if subject is SUBJECTS[0] else 7 * step]
-
-
-_numbers = partial(family, group=GROUP, strict=True)
 # Name, the number, what has to come of it, why.
 NUMBERS: tuple[tuple[str, object, Expected, str], ...] = (
     ("not-a-number", math.nan, REFUSED, "A NaN spreads through everything that it meets."),
@@ -114,34 +150,22 @@ SMALL = (PHASE, "inputs.heave.table.values.3", "mechanism.points.lower_ball_join
 HARMLESS = {"huge": (PHASE,), "minus-huge": (PHASE,), "tiny": SMALL, "denormal": SMALL}
 
 
-def _number_case(
-    subject: Subject, name: str, number: object, expected: Expected, why: str
-) -> tuple[Case, ...]:
-    def place(value: float) -> str:
-        return told(_place_at(subject, value))
-
-    return _numbers(
-        lambda one, value: with_number(content(one), _place_at(one, value), number),
+def _number_case(subject: Subject, name: str, number: object, expected: Expected, why: str) -> Case:
+    return _numbered(
+        subject,
+        name,
+        why,
         "number of the place in the scene",
-        # A scene with a tiny number is solved, which takes time: every third place must do.
-        partial(_some, count=len(places(subject)), step=3 if name == "tiny" else 1),
+        places(subject),
+        lambda one, place: with_number(content(one), place, number),
         expected,
-        [subject],
-        name=name,
-        why=why,
-        judged=lambda one, value, trial: trial.noting({"place": place(value)}),
+        lambda place: {"place": told(place)},
+        # A scene with a tiny number is solved, which takes time: every third place must do.
+        values=_some(subject, places(subject), 3 if name == "tiny" else 1),
         # What has to be refused is no scene, and cannot be given to a solver.
         given=expected != REFUSED,
-        also_answered=lambda one, value: place(value) in HARMLESS.get(name, ()),
+        is_harmless=lambda place: told(place) in HARMLESS.get(name, ()),
     )
-
-
-@cache
-def pairs_of(subject: Subject, apart: bool) -> tuple[Pair, ...]:
-    """The pairs that cannot be in one place, or all others."""
-    held = {frozenset(pair) for pair in held_apart(subject.plain)}
-    pairs = itertools.combinations(subject.car.points, 2)
-    return tuple(pair for pair in pairs if (frozenset(pair) in held) == apart)
 
 
 # A rod without length has no answer in the reference: which way its end lies is not drawn.
@@ -157,9 +181,9 @@ SOUND = (
 )
 
 
-def in_one_place(pairs: Sequence[Pair], subject: Subject, value: float) -> Content:
-    """The scene with the second point of this pair, counted from 1, put on the first."""
-    onto, moved = pairs[int(value) - 1]
+def in_one_place(subject: Subject, pair: Pair) -> Content:
+    """The scene with the second point of a pair put on the first."""
+    onto, moved = pair
     points = {**subject.car.points, moved: subject.car.points[onto]}
     inputs = {**subject.home, "arm_angle": 1.65} if subject.level else subject.home
     return subject.absolute(inputs, replace(subject.car, points=points))
@@ -171,45 +195,42 @@ def _pair_case(
     why: str,
     pairs: Sequence[Pair],
     expected: Expected = RIGHT_OR_REFUSED,
-    every: bool = False,
-    given: bool = True,
-) -> tuple[Case, ...]:
-    def pair(value: float) -> Pair:
-        return pairs[int(value) - 1]
-
-    return _numbers(
-        partial(in_one_place, pairs),
+    **more: Any,
+) -> Case:
+    return _numbered(
+        subject,
+        name,
+        why,
         "number of the pair of points",
-        lambda one: counted(len(pairs)) if every else _some(one, len(pairs)),
+        pairs,
+        in_one_place,
         expected,
-        [subject],
-        name=name,
-        why=why,
-        judged=lambda one, value, trial: trial.noting({"place": "{1} on {0}".format(*pair(value))}),
-        given=given,
-        also_answered=lambda one, value: given and pair(value) in SOUND,
+        lambda pair: {"place": "{1} on {0}".format(*pair)},
+        is_harmless=lambda pair: pair in SOUND,
+        **more,
     )
 
 
 def _cases(subject: Subject) -> Iterator[Case]:
-    yield from _pair_case(
+    held = {frozenset(pair) for pair in held_apart(subject.plain)}
+    pairs = tuple(itertools.combinations(subject.car.points, 2))
+    apart, loose = (
+        tuple(pair for pair in pairs if (frozenset(pair) in held) == wanted) for wanted in (True, False)
+    )
+    yield _pair_case(
         subject,
         "link-without-length",
         "Two points that a link or an axis holds apart are drawn in one place.",
-        pairs_of(subject, True),
+        apart,
         # Elsewhere two rods may meet in one point of a body, and a crank have no length.
         REFUSED if subject.level else IF_ANY,
-        every=bool(subject.level),
+        values=counted(len(apart)) if subject.level else (),
         given=False,
     )
-    yield from _pair_case(
-        subject,
-        "points-in-one-place",
-        "Two points without a link are drawn in one place, which may be a mechanism or not.",
-        pairs_of(subject, False),
-    )
+    why = "Two points without a link are drawn in one place, which may be a mechanism or not."
+    yield _pair_case(subject, "points-in-one-place", why, loose, values=_some(subject, loose))
     for row in NUMBERS:
-        yield from _number_case(subject, *row)
+        yield _number_case(subject, *row)
 
 
 # Heave by a law of every kind, and every place of each.
@@ -218,11 +239,6 @@ LAWS: dict[str, dict[str, Any]] = {
     "polynomial": {"polynomial": [10.0, 20.0, 30.0]},
     "sine": {"sine": {"amplitude": 5.0, "angular_frequency": 2.0, "phase": 0.3, "offset": 1.0}},
 }
-NOT_FINITE = (math.nan, math.inf, -math.inf)
-EXTREME = (1.2e308, -1.2e308, 1e-308, LEAST)
-# Their squares, which an acceleration takes, are at the end of the range and beyond it.
-FREQUENCIES = (1e100, 1e200)
-Heave = tuple[Place, float]
 
 
 def law(place: Place, number: float) -> dict[str, Any]:
@@ -258,72 +274,54 @@ def displaced(trial: Trial, heave: dict[str, Any], subject: Subject = SUBJECTS[0
 
 
 def added(home: Solution, heave: Array, up: Sequence[float]) -> Solution:
-    """A solution displaced along up by a law's value, rate and acceleration, shape (N, 3)."""
-    more = dict(zip(("position", "velocity", "acceleration"), heave.T, strict=True))
-    numbers, claims = {}, {}
-    for quantity, size in more.items():
-        away = size[:, None] * np.array(up)
-        sums = {name: array + away for name, array in home.numbers[quantity].items()}
-        numbers[quantity] = sums
-        claims[quantity] = _rounded(home.accuracy.claims[quantity], sums, away)
+    """A solution displaced along up by a law's value, rate and acceleration, shape (N, 3).
+
+    What is added is rounded once, and so is the sum.
+    """
+    numbers: dict[str, dict[str, Array]] = {}
+    claims: dict[str, dict[str, Array]] = {}
+    for quantity, size in zip(("position", "velocity", "acceleration"), heave.T, strict=True):
+        away, claimed = size[:, None] * np.array(up), home.accuracy.claims[quantity]
+        numbers[quantity] = {name: array + away for name, array in home.numbers[quantity].items()}
+        claims[quantity] = {
+            name: claimed[name] + EPS * np.abs(array) + EPS * np.abs(away)
+            for name, array in numbers[quantity].items()
+        }
     return replace(home.with_numbers(numbers), accuracy=home.accuracy.with_claims(claims))
 
 
-def _rounded(claims: Mapping[str, Array], sums: Mapping[str, Array], away: Array) -> dict[str, Array]:
-    """What is claimed at home; what is added is rounded once, and so is the sum."""
-    return {name: claims[name] + EPS * np.abs(array) + EPS * np.abs(away) for name, array in sums.items()}
-
-
-def _heave_case(
-    subject: Subject, name: str, why: str, every: tuple[Heave, ...], expected: Expected
-) -> tuple[Case, ...]:
-    def at(value: float) -> Heave:
-        return every[int(value) - 1]
-
-    def judged(one: Subject, value: float, trial: Trial) -> Trial:
-        place, number = at(value)
-        return displaced(trial, law(place, number), one).noting(
-            {"place": told(place), "number": f"{number:g}"}
-        )
-
-    def is_harmless(one: Subject, value: float) -> bool:
-        """A phase is taken modulo a turn, and what is small is as good as 0."""
-        place, number = at(value)
-        return expected != REFUSED and (place[-1] == "phase" or abs(number) < 1.0)
-
-    return _numbers(
-        lambda one, value: heaved(law(*at(value)), one),
-        "number of the place and what stands there",
-        counted(len(every)),
-        expected,
-        [subject],
-        name=name,
-        why=why,
-        judged=judged,
-        given=expected != REFUSED,
-        also_answered=is_harmless,
-    )
-
-
+_heave_case = partial(
+    _numbered,
+    parameter="number of the place and what stands there",
+    scene=lambda subject, heave: heaved(law(*heave), subject),
+    facts=lambda heave: {"place": told(heave[0]), "number": f"{heave[1]:g}"},
+    judged=lambda subject, heave, trial: displaced(trial, law(*heave), subject),
+    # A phase is taken modulo a turn, and what is small is as good as 0.
+    is_harmless=lambda heave: heave[0][-1] == "phase" or abs(heave[1]) < 1.0,
+)
 NO_NUMBER = "A displacement of the whole car that is no number makes none of every place."
 OVERFLOWS = "Heave meets no constraint that would refuse it, and its rates overflow before it does."
-HUGE_OR_TINY = (*_each(EXTREME), *((("sine", "angular_frequency"), number) for number in FREQUENCIES))
+NOT_FINITE = _each((math.nan, math.inf, -math.inf))
+# The squares of the frequencies, which an acceleration takes, are at the end of the range and beyond it.
+HUGE_OR_TINY = (
+    *_each((1.2e308, -1.2e308, 1e-308, LEAST)),
+    *((("sine", "angular_frequency"), number) for number in (1e100, 1e200)),
+)
 
 CASES = (
     *(case for subject in SUBJECTS for case in _cases(subject)),
-    *_pair_case(
-        BESIDE,
-        "points-in-one-place",
+    _pair_case(
+        *(BESIDE, "points-in-one-place"),
         "Of a strut beside its ball joint any two points are drawn in one place, links without length too.",
         PAIRS_BESIDE,
-        every=True,
+        values=counted(len(PAIRS_BESIDE)),
     ),
     *(
         case
-        for subject in HEAVING
+        for one in HEAVING
         for case in (
-            *_heave_case(subject, "heave-not-finite", NO_NUMBER, _each(NOT_FINITE), REFUSED),
-            *_heave_case(subject, "heave-huge-or-tiny", OVERFLOWS, HUGE_OR_TINY, RIGHT_OR_REFUSED),
+            _heave_case(one, "heave-not-finite", NO_NUMBER, every=NOT_FINITE, expected=REFUSED, given=False),
+            _heave_case(one, "heave-huge-or-tiny", OVERFLOWS, every=HUGE_OR_TINY, expected=RIGHT_OR_REFUSED),
         )
     ),
 )

@@ -12,7 +12,7 @@ comes as near to the strut's top as it lies beside the axis, and two places of t
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
 from typing import NamedTuple
 
@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 
 from validate.cars.car import unit
 from validate.hard.cars import CARS, drawn_angle, drawn_at, scene_content
-from validate.hard.case import RIGHT, Case, Expected, Values, case, decades, name_of, reason_of
-from validate.hard.subjects import NAMED, Content, Subject
+from validate.hard.case import RIGHT, Case, Expected, Values, case, decades, reason_of, whole
+from validate.hard.subjects import NAMED, Content, Subject, hyphens
 
 Array = NDArray[np.float64]
 Points = Mapping[str, Array]
@@ -187,33 +187,17 @@ def mixed(row: Row, subject: Subject, value: float) -> Content:
     return scene_content(there, arm, (0.0, 10.0 * share, 5.0 * share), stop=1.0)
 
 
-def _table(
-    motion: Callable[[Row, Subject, float], Content],
-    group: str,
-    parameter: str,
-    expected: Expected,
-    *parts: tuple[str, Values, Sequence[Row]],
-    suffix: str | None = None,
-) -> Iterator[Case]:
-    """A case for each row of each car, tried at these values."""
-    for car, values, rows in parts:
-        for row in rows:
-            yield case(
-                partial(motion, row),
-                row.parameter or parameter,
-                row.values or values,
-                row.expected or expected,
-                NAMED[car],
-                name=row.name or name_of(row.draw),
-                why=row.why or reason_of(row.draw),
-                suffix=suffix,
-                group=group,
-            )
-
-
 LINE = "The arm turns about a line through two points that nearly coincide; the {} one is moved."
 IN_LINE = "Three points that carry the knuckle lie nearly in line, so they hardly tell how it is turned."
 STEERING = "The tie rod's outer end nearly coincides with the ball joint, and so the rack hardly moves it."
+NO_LONG_SIDE = "{} nearly coincide, so the knuckle has no long side."
+FROM_TWO = "The {} comes from two points that nearly coincide."
+LONG = "The {} is up to 1e14 mm long."
+PARTS = "in parts of what it is in the car"
+FROM_TOP = "drawn distance of strut_lower from the top over what it is"
+ROD_FROM_TOP = f"distance of the rod's end from the top, {PARTS}"
+ARM_AXIS, STRUT = (FRONT, REAR), (TOP, ROD_END)
+FAR = (False, FROM_TOP, MIXED, AT_FIRST)
 
 
 def _of_every_car(upper: str) -> tuple[Row, ...]:
@@ -228,90 +212,30 @@ def _of_every_car(upper: str) -> tuple[Row, ...]:
 
 
 OF_STRUT = (
-    Row(
-        put(ROD_END, from_=TOP),
-        "strut-points-near",
-        "The strut's direction comes from two points that nearly coincide.",
-    ),
-    Row(
-        put(LOWER, from_=BALL),
-        "knuckle-foot-short",
-        "The strut's lower point nearly coincides with the ball joint, so the knuckle has no long side.",
-    ),
+    Row(put(ROD_END, from_=TOP), "strut-points-near", FROM_TWO.format("strut's direction")),
+    Row(put(LOWER, from_=BALL), "knuckle-foot-short", NO_LONG_SIDE.format("Strut's foot and ball joint")),
 )
 OF_WISHBONE = (
-    Row(
-        put(UPPER_BALL, from_=BALL),
-        "kingpin-short",
-        "The ball joints of a double wishbone nearly coincide, so the knuckle has no long side.",
-        True,
-    ),
+    Row(put(UPPER_BALL, from_=BALL), "kingpin-short", NO_LONG_SIDE.format("The ball joints"), True),
     Row(upper_arm_flat, shrinks=True),
-    Row(
-        put(UPPER_REAR, from_=UPPER_FRONT),
-        "upper-arm-axis-near",
-        "The upper arm turns about a line through two points that nearly coincide.",
-    ),
+    Row(put(UPPER_REAR, from_=UPPER_FRONT), "upper-arm-axis-near", FROM_TWO.format("upper arm's hinge")),
 )
-NEAR = tuple(
-    _table(
-        near,
-        "Points nearly in line or nearly coincident",
-        "distance, in parts of what it is in the car",
-        SOLVED,
-        ("paper", decades(), _of_every_car(LOWER)),
-        ("paper", SLOW, OF_STRUT),
-        ("wishbone", SLOW, (*_of_every_car(UPPER_BALL), *OF_WISHBONE)),
-    )
-)
-
-ARM_AXIS, STRUT = (FRONT, REAR), (TOP, ROD_END)
 WISHBONE_MIXED = (
-    Row(
-        lengthened(INNER, from_=OUTER),
-        "tie-rod-long",
-        "The tie rod of a double wishbone is up to 1e14 mm long.",
-    ),
-    Row(
-        lengthened(*ARM_AXIS, from_=BALL),
-        "arm-long",
-        "The lower arm of a double wishbone is up to 1e14 mm long; its angle shrinks with it.",
-        True,
-    ),
-    Row(
-        lengthened(UPPER_FRONT, UPPER_REAR, from_=UPPER_BALL),
-        "upper-arm-long",
-        "The upper arm is up to 1e14 mm long, so that its ball joint moves on what is nearly a plane.",
-    ),
+    Row(lengthened(INNER, from_=OUTER), "tie-rod-long", LONG.format("tie rod")),
+    Row(lengthened(*ARM_AXIS, from_=BALL), "arm-long", LONG.format("lower arm"), True),
+    Row(lengthened(UPPER_FRONT, UPPER_REAR, from_=UPPER_BALL), "upper-arm-long", LONG.format("upper arm")),
 )
 PAPER_MIXED = (
-    Row(
-        lengthened(INNER, "rack_centre", from_=OUTER),
-        "tie-rod-long",
-        "The tie rod is up to 1e14 mm long, so that its outer end moves on what is nearly a plane.",
-    ),
-    Row(
-        lengthened(*STRUT, from_=BALL),
-        "strut-long",
-        "The strut is up to 1e14 mm long, so that its direction hardly changes.",
-    ),
-    Row(
-        lengthened(*ARM_AXIS, from_=BALL),
-        "arm-long",
-        "The arm is up to 1e14 mm long, so that a small angle is a long way; the angle shrinks with it.",
-        True,
-    ),
+    Row(lengthened(INNER, "rack_centre", from_=OUTER), "tie-rod-long", LONG.format("tie rod")),
+    Row(lengthened(*STRUT, from_=BALL), "strut-long", LONG.format("strut")),
+    Row(lengthened(*ARM_AXIS, from_=BALL), "arm-long", LONG.format("arm"), True),
 )
 BESIDE_MIXED = (
-    Row(
-        lengthened(*STRUT, from_=LOWER),
-        "strut-long",
-        "The strut's top is up to 5e14 mm above a ball joint beside its axis, in a car of 500 mm.",
-    ),
+    Row(lengthened(*STRUT, from_=LOWER), "strut-long", LONG.format("strut beside its ball joint")),
     Row(
         lengthened(*ARM_AXIS, from_=BALL),
         "arm-long",
-        "The arm is as long, its ball joint beside the axis of the strut.",
+        LONG.format("arm, its ball joint beside the axis,"),
         True,
     ),
 )
@@ -319,79 +243,59 @@ AT_THE_STRUT = Row(
     put(OUTER, from_=LOWER),
     "tie-rod-at-the-strut",
     "The tie rod ends as little as 1e-10 mm from the strut's foot, in a car of 500 mm.",
-    True,
-    "distance, in parts of what it is in the paper's car",
+    *(True, "distance, in parts of what it is in the paper's car"),
 )
-OUT_OF_PROPORTION = tuple(
-    _table(
-        mixed,
-        "Far from the origin, and mixed sizes",
-        "how long it is in the paper's car over how long it is",
-        MIXED,
-        # Where it is refused, each refusal takes a second.
-        ("wishbone", (1.0, 1e-3, 1e-6, 1e-12), WISHBONE_MIXED),
-        ("paper", AT_FIRST, PAPER_MIXED),
-        ("beside", AT_FIRST, BESIDE_MIXED),
-        ("paper", AT_FIRST, (AT_THE_STRUT,)),
-    )
-)
-
-PARTS = "in parts of what it is in the car"
-FROM_TOP = "drawn distance of strut_lower from the top over what it is"
-ROD_FROM_TOP = f"distance of the rod's end from the top, {PARTS}"
-BESIDE_ROWS = (
-    Row(
+# Draw, parameter, values, of what all models have to solve.
+THROUGH = (
+    (
         ball_joint_near_the_axis,
-        parameter=f"distance of the ball joint from the axis, in parts of {OFF:g} mm; then on it",
-        expected=RIGHT,
-        values=EVERY,
+        f"distance of the ball joint from the axis, in parts of {OFF:g} mm; then on it",
+        EVERY,
     ),
-    Row(
+    (
         axis_in_the_knuckle_plane,
-        parameter="distance of strut_lower from the plane of the others and the top, in parts of 100 mm; "
-        "then in it",
-        expected=RIGHT,
-        values=SECOND,
+        "strut_lower off the plane of the others and the top, in parts of 100 mm; then in it",
+        SECOND,
     ),
-    Row(
+    (
         axis_across_the_knuckle_plane,
-        parameter=f"height of the tie rod's end over that plane, {PARTS}; then in it",
-        expected=RIGHT,
-        values=SECOND,
+        f"height of the tie rod's end over that plane, {PARTS}; then in it",
+        SECOND,
     ),
+    (
+        axis_through_the_tie_rod_end,
+        f"distance of the axis from it, in parts of {OFF:g} mm; then through it",
+        SECOND,
+    ),
+)
+BESIDE_ROWS = (
+    *(Row(draw, "", "", False, parameter, RIGHT, values) for draw, parameter, values in THROUGH),
     Row(
         knuckle_in_line_beside,
         parameter=f"distance of strut_lower from the line of the others, in parts of {OFF:g} mm",
     ),
     Row(
-        axis_through_the_tie_rod_end,
-        parameter=f"distance of the axis from it, in parts of {OFF:g} mm; then through it",
-        expected=RIGHT,
-        values=SECOND,
-    ),
-    Row(
         thin_knuckle(TOP),
         "kingpin-through-the-tie-rod-end",
         "The line from ball joint to top passes nearly through the tie rod's end: the rack hardly steers.",
-        True,
-        f"length of the steering arm, {PARTS}",
+        *(True, f"length of the steering arm, {PARTS}"),
     ),
     Row(
         put(LOWER, from_=TOP, times=lambda off, value: 1.0 / value * off),
         "strut-lower-far-below",
         "The axis is drawn by a point far below the ball joint, whose rounding turns it.",
-        *(False, FROM_TOP, MIXED, AT_FIRST),
+        *FAR,
     ),
     Row(
         put(LOWER, from_=TOP, times=lambda off, value: -1.0 / value * off),
         "strut-lower-far-above",
         "The axis is drawn by a point above the top, so that top and rod end lie on its other side.",
-        *(False, FROM_TOP, MIXED, AT_FIRST),
+        *FAR,
     ),
     Row(
         put(LOWER, from_=TOP),
         "strut-lower-near-the-top",
-        "The axis is drawn by two points that nearly coincide.",
+        FROM_TWO.format("axis"),
         parameter=f"distance of strut_lower from the top, {PARTS}",
     ),
     Row(
@@ -399,12 +303,7 @@ BESIDE_ROWS = (
         parameter=f"distance of strut_lower from the ball joint, {PARTS}",
         values=AT_FIRST,
     ),
-    Row(
-        put(ROD_END, from_=TOP),
-        "rod-end-near-the-top",
-        "The rod is short: its two points nearly coincide.",
-        parameter=ROD_FROM_TOP,
-    ),
+    Row(put(ROD_END, from_=TOP), "rod-end-near-the-top", FROM_TWO.format("rod"), parameter=ROD_FROM_TOP),
     Row(
         put(ROD_END, from_=TOP, times=lambda off, value: -value * off),
         "rod-end-beyond-the-top",
@@ -414,7 +313,7 @@ BESIDE_ROWS = (
     Row(
         put("wheel_axis_inner", from_="wheel_centre"),
         "spin-axis-short",
-        "The wheel's spin axis is drawn by two points that nearly coincide.",
+        FROM_TWO.format("wheel's spin axis"),
         parameter=f"distance of its inner point from the wheel centre, {PARTS}",
     ),
     Row(
@@ -435,14 +334,42 @@ BESIDE_ROWS = (
         expected=Expected(("right", "refused"), right_from=1e-6),
     ),
 )
-BESIDE = tuple(
-    _table(
-        near,
-        "The strut's axis beside the ball joint",
-        PARTS,
-        SOLVED,
-        ("beside", decades(), BESIDE_ROWS),
-        suffix="",
-    )
+
+Table = tuple[Callable[[Row, Subject, float], Content], str, Expected, str, Values, tuple[Row, ...]]
+BESIDE_GROUP, DISTANCE = (
+    "The strut's axis beside the ball joint",
+    "distance, in parts of what it is in the car",
 )
-CASES = (*BESIDE, *NEAR, *OUT_OF_PROPORTION)
+NEAR = (near, "Points nearly in line or nearly coincident", SOLVED)
+OUT_OF_PROPORTION = (mixed, "Far from the origin, and mixed sizes", MIXED)
+# Motion, group, what has to come, car, values, ways to draw it.
+TABLES: tuple[Table, ...] = (
+    (near, BESIDE_GROUP, SOLVED, "beside", decades(), BESIDE_ROWS),
+    (*NEAR, "paper", decades(), _of_every_car(LOWER)),
+    (*NEAR, "paper", SLOW, OF_STRUT),
+    (*NEAR, "wishbone", SLOW, (*_of_every_car(UPPER_BALL), *OF_WISHBONE)),
+    (*OUT_OF_PROPORTION, "wishbone", (1.0, 1e-3, 1e-6, 1e-12), WISHBONE_MIXED),
+    (*OUT_OF_PROPORTION, "paper", AT_FIRST, PAPER_MIXED),
+    (*OUT_OF_PROPORTION, "beside", AT_FIRST, BESIDE_MIXED),
+    (*OUT_OF_PROPORTION, "paper", AT_FIRST, (AT_THE_STRUT,)),
+)
+
+
+def _cases() -> Iterator[Case]:
+    for motion, group, expected, car, values, rows in TABLES:
+        usual = "how long it is in the car over how long it is" if motion is mixed else DISTANCE
+        for row in rows:
+            yield case(
+                partial(motion, row),
+                row.parameter or usual,
+                row.values or values,
+                row.expected or expected,
+                NAMED[car],
+                name=row.name or hyphens(whole(row.draw).__name__),
+                why=row.why or reason_of(row.draw),
+                suffix="" if group == BESIDE_GROUP else None,
+                group=group,
+            )
+
+
+CASES = tuple(_cases())

@@ -34,63 +34,41 @@ from validate.hard.trial import Trial
 from validate.reference import NoReferenceError
 
 SHARE = 1e-9  # of the range, or of the way: how exactly its end must be found
-SAMPLES = 5
 Inputs = Mapping[str, float]
-Locks = Callable[[tuple[str, ...]], bool]
+Lock = Callable[[tuple[str, ...]], bool]
 """Whether the links that limit a motion, the strongest first, are those that lie in line."""
 
 
-def _are_first(*links: str) -> Locks:
+def first_three(*links: str) -> Lock:
+    """These links limit it, before all others."""
     return lambda limits: set(limits[:3]) >= set(links)
 
 
-def _tie_rod_within(first: int) -> Locks:
+def tie_rod_within(first: int) -> Lock:
+    """The tie rod does, and another link of its outer end."""
     rod = "link tie_rod_inner - tie_rod_outer"
     return lambda limits: (
         rod in limits[:3] and any("tie_rod_outer" in limit and limit != rod for limit in limits[:first])
     )
 
 
-# What lies in line at an end, as the facts of a trial have it.
-ARM, TIE_ROD = "ball joint, arm axis, up", "tie rod, steering arm"
-SLIDE = "nothing: the top is at a right angle beside the ball joint"
-UPPER_ARM = "upper arm and kingpin, in one plane with the upper pivots"
-ANY = "as pointcoord names it"
-LOCKS: Mapping[tuple[str, str], Locks] = {
-    ("arm_angle", ARM): _are_first(
-        "link lower_ball_joint - lower_arm_front", "link lower_ball_joint - lower_arm_rear"
-    ),
-    ("arm_angle", SLIDE): lambda limits: "strut_top on the strut axis" in limits,
-    ("arm_angle", UPPER_ARM): _are_first(
-        "link upper_ball_joint - lower_ball_joint",
-        "link upper_ball_joint - upper_arm_front",
-        "link upper_ball_joint - upper_arm_rear",
-    ),
-    ("rack", TIE_ROD): _tie_rod_within(3),
-    # Where the arm drives, what holds the knuckle's upper end is under the same force as the steering arm.
-    ("arm_angle", TIE_ROD): _tie_rod_within(5),
-}
-
-
 @dataclass(frozen=True)
-class Drive:
-    """One input of a mechanism, driven beyond one of its ends.
+class End:
+    """An end of an input.
 
     Attributes:
-        lock: what lies in line there.
-        moving: driven there from home within 1 s; else it is there at the only instant.
+        ahead: whether the upper one.
+        where: what happens there, in words.
+        lock: what lies in line there, as pointcoord names it; anything if not given.
+        moving: whether the input is driven there from home within 1 s; else it is there at the only instant.
     """
 
     subject: Subject
     driven: str
     ahead: bool
-    lock: str
+    where: str = ""
+    lock: Lock = bool
     moving: bool = True
-
-    @property
-    def end(self) -> LastValue:
-        """Where it ends."""
-        return last_value(self.subject, self.driven, self.ahead, self.home)
 
     @property
     def home(self) -> Inputs:
@@ -98,28 +76,30 @@ class Drive:
         return self.subject.home if self.moving else self.subject.drawn
 
     @property
+    def last(self) -> LastValue:
+        """Where it ends."""
+        return last_value(self.subject, self.driven, self.ahead, self.home)
+
+    @property
     def room(self) -> float:
         """The largest overshoot, rad or mm: as far as angles have a meaning, or the range again."""
         if self.subject.kinds[self.driven] == "angle":
-            return float(abs(Fraction(np.pi if self.ahead else 0.0) - self.end.value))
-        return self.end.reach
+            return float(abs(Fraction(np.pi if self.ahead else 0.0) - self.last.value))
+        return self.last.reach
 
-    def content(self, _: Subject, overshoot: float) -> Content:
-        """Of the scene that asks for an overshoot, in parts of the room."""
-        goal = self.end.beyond(overshoot * self.room / self.end.reach)
+    def beyond(self, _: Subject, overshoot: float) -> Content:
+        """The scene that asks for an overshoot, in parts of the room."""
+        goal = self.last.beyond(overshoot * self.room / self.last.reach)
         if self.subject.kinds[self.driven] == "angle":
             # All of the room ends at 0 or pi but for a rounding, which must not lead beyond.
             goal = min(max(goal, 0.0), np.pi)
         start = self.home[self.driven]
         way: Law = (start, goal - start) if self.moving else goal
-        there = {**self.home, self.driven: way}
-        stop, samples = (1.0, SAMPLES) if self.moving else (0.0, 1)
-        return self.subject.absolute(there, stop=stop, samples=samples)
+        stop, samples = (1.0, 5) if self.moving else (0.0, 1)
+        return self.subject.absolute({**self.home, self.driven: way}, stop=stop, samples=samples)
 
 
-def refused(
-    trial: Trial, facts: Mapping[str, float | str], judge: Callable[[FormulationError], Answer]
-) -> Trial:
+def refused(trial: Trial, facts: Mapping[str, float], judge: Callable[[FormulationError], Answer]) -> Trial:
     """The trial of what no solver can reach, each refusal judged; others find nothing to answer there."""
     tried = trial.tried
     if tried is None:
@@ -129,11 +109,8 @@ def refused(
         came = tried.came[one.formulation]
         if isinstance(came, FormulationError):
             return judge(came)
-        if one.outcome == "right":
-            return replace(
-                one, outcome="unjudged", reason="the overshoot was lost in rounding: there is a pose"
-            )
-        return one
+        lost = "the overshoot was lost in rounding: there is a pose"
+        return replace(one, outcome="unjudged", reason=lost) if one.outcome == "right" else one
 
     return Trial(trial.value, tuple(map(answer, trial.answers)), facts)
 
@@ -141,60 +118,50 @@ def refused(
 def _with_faults(refusal: FormulationError, faults: list[str], **sizes: float) -> Answer:
     """A refusal that is right if nothing is wrong with it."""
     reason = refusal.reason
-    return Answer(
-        refusal.formulation,
-        "wrong" if faults else "right",
-        "; ".join(faults) or " ".join(str(reason).split()),
-        condition=getattr(reason, "condition", None),
-        **sizes,
-    )
+    said, condition = "; ".join(faults) or " ".join(str(reason).split()), getattr(reason, "condition", None)
+    return Answer(refusal.formulation, "wrong" if faults else "right", said, condition=condition, **sizes)
 
 
-def _does_not_say(refusal: FormulationError) -> str:
+def _does_not_say(refusal: FormulationError) -> Answer:
     reason = refusal.reason
-    return f"does not say how far it came: {type(reason).__name__}: {reason}"
+    said = f"does not say how far it came: {type(reason).__name__}: {reason}"
+    return Answer(refusal.formulation, "wrong", said)
 
 
-def judged(drive: Drive, _: Subject, overshoot: float, trial: Trial) -> Trial:
+def judged(end: End, _: Subject, overshoot: float, trial: Trial) -> Trial:
     """The trial of a value beyond the end."""
     if trial.tried is None:
         return trial
     scene = trial.tried.scene
-    asked = rates(scene.inputs[drive.driven], np.array([scene.time.stop]))[0, 0]
-    facts: dict[str, float | str] = {
-        "end [mm or rad]": float(drive.end.value),
-        "asked for [mm or rad]": float(asked),
-        "in line": drive.lock,
-    }
-    return refused(trial, facts, lambda refusal: refusal_held(refusal, scene, drive))
+    facts = {"end [mm or rad]": float(end.last.value)}
+    return refused(trial, facts, lambda refusal: refusal_held(refusal, scene, end))
 
 
-def refusal_held(refusal: FormulationError, scene: Scene, drive: Drive) -> Answer:
+def refusal_held(refusal: FormulationError, scene: Scene, end: End) -> Answer:
     """A refusal held to the true end."""
-    reason, driven = refusal.reason, drive.driven
-    reached: Inputs = getattr(reason, "reached", {})
-    if driven not in reached:
-        return Answer(refusal.formulation, "wrong", _does_not_say(refusal))
-    end = drive.end
-    error, bound = float(abs(Fraction(reached[driven]) - end.value)), SHARE * end.reach
-    faults = [*_faults_of_words(reason, reached, drive)]
+    reached: Inputs = getattr(refusal.reason, "reached", {})
+    if end.driven not in reached:
+        return _does_not_say(refusal)
+    last, here = end.last, reached[end.driven]
+    error, bound = float(abs(Fraction(here) - last.value)), SHARE * last.reach
+    faults = [*_faults_of_words(refusal.reason, reached, end)]
     if error > bound:
-        faults.insert(0, f"stops at {driven} = {reached[driven]!r}, not {float(end.value)!r}")
-    if drive.moving and (fault := fault_of_kept(refusal, scene, float(end.value), driven)):
+        faults.insert(0, f"stops at {end.driven} = {here!r}, not {float(last.value)!r}")
+    if end.moving and (fault := fault_of_kept(refusal, scene, float(last.value), end.driven)):
         faults.append(fault)
     return _with_faults(refusal, faults, error=error, bound=bound, share=error / bound)
 
 
-def _faults_of_words(reason: Exception, reached: Inputs, drive: Drive) -> Iterator[str]:
+def _faults_of_words(reason: Exception, reached: Inputs, end: End) -> Iterator[str]:
     """What an error does not say, or says wrongly."""
-    driven, end = drive.driven, drive.end
-    for other, held in drive.home.items():
+    driven, last = end.driven, end.last
+    for other, held in end.home.items():
         # The held input takes no part; it comes back through a cosine and its inverse.
         if other != driven and abs(reached[other] - held) > SHARE * max(1.0, abs(held)):
             yield f"{other} is said to stop at {reached[other]!r}, and is held at {held!r}"
     wanted: Inputs = getattr(reason, "wanted", getattr(reason, "inputs", {}))
-    outward = 1.0 if drive.ahead else -1.0
-    if not outward * (wanted[driven] - float(end.value)) > -SHARE * end.reach:
+    outward = 1.0 if end.ahead else -1.0
+    if not outward * (wanted[driven] - float(last.value)) > -SHARE * last.reach:
         yield f"the value asked for, {wanted[driven]!r}, lies before the end"
     for values in (wanted, reached) if isinstance(reason, AssemblyError) else (wanted,):
         # The models print ten or twelve digits.
@@ -203,7 +170,7 @@ def _faults_of_words(reason: Exception, reached: Inputs, drive: Drive) -> Iterat
     if isinstance(reason, AssemblyError):
         if reason.reduce != driven:
             yield f"{reason.reduce!r} is to be reduced, and {driven!r} was driven"
-        if not LOCKS.get((driven, drive.lock), bool)(reason.limits):
+        if not end.lock(reason.limits):
             yield f"what limits it is not what lies in line: {', '.join(reason.limits[:3])}"
 
 
@@ -241,28 +208,24 @@ _beyond = partial(case, group="Reachable range", beyond=True, proven=False)
 WHOLE = {"angle": "the way from the end to the upright arm", "turn": "its range"}
 
 
-def driven_beyond(drive: Drive, name: str, where: str, values: Values) -> Case:
-    """The case of an input driven beyond its end, or there at the first instant; `where` says what locks."""
-    subject = drive.subject
-    whole = WHOLE.get(subject.kinds[drive.driven], f"the {drive.driven}'s range")
-    more = "" if drive.moving else ", and the first instant lies beyond"
+def driven_beyond(end: End, name: str, values: Values) -> Case:
+    """The case of an input driven beyond its end, or there at the first instant."""
+    kind = end.subject.kinds[end.driven]
+    first = "" if end.moving else ", and the first instant lies beyond"
     return _beyond(
-        drive.content,
-        f"overshoot beyond the last value, in parts of {whole}",
+        end.beyond,
+        f"overshoot beyond the last value, in parts of {WHOLE.get(kind, f'the range of {end.driven}')}",
         values,
-        subject=subject,
-        name=f"{'reach' if drive.moving else 'start-beyond'}-{name}",
+        subject=end.subject,
+        name=f"{'reach' if end.moving else 'start-beyond'}-{name}",
         suffix="",
-        why=f"{where}{more}; beyond it there is no pose, and at it two assemblies meet.",
-        behaviour="refused, with the last value to 1e-9 of the range, the input, what was asked for, the "
-        "right motion up to there and (pointcoord) the links in line; absolute names no links",
-        judged=partial(judged, drive),
-        unit=subject.units[drive.driven],
+        why=f"{end.where}{first}; beyond it there is no pose, and at it two assemblies meet.",
+        judged=partial(judged, end),
+        unit=end.subject.units[end.driven],
     )
 
 
 # Both inputs at once: the way from the drawing to a first instant is blocked.
-BY_ANGLE = ("absolute", "relative")
 ARM_AT = 1.3  # rad: where the arm is to be, besides the rack beyond its end
 
 
@@ -276,35 +239,33 @@ def both(subject: Subject, overshoot: float) -> Content:
     return subject.absolute(goal(overshoot, subject))
 
 
-def arm_of(name: str) -> tuple[Callable[[float], float], Callable[[float], float]]:
-    """What a model's way is straight in, as a function of the arm angle, and back."""
-    return (float, float) if name in BY_ANGLE else (math.cos, math.acos)
-
-
 def moved_on(
     name: str, here: Inputs, end: Inputs, share: float, subject: Subject = PAPER
 ) -> dict[str, float | Fraction]:
     """The inputs a share of the whole way further on, on the way that a model takes to the end."""
-    start, (to, back) = subject.drawn, arm_of(name)
+    start, (to, back) = subject.drawn, _straight_in(name)
     rack = Fraction(here["rack"]) + Fraction(share) * (Fraction(end["rack"]) - Fraction(start["rack"]))
     arm = to(here["arm_angle"]) + share * (to(end["arm_angle"]) - to(start["arm_angle"]))
     return {"arm_angle": back(arm), "rack": rack}
+
+
+def _straight_in(name: str) -> tuple[Callable[[float], float], Callable[[float], float]]:
+    """What a model's way is straight in, as a function of the arm angle, and back."""
+    return (float, float) if name in ("absolute", "relative") else (math.cos, math.acos)
 
 
 def blocked_held(refusal: FormulationError, end: Inputs, subject: Subject = PAPER) -> Answer:
     """Whether a refusal names the place where its own way ends."""
     name, here = refusal.formulation, getattr(refusal.reason, "reached", {})
     if set(here) < {"arm_angle", "rack"}:
-        return Answer(name, "wrong", _does_not_say(refusal))
+        return _does_not_say(refusal)
     # How far along the way the arm is, and how far the rack: equal if the place lies on it.
-    start, (to, _) = subject.drawn, arm_of(name)
+    start, (to, _) = subject.drawn, _straight_in(name)
     arm, end_of_arm = (to(inputs["arm_angle"]) - to(start["arm_angle"]) for inputs in (here, end))
     arm, rack = arm / end_of_arm, (here["rack"] - start["rack"]) / (end["rack"] - start["rack"])
     faults = []
     if abs(arm - rack) > SHARE:
-        faults.append(
-            f"what is reached does not lie on the way: the arm at {arm!r} of it, the rack at {rack!r}"
-        )
+        faults.append(f"what is reached is not on the way: the arm at {arm!r} of it, the rack at {rack!r}")
     if not reachable(subject, moved_on(name, here, end, -SHARE, subject)):
         faults.append("there is no pose just before what is reached")
     if reachable(subject, moved_on(name, here, end, SHARE, subject)):
@@ -334,16 +295,9 @@ CASES = (
             values,
             subject=subject,
             name="start-beyond-both",
-            behaviour="refused, with the end of the way to 1e-9 of the way: a pose before it, none beyond",
             judged=blocked,
         )
         for subject, values in ((PAPER, (*decades()[::2], 1e-11)), (NAMED["wishbone"], decades()[::4]))
     ),
-    *family(
-        heave_has_no_end,
-        "1 mm over the heave",
-        decades(),
-        subjects=HEAVING,
-        group="Reachable range",
-    ),
+    *family(heave_has_no_end, "1 mm over the heave", decades(), subjects=HEAVING, group="Reachable range"),
 )

@@ -80,8 +80,8 @@ CASES = (
         turn_at_a_coarse_tolerance,
         "distance of the turn from the end, in parts of half the range",
         decades(-12, -1),
+        # The branch is kept at any tolerance: the sign of the Jacobian's determinant is followed.
         dict.fromkeys(("pointcoord", "pointcoord-as-asked", "pointcoord-newton"), KEPT) | BY_ANGLE,
-        behaviour="the branch is kept at any tolerance: the sign of the Jacobian's determinant is followed",
     ),
     _found(
         strut_drawn_folded,

@@ -7,7 +7,8 @@ import pytest
 from pointcoord import Scene
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import CARS, SQUARE, scene_content
-from validate.hard.cases.ends import End, near_end
+from validate.hard.cases.ends import near_end
+from validate.hard.cases.reach import End
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS
 from validate.reference import InfeasibleError, Instant
@@ -27,7 +28,7 @@ ENDS: list[CarEnd] = [
 def pose(end: CarEnd, value: float, law: str = "held") -> Instant:
     """The reference near an end, or beyond it."""
     name, driven, ahead, arm_angle = end
-    scene = Scene.from_mapping(near_end(End(driven, ahead, ""), arm_angle, law, NAMED[name], value))
+    scene = Scene.from_mapping(near_end(End(NAMED[name], driven, ahead), arm_angle, law, NAMED[name], value))
     return reference_instant(scene, inputs_at(scene, 0.0))
 
 

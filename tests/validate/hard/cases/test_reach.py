@@ -13,17 +13,17 @@ from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.cases.reach import (
-    TIE_ROD,
-    Drive,
+    End,
     blocked_held,
     fault_of_kept,
     goal,
     moved_on,
     refusal_held,
+    tie_rod_within,
 )
 from validate.hard.subjects import PAPER
 
-PAPER_RACK = Drive(PAPER, "rack", True, TIE_ROD)
+PAPER_RACK = End(PAPER, "rack", True, lock=tie_rod_within(3))
 
 
 def refused(scene: Scene) -> FormulationError:
@@ -63,7 +63,7 @@ def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
 def test_a_refusal_that_says_something_wrong_is_wrong(
     change: Callable[[FormulationError], FormulationError], says: str
 ) -> None:
-    scene = Scene.from_mapping(PAPER_RACK.content(PAPER, 1e-3))
+    scene = Scene.from_mapping(PAPER_RACK.beyond(PAPER, 1e-3))
     refusal = refused(scene)
     assert refusal_held(refusal, scene, PAPER_RACK).outcome == "right"
     answer = refusal_held(change(refusal), scene, PAPER_RACK)
@@ -73,8 +73,8 @@ def test_a_refusal_that_says_something_wrong_is_wrong(
 
 @pytest.mark.parametrize("solver", ["pointcoord", "pointcoord-newton", "absolute"])
 def test_a_kept_motion_that_is_short_or_wrong_is_found_out(solver: str) -> None:
-    scene = Scene.from_mapping(PAPER_RACK.content(PAPER, 1e-3))
-    end = float(PAPER_RACK.end.value)
+    scene = Scene.from_mapping(PAPER_RACK.beyond(PAPER, 1e-3))
+    end = float(PAPER_RACK.last.value)
     with pytest.raises(FormulationError) as caught:
         formulation(solver).solve(scene)
     kept = caught.value.partial
@@ -97,7 +97,7 @@ def test_a_kept_motion_that_is_short_or_wrong_is_found_out(solver: str) -> None:
     [
         (lambda r, end: moved_on("absolute", r, end, 1e-7), "no pose just before"),
         (lambda r, end: moved_on("absolute", r, end, -1e-7), "a pose just beyond"),
-        (lambda r, end: r | {"rack": r["rack"] * (1.0 - 1e-6)}, "does not lie on the way"),
+        (lambda r, end: r | {"rack": r["rack"] * (1.0 - 1e-6)}, "is not on the way"),
         (lambda r, end: {}, "does not say how far"),
     ],
 )
