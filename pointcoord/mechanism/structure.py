@@ -321,7 +321,7 @@ class Structure:
         Where a rod, a slide or an input takes hold of the point too, nothing says of which of the two halves.
         """
         others = {end for ends in self.rods.values() for end in ends}
-        others |= {point for slide in self.slides.values() for point in slide.named}
+        others |= {name for one in self.slides.values() for name in (*one.points, one.through, one.along)}
         for one in (self.inputs[name] for name in driven if not self.inputs[name].moves_the_chassis):
             others |= set() if one.named("body") else {*one.named("point")}
         found = {}

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pointcoord import Scene, built_in_scenes
@@ -60,4 +61,7 @@ def test_each_of_them_agrees_with_the_reference_in_every_number_of_a_car(name: s
     assert not outcome.disagreements, outcome.disagreements
     # What is off by no more than is claimed: the reference's own part of that is nothing.
     within = {row.name for row in outcome.rows if row.verdict != "not given" and row.share <= 1.0}
-    assert within >= of_the_car(scene)
+    # Wheels that are steered apart have no Ackermann, and the reference says so of a whole motion.
+    arrays = [array for solution in outcome.solutions for array in solution.numbers.items()]
+    nowhere = {n for _, of in arrays for n, array in of.items() if not np.isfinite(array).all()}
+    assert within >= of_the_car(scene) - nowhere
