@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import validate
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.structure import PAIR_ROLES
 
@@ -15,14 +15,10 @@ ROOT = Path(validate.__file__).parent
 ROOMS = ("formulations", "comparison", "diagnosis", "output", "ci", "commands", "hardpoint_files", "html")
 STRUCTURES = [one for name in shipped() for one in mechanism_file(name).structures.values()]
 NAMES = {
-    "effect": {*EFFECTS} - {*PAIR_ROLES},  # a role may be called as an effect of it is
+    # A role may be called as an effect of it is, and a text is read by json.loads.
+    "effect": {*EFFECTS} - {*PAIR_ROLES, "loads"},
     "quantity": {*QUANTITIES},
-    "angle": {
-        name
-        for e in (*ALWAYS, *EFFECTS.values())
-        for names in e.gives_numbers.values()
-        for name in names or ()
-    },
+    "angle": {name for effect in EFFECTS.values() for name in effect.own_names},
     "mechanism": {*shipped()},
     # The letters by which a published linkage calls its pins are in use as metavars too.
     "hardpoint": {point for one in STRUCTURES for point in one.points if len(point) > 1},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,12 +48,14 @@ class AbsoluteCoordinates:
             model = absolute.compile(part.plain(tuple(scene.inputs)))
             if part.closure == "drawn":
                 require_the_drawn_car(scene, absolute.close_drawing(model).movement)
+            effects, loads = effects_in(scene, model)
             solved = absolute.solve(
                 model,
                 {n: law for n, law in problem.laws.items() if n not in part.topology.chassis_motion},
                 chassis=chassis_motion(part, problem.laws),
                 rates=plan_effects(scene.effects).derivative > 0,
-                **effects_in(scene, model),
+                effects=effects,
+                loads=loads,
             )
             return problem.solution(self.name, found_of(solved, asked))
         except absolute.AbsoluteError as error:
@@ -94,10 +95,8 @@ def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | 
         return np.asarray(sum(moves[1:], moves[0])) if moves else None
 
 
-def effects_in(scene: Scene, model: absolute.Model) -> dict[str, Any]:
-    """What of a scene's effects the model is asked for, as arguments of `absolute.solve`."""
+def effects_in(scene: Scene, model: absolute.Model) -> tuple[list[str], bool]:
+    """Which of a scene's numbers of the car are effects of the model, and whether it asks for forces."""
     known = absolute.effect_names(model)
-    return {
-        "effects": [name for name in asked_of_the_car(scene) if name in known],
-        "loads": any(map(is_force, asked_numbers(scene))),
-    }
+    effects = [name for name in asked_of_the_car(scene) if name in known]
+    return effects, any(map(is_force, asked_numbers(scene)))

@@ -58,13 +58,13 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene, simulate
-from pointcoord.bounds.proof import Reported, prove
+from pointcoord import PointcoordError, Scene, simulate
+from pointcoord.bounds.proof import ROUNDINGS, Reported, prove
 from pointcoord.bounds.solved_coordinates import SolvedCoordinates, Summed
 from pointcoord.effects.registry import EFFECTS as OURS
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import rates
 from validate.formulations.point_coordinates import PointCoordinates
@@ -167,44 +167,56 @@ def accuracy_at(
         q: {n: np.concatenate([one.claims[q][n] for one in parts]) for n in of}
         for q, of in parts[0].claims.items()
     }
-    if any(map(is_force, held.asked)):
-        claims |= _of_forces(scene, off)
     blind = np.concatenate([one.blind for one in parts if one.blind is not None])
-    return Accuracy(np.concatenate([one.condition for one in parts]), claims, blind=blind)
+    condition = np.concatenate([one.condition for one in parts])
+    if any(map(is_force, held.asked)):
+        claims |= _of_forces(scene, off, condition)
+    return Accuracy(condition, claims, blind=blind)
 
 
-def _of_forces(scene: Scene, off: Array) -> dict[str, dict[str, Array]]:
-    """What points that are off make of forces: as pointcoord expects of poses that are left so far unsolved.
+def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str, Array]]:
+    """What points that are off make of forces, and what solving for these rounds.
+
+    The first is what pointcoord expects of poses that are left so far unsolved more than of those that are
+    not; the second, of any method, EPS times its condition number of the largest force, ROUNDINGS times.
 
     Args:
-        off: at the first instants of the scene, (N,), mm.
+        off: at the first instants of the scene, (N,), mm. condition: likewise.
     """
     forces = {q: names for q, names in asked_numbers(scene).items() if is_force(q)}
-    motion = simulate(
-        scene.model_copy(update={"effects": tuple(e for e in scene.effects if _gives_forces(e))})
-    )
+    effects = tuple(e for e in scene.effects if any(is_force(q.name) for q in OURS[e].quantities))
+    try:
+        motion = simulate(scene.model_copy(update={"effects": effects}))
+    except PointcoordError:
+        return {}
     count, solved = len(off), motion.solved
     if len(motion.times) < count:
         return {}
-    times = motion.times[:count]
-    # Each coordinate of a point may be off, and each half of a joint for itself.
-    left = 2.0 * off / motion.unit
-    reported = Reported(
-        numbers=motion.part(0, count).numbers,
-        effects=solved.readout.plan.computed,
-        axes=solved.readout.axes,
-        chassis=solved.readout.chassis,
-        laws=solved.functions,
-        solved=_LeftUnsolved(solved, times, left),
-    )
-    expected = prove(solved.readout.mechanism, times, reported, rates=True).expected
-    return {
-        quantity: {name: expected[quantity][name] for name in names} for quantity, names in forces.items()
-    }
+    times, readout = motion.times[:count], solved.readout
 
+    def expected(left: Array) -> Numbers:
+        reported = Reported(
+            numbers=motion.part(0, count).numbers,
+            effects=readout.plan.computed,
+            axes=readout.axes,
+            chassis=readout.chassis,
+            laws=solved.functions,
+            solved=_LeftUnsolved(solved, times, left),
+        )
+        return prove(readout.mechanism, times, reported, rates=True).expected
 
-def _gives_forces(effect: str) -> bool:
-    return any(is_force(quantity.name) for quantity in OURS[effect].quantities)
+    # Each coordinate of a point may be off, and each half of a joint by itself.
+    with_it, without = expected(2.0 * off / motion.unit), expected(np.zeros(count))
+    found: dict[str, dict[str, Array]] = {}
+    for quantity, names in forces.items():
+        numbers = [motion.numbers[quantity][name][:count] for name in names]
+        sizes = [np.abs(number).reshape(count, -1).max(axis=-1) for number in numbers]
+        rounded = ROUNDINGS * EPS * condition * np.max(sizes, axis=0, initial=0.0)
+        found[quantity] = {
+            n: with_it[quantity][n] - without[quantity][n] + rounded.reshape(-1, *(1,) * (number.ndim - 1))
+            for n, number in zip(names, numbers, strict=True)
+        }
+    return found
 
 
 @dataclass(frozen=True)

@@ -157,7 +157,7 @@ def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
     planted: Plant, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     known = {name: effect for name, effect in absolute.EFFECTS.items() if name not in ("stub_axle", "flip")}
-    monkeypatch.setattr(absolute, "EFFECTS", known)
+    monkeypatch.setattr("absolute.effects.EFFECTS", known)
     outcome = compare(asked("off-axis-strut"), "pointcoord", "absolute")
     assert made_up(outcome) == {("stub", "stub_axle"): "not given", ("wheel", "flip"): "not given"}
     assert set(outcome.missing) == {"absolute gives no stub length", "absolute gives no wheel angle"}

@@ -24,14 +24,14 @@ def in_bodies(scene: Scene, _: float | None) -> Solve:
 
     part, asked = scene.mechanism, asked_numbers(scene)
     model = absolute.compile(part.plain(tuple(scene.inputs)))
-    assembled, effects = absolute.Assembled(model), effects_in(scene, model)
+    assembled, (effects, loads) = absolute.Assembled(model), effects_in(scene, model)
     moves = plan_effects(scene.effects).derivative > 0
 
     def solve(instants: Array) -> Answer:
         laws = laws_at(scene, instants)
         chassis = chassis_motion(part, laws)
         laws = {name: law for name, law in laws.items() if name not in part.topology.chassis_motion}
-        solved = assembled.solve(laws, chassis, moves, **effects)
+        solved = assembled.solve(laws, chassis, moves, effects=effects, loads=loads)
         return Answer(
             asked_of(found_of(solved, asked).numbers, scene), {"newton_steps": int(solved.iterations.sum())}
         )
