@@ -1,8 +1,8 @@
 """A suspension of Project Chrono, or a vehicle that names some: JSON, with comments as Chrono allows them.
 
 A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`.
-A vehicle names the files of its suspensions and steering from Chrono's folder of data, and puts each
-suspension at a place of its chassis (WheeledVehicle.cpp).
+A vehicle names the files of its suspensions from Chrono's folder of data, and puts each suspension at a
+place of its chassis (WheeledVehicle.cpp). What steers an axle is not read: here it is a straight rack.
 """
 
 from __future__ import annotations
@@ -33,10 +33,7 @@ CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
 FORM = "JSON of a Project Chrono suspension"
 KINDS = "Type Suspension with a Template, or Type Vehicle with Template WheeledVehicle"
 AXLES, SUSPENSION, PLACE = "Axles", "Suspension Input File", "Suspension Location"
-STEERINGS, STEERING, ORIENTATION = "Steering Subsystems", "Steering Index", "Orientation"
-RACK = "RackPinion"
-# A printed quaternion has some eight digits.
-ACROSS = 1e-6
+STEERED = "the tie rod's inner end runs along a straight rack across the car, whatever steering the car has"
 # A text in quotes, which is kept, or a comment.
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
@@ -123,11 +120,8 @@ def read(text: str, source: str) -> Contents:
     if not file.is_suspension:
         return _vehicle(file)
     points, axle = _suspension(file)
-    notes = (
-        "points are in the frame of the suspension, which the car's own file puts somewhere",
-        "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
-    )
-    return Contents(tuple(points), {"": replace(axle, notes=notes)})
+    framed = "points are in the frame of the suspension, which the car's own file puts somewhere"
+    return Contents(tuple(points), {"": replace(axle, notes=(framed, STEERED))})
 
 
 def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
@@ -175,12 +169,11 @@ def _vehicle(file: _Json) -> Contents:
         for point in theirs:
             x, y, z = (a + b for a, b in zip(point.place, place, strict=True))
             points.append(replace(point, part=label, place=(x, y, z)))
-        steered, doubts = _steering(axle, file)
         moved = (
             f"points are those of {own.source}, moved by its {PLACE} "
             f"{[float(n) for n in place]} m into the frame of the chassis"
         )
-        read[label] = replace(alone, notes=(moved, steered), doubts=doubts)
+        read[label] = replace(alone, notes=(moved, STEERED))
     return Contents(tuple(points), read)
 
 
@@ -192,34 +185,3 @@ def _labels(places: Sequence[Place]) -> list[str]:
         ahead = places[0][0] > places[1][0]
         return ["front", "rear"] if ahead else ["rear", "front"]
     return [str(number) for number, _ in enumerate(places, 1)]
-
-
-def _steering(axle: Mapping[str, Any], file: _Json) -> tuple[str, tuple[str, ...]]:
-    """What steers an axle, and what makes that another steering than our rack."""
-    index, steerings = axle.get(STEERING), file.data.get(STEERINGS)
-    if index is None:
-        held = "the axle is not steered: the chassis holds the tie rod's inner end, as an unmoved rack does"
-        return held, ()
-    there = steerings if isinstance(steerings, list) else []
-    if not isinstance(index, Decimal) or index not in range(len(there)):
-        told = f"{STEERING} is {short(str(index))}, but there are {len(there)} {STEERINGS}"
-        raise file.refuse(told, "the number of one, from 0")
-    one = there[int(index)] if isinstance(there[int(index)], dict) else {}
-    name = one.get("Input File")
-    kind = file.named(name, f"Input File of {STEERINGS} {index}").template
-    note = f"it is steered by a {short(str(kind))} ({name})"
-    same = "with the rack as drawn they are the same"
-    if kind != RACK:
-        note += ", here by a straight rack"
-        return note, (f"{note}, which moves the tie rod's inner end otherwise once it is steered; {same}",)
-    turned = one.get(ORIENTATION, [1, 0, 0, 0])
-    if not isinstance(turned, list) or len(turned) != 4:
-        raise file.refuse(f"{ORIENTATION} is {short(str(turned))}", "a list of four numbers")
-    w, x, y, z = (float(number_of(n, file.source, 0, ORIENTATION)) for n in turned)
-    # The rack slides along its own y axis (ChRackPinion.cpp), turned by the quaternion.
-    along = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
-    if abs(along[0]) <= ACROSS and abs(along[2]) <= ACROSS:
-        return f"{note}, which moves the tie rod's inner end across the car, as here", ()
-    words = ", ".join(f"{part:.6g}" for part in along)
-    note += f" that runs along {words}, here straight across the car"
-    return note, (f"{note}; {same}",)

@@ -68,14 +68,13 @@ class Axle:
         called: what it calls the suspension; empty if it does not say.
         angles: static angles that it prints, by its own words, deg, each with its line.
         spin_axis: where its wheel's spin axis points, if said without a point.
-        notes: what the user should know of its points. doubts: what may make them another car than is meant.
+        notes: what the user should know of its points.
     """
 
     called: str = ""
     angles: Mapping[str, tuple[Decimal, int]] = field(default_factory=dict)
     spin_axis: SpinAxis | None = None
     notes: tuple[str, ...] = ()
-    doubts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

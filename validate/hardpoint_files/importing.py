@@ -197,7 +197,7 @@ class _Import:
         self.require_all(wheel, axis)
         axes, axes_by, doubted = self.axes(wheel)
         unit, unit_by = self.unit()
-        doubts = [*axle.doubts, *doubted, *self.against_unit(unit, wheel)]
+        doubts = [*doubted, *self.against_unit(unit, wheel)]
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         turned = {name: axes.to_scene(place, unit) for name, place in wheel.places.items()}

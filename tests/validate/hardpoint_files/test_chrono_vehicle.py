@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from math import cos, radians, sin
 from pathlib import Path
 from typing import Any
 
@@ -18,20 +17,8 @@ AHEAD = {"front": [1.5, 0, 0.25], "rear": [-1.25, 0, 0.125]}
 POINTS = WISHBONE.mechanism.points
 
 
-def steering(turned: float = 0.0) -> dict[str, Any]:
-    """A steering that is turned by so many degrees about the car's vertical."""
-    half = radians(turned) / 2
-    return {
-        "Input File": "own/steering.json",
-        "Location": [1.2, 0, 0.1],
-        "Orientation": [cos(half), 0, 0, sin(half)],
-    }
-
-
 def vehicle(
     folder: Path,
-    template: str = "RackPinion",
-    turned: float = 0.0,
     rear: str | None = None,
     axles: Mapping[str, list[float]] = AHEAD,
     **changes: Any,
@@ -48,16 +35,14 @@ def vehicle(
         "Template": "WheeledVehicle",
         "Axles": [
             {"Suspension Input File": f"own/suspension/{name.rstrip('2')}.json", "Suspension Location": place}
-            | ({"Steering Index": 0} if name == "front" else {})
             for name, place in axles.items()
         ],
-        "Steering Subsystems": [steering(turned)],
     } | changes
     (folder / "own" / "suspension").mkdir(parents=True)
     (folder / "own" / "vehicle").mkdir()
     for name, text in texts.items():
         (folder / "own" / "suspension" / f"{name}.json").write_text(text)
-    (folder / "own" / "steering.json").write_text(json.dumps({"Type": "Steering", "Template": template}))
+    (folder / "own" / "steering.json").write_text(json.dumps({"Type": "Steering"}))
     path = folder / "own" / "vehicle" / "car.json"
     path.write_text(json.dumps(whole, indent=1))
     return path
@@ -92,23 +77,8 @@ def test_an_imported_axle_agrees_in_all_models_and_says_where_its_points_are_fro
     assert main(["import", str(path), "--part", "rear", "-o", str(target)]) == 0
     told = capsys.readouterr().out
     assert str(tmp_path / "own" / "suspension" / "rear.json") in told
-    assert "the axle is not steered" in told
+    assert "a straight rack across the car" in told
     assert main(["validate", str(target)]) == 0
-
-
-def test_a_rack_that_is_not_ours_is_doubted_and_one_that_is_is_not(tmp_path: Path) -> None:
-    def doubts(name: str, **of: Any) -> tuple[str, ...]:
-        return import_hardpoints(vehicle(tmp_path / name, **of), part="front").doubts
-
-    assert not doubts("across")
-    # Turned about the car's own y axis the rack still runs along it.
-    assert not doubts("pitched", **{"Steering Subsystems": [steering() | {"Orientation": [0.8, 0, 0.6, 0]}]})
-    (askew,) = doubts("askew", turned=10.0)
-    # R_z(10 deg) e_y = (-sin, cos, 0).
-    assert "runs along -0.173648, 0.984808, 0" in askew
-    (pitman,) = doubts("pitman", template="PitmanArm")
-    assert "'PitmanArm'" in pitman
-    assert "with the rack as drawn they are the same" in pitman
 
 
 def test_axles_are_front_and_rear_by_where_they_are_and_numbers_if_there_are_more(tmp_path: Path) -> None:
@@ -168,8 +138,6 @@ def test_a_template_that_only_contains_a_known_name_is_not_it(tmp_path: Path) ->
             },
             "has y 1, beside the middle",
         ),
-        ({"Steering Subsystems": []}, "Steering Index is '0', but there are 0"),
-        ({"Steering Subsystems": [{}]}, "has no Input File of Steering Subsystems 0"),
         ({"Template": "TrackedVehicle", "Axles": None}, "Type 'Vehicle' and Template 'TrackedVehicle'"),
     ],
 )

@@ -485,12 +485,3 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
 def test_a_table_that_cannot_be_read_is_told_in_one_line(text: str, words: str, tmp_path: Path) -> None:
     with pytest.raises(FileError, match=words):
         imported(tmp_path, text, axes=OURS)
-
-
-def test_points_in_one_place_make_no_car(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    # A table whose tie rod nobody has filled in.
-    car = CAR | {"tie_rod_inner": (0.0, 0.0, 0.0), "tie_rod_outer": (0.0, 0.0, 0.0)}
-    (tmp_path / "car.txt").write_text("\n".join(["Point,X,Y,Z", *rows(str, car)]))
-    assert main(["import", str(tmp_path / "car.txt"), "--axes", OURS]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "tie_rod_inner - tie_rod_outer has no length" in line
