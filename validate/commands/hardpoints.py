@@ -18,9 +18,17 @@ from validate.commands.usage import (
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
-from validate.hardpoint_files.importing import PARTS, SIDES, Choices, Imported, import_hardpoints, names_of
+from validate.hardpoint_files.importing import (
+    NAMED,
+    PARTS,
+    SIDES,
+    Choices,
+    Imported,
+    import_hardpoints,
+    names_of,
+)
 from validate.output.console import Console
-from validate.plain_text import shown
+from validate.plain_text import shown, some_of
 from validate.tables.units import LENGTHS
 
 DESCRIPTION = """\
@@ -98,8 +106,9 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
     for warning in told:
         console.warn(f"{name}: {warning}")
-    for point in found.unknown:
-        console.note(f"{name}: line {point.line}: no point of ours: {shown(point.name)}")
+    if found.others:
+        others = some_of([shown(point.source) for point in found.others], NAMED)
+        console.note(f"{name}: no points of ours: {others}")
     wrong = [check for check in found.angles if check.verdict == "disagrees"]
     for check in wrong:
         console.complain(
@@ -120,8 +129,7 @@ def _report(name: str, found: Imported) -> list[str]:
         f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"
         for point in found.points
     ]
-    lines += [f"  known and not needed: {shown(p.name)}, line {p.line}" for p in found.not_needed]
-    lines += [f"  not known and left out: {shown(p.name)}, line {p.line}" for p in found.unknown]
+    lines += [f"  no point of ours: {shown(point.source)}" for point in found.others]
     lines += [
         f"  {check.name}: the file prints {check.printed:g} deg, its points give {check.drawn + 0.0:.4f}: "
         f"{check.verdict}"

@@ -6,13 +6,14 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, Scene, simulate, sweep
+from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.rounding import EPS
@@ -85,26 +86,16 @@ class Solved:
 
     @cached_property
     def fine(self) -> Scene:
-        """The scene, solved as finely as rounding allows."""
-        return self.scene.model_copy(
-            update={"tolerance": min(self.scene.tolerance, finest_tolerance(self.scene))}
-        )
-
-    @cached_property
-    def drawn(self) -> Mapping[str, float]:
-        """The angles of its closed drawing by name, rad."""
-        try:
-            return {name: float(angle[0]) for name, angle in sweep(self.fine).drawn.items()}
-        except PointcoordError:
-            return {}
+        """The scene with every point, solved as finely as rounding allows."""
+        tolerance = min(self.scene.tolerance, finest_tolerance(self.scene))
+        return self.scene.model_copy(update={"tolerance": tolerance, "points": None})
 
     @cached_property
     def motion(self) -> Motion | None:
-        """Its motion with every point; None where pointcoord refuses it."""
-        try:
-            return simulate(self.fine.model_copy(update={"points": None}))
-        except PointcoordError:
-            return None
+        """Its motion; None where pointcoord refuses it."""
+        with suppress(PointcoordError):
+            return simulate(self.fine)
+        return None
 
 
 @dataclass(frozen=True)
@@ -120,9 +111,8 @@ class Evidence:
         other_cars: whether the instants are those of the scene, so that other cars are solved there.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
-        units: of rows that have another than their quantity, such as of derivatives.
+        units: of rows that have another than their quantity, such as of derivatives, in words.
         theirs: the units that rows are given in, where these are not ours, and how many of ours each is.
-        in_our_units: whether the held numbers are; after another fault they may be in no unit that is known.
     """
 
     scene: Scene
@@ -132,7 +122,6 @@ class Evidence:
     allowed: Rows
     wrong: tuple[Row, ...]
     solved: Solved
-    in_our_units: bool = True
     over_time: bool = True
     other_cars: bool = True
     own: Rows = field(default_factory=dict)
@@ -174,9 +163,9 @@ class Evidence:
             solved=Solved(scene),
         )
 
-    def at(self, instants: Sequence[int]) -> Evidence:
-        """The same at fewer instants."""
-        some = np.asarray(instants, dtype=np.intp)
+    def thinned(self, count: int) -> Evidence:
+        """The same at so many instants at most, evenly."""
+        some = np.unique(np.linspace(0, len(self.times) - 1, min(count, len(self.times))).astype(np.intp))
         given, held, allowed, own = (
             {row: array[some] for row, array in rows.items()}
             for rows in (self.given, self.held, self.allowed, self.own)
@@ -186,18 +175,17 @@ class Evidence:
             self, times=self.times[some], given=given, held=held, allowed=allowed, own=own, known=known
         )
 
-    def unit_of(self, row: Row) -> str:
-        """The unit of a row's held numbers, in words."""
-        own = self.units.get(row, length_or_angle(row))
-        return own if self.in_our_units else "in its own unit"
-
     def in_words(self, row: Row, amount: Array | float) -> str:
         """An amount of a row with its unit, and in the one that it is given in."""
-        said = f"{_in_digits(amount)} {self.unit_of(row)}"
-        if row not in self.theirs or not self.in_our_units:
+        said = f"{_in_digits(amount)} {self.units.get(row, length_or_angle(row))}"
+        if row not in self.theirs:
             return said
         unit, factor = self.theirs[row]
         return f"{said} ({_in_digits(amount / factor)} {unit})"
+
+    def without_units(self) -> Evidence:
+        """The same after a fault of units: the held numbers are in none that is known."""
+        return replace(self, units=dict.fromkeys(self.held, "in its own unit"), theirs={})
 
     def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
         """The same with other numbers to hold the given ones against: values, and what they may differ."""
@@ -284,11 +272,7 @@ class Evidence:
             best = [row for row in self.wrong if length_or_angle(row) == of and order(row) == 0]
             if best:
                 return tuple(best)
-        return self.wrong_of(self.wrong[0][0])
-
-    def wrong_of(self, quantity: str) -> tuple[Row, ...]:
-        """The rows of a quantity that disagree."""
-        return tuple(row for row in self.wrong if row[0] == quantity)
+        return tuple(row for row in self.wrong if row[0] == self.wrong[0][0])
 
     @property
     def beside(self) -> tuple[Row, ...]:

@@ -26,7 +26,7 @@ from validate.comparison.compare import Outcome
 from validate.comparison.explanation import Explanation
 from validate.diagnosis.evidence import Evidence, Row, kind_of, order, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind
-from validate.diagnosis.kinds import KINDS, OFFSET, UNIT
+from validate.diagnosis.kinds import KINDS, UNIT
 from validate.formulations.protocol import Solution
 
 # By how many times a fault must lower a difference that it does not explain whole. What is fitted to noise
@@ -81,11 +81,12 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
         return ()
     found = list(_supposed(evidence, "numbers"))
     if evidence.other_cars and _open(evidence, found, mostly=True) and _elsewhere(evidence):
-        deep = list(_supposed(evidence, "motion"))
-        if _open(evidence, deep):
-            deep += _supposed(evidence, "car")
-        found += deep
-        for one in _ranked(deep)[:1]:
+        cars: list[_Found] = []
+        for kind in KINDS:
+            if kind.stage == "car" and _open(evidence, cars):
+                cars += _of_kind(evidence, kind)
+        found += cars
+        for one in _ranked(cars)[:1]:
             # What other faults the same car has beside it.
             left = tuple(row for row in evidence.wrong if row not in one.rows)
             if left and one.whole:
@@ -122,15 +123,19 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
     )
 
 
-def _supposed(evidence: Evidence, stage: str) -> Iterator[_Found]:
+def _supposed(evidence: Evidence, stage: str) -> list[_Found]:
     """What the numbers carry of the faults of a stage."""
-    for kind in KINDS:
-        if kind.stage == stage and (evidence.over_time or not kind.of_time):
-            # A car that cannot be solved, or gives no such numbers, explains nothing.
-            with suppress(PointcoordError):
-                for one in _merged(kind, evidence):
-                    if (carried := _carried(evidence, one)) is not None:
-                        yield carried
+    return [one for kind in KINDS if kind.stage == stage for one in _of_kind(evidence, kind)]
+
+
+def _of_kind(evidence: Evidence, kind: Kind) -> list[_Found]:
+    """What the numbers carry of the faults of a kind."""
+    found: list[_Found] = []
+    if evidence.over_time or not kind.of_time:
+        # A car that cannot be solved, or gives no such numbers, explains nothing.
+        with suppress(PointcoordError):
+            found += [one for fault in _merged(kind, evidence) if (one := _carried(evidence, fault))]
+    return found
 
 
 def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
@@ -174,8 +179,7 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
     """By what factor a fault lowers the difference of rows, both in parts of the largest number there.
 
     That rewards whatever makes theirs small beside it; so a fault counts for no more than the factor by which
-    zeros leave more than it does (of a unit with an offset, one number), and none has another unit whose
-    factor is not the one that fits them best.
+    one number leaves more than it does, and none has another unit whose factor is not the one that fits best.
     """
     would_be = {row: hypothesis.rows[row][0] for row in rows}
     ours, theirs, then = (
@@ -188,10 +192,8 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
     before, apart = float(np.abs(theirs - ours).max()) / largest, float(np.abs(theirs - then).max())
     if not apart > 0.0:
         return np.inf
-    faults = hypothesis.kind.split(" and ")
-    nothing = theirs - theirs.mean(axis=0) if UNIT in faults and OFFSET in faults else theirs
-    lowered = min(before * most / apart, float(np.abs(nothing).max()) / apart)
-    if UNIT in faults:
+    lowered = min(before * most / apart, float(np.abs(theirs - theirs.mean(axis=0)).max()) / apart)
+    if UNIT in hypothesis.kind.split(" and "):
         factor = float(np.sum(then * theirs) / np.sum(then * then))
         if apart > FITTED * float(np.abs(theirs - factor * then).max()):
             return 0.0
@@ -200,12 +202,10 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
 
 def _pairs(evidence: Evidence) -> Iterator[_Found]:
     """Two faults in the same numbers: the second in what the first makes of ours."""
-    count = len(evidence.times)
-    few = np.unique(np.linspace(0, count - 1, min(FEW, count)).astype(np.intp))
     largest = [
         max(rows, key=lambda row: np.abs(evidence.held[row]).max()) for rows in together(evidence.wrong)
     ]
-    thin = replace(evidence.at(few.tolist()), wrong=tuple(largest))
+    thin = replace(evidence.thinned(FEW), wrong=tuple(largest))
     for first in KINDS:
         if first.opens and (evidence.over_time or not first.of_time):
             promising = None if first.neighbours else {key for key, _ in _seconds(thin, first)}
@@ -227,7 +227,8 @@ def _seconds(
         if promising is not None and one.key not in promising:
             continue
         wrong = tuple(row for row in evidence.wrong if row in one.rows)
-        after = replace(evidence.after(one.rows, wrong), in_our_units=first.name != UNIT)
+        after = evidence.after(one.rows, wrong)
+        after = after.without_units() if first.name == UNIT else after
         for kind in KINDS:
             # Of two that may each be the first, in one order.
             both_ways = kind.opens and first.closes and KINDS.index(kind) <= KINDS.index(first)

@@ -47,9 +47,9 @@ class Kind:
 
     Attributes:
         name: of the kind. suppose: gives the faults of this kind that may be in the rows that disagree.
-        stage: "numbers" needs only arithmetic; "motion" solves other motions of the car; "car" other cars and
-            instants, which are left out where a motion does; "last" says little, and is tried only on what
-            nothing else explains.
+        stage: "numbers" needs only arithmetic; "car" solves other motions of the car or other cars, one kind
+            after the other until nothing is left; "last" says little, and is tried only on what nothing else
+            explains.
         opens, closes: whether it may be the first or the second of two faults in the same numbers. The second
             is sought in what the first would make of the held numbers.
         of_time: whether it makes sense of numbers over time only.
@@ -58,7 +58,7 @@ class Kind:
 
     name: str
     suppose: Callable[[Evidence], Iterator[Hypothesis]]
-    stage: Literal["numbers", "motion", "car", "last"] = "numbers"
+    stage: Literal["numbers", "car", "last"] = "numbers"
     opens: bool = False
     closes: bool = False
     of_time: bool = False

@@ -74,7 +74,9 @@ def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool],
     return np.asarray(next((near for near in rounder if fits(near)), found))
 
 
-def meant(amount: float) -> float:
-    """A number of six digits where that is nearly it."""
-    rounded = float(f"{amount:.6g}")
-    return rounded if abs(rounded - amount) <= MEANT * abs(amount) else amount
+def meant(amount: float, scale: float) -> float:
+    """What an amount is meant to be: 0, 1 or -1, or a number of six digits, where that is nearly it."""
+    near = (0.0, 1.0, -1.0, float(f"{amount:.6g}"))
+    sizes = (scale, 1.0, 1.0, abs(amount))
+    found = zip(near, sizes, strict=True)
+    return next((one for one, size in found if abs(amount - one) <= MEANT * size), amount)

@@ -58,10 +58,6 @@ LEAST = {"mm": 1e-4, "rad": 3e-7}
 ENOUGH = 1e-9
 SETTLED = 0.01
 CONFIDENCE = 0.95
-# Of the bounds, or of the prior if that is less: how far a correction may go along what the file cannot see,
-# where it is asked what the file alone knows. So a coordinate is unknown that has a quarter of such a
-# combination.
-OPEN = 4.0
 MOST_SOLVES = 60
 NAMED = 3  # rows that are left out, one by one
 AT_A_BOUND = 1e-9  # of the bounds, within which a correction lies on one
@@ -125,7 +121,7 @@ class Fit:
 
     Attributes:
         scene: corrected.
-        coordinates: by name. unknown: those that the file alone does not know to within bounds and prior.
+        coordinates: by name.
         columns: of the file.
         combinations: of the corrections, the best known first.
         factor: f above: how much more is left than the digits explain.
@@ -138,7 +134,6 @@ class Fit:
 
     scene: Scene
     coordinates: dict[str, Coordinate]
-    unknown: tuple[str, ...]
     columns: tuple[Fitted, ...]
     combinations: tuple[Combination, ...]
     factor: float
@@ -263,58 +258,39 @@ def fit_hardpoints(
     matrix = np.asarray(solved.jac)[: len(after)]
     _, singular, turned = np.linalg.svd(matrix, full_matrices=True)
     singular = np.concatenate([singular, np.zeros(len(zero) - len(singular))])
-    held: Bools = np.abs(amounts) >= (1.0 - AT_A_BOUND) * bounds
-    _, own, directions = np.linalg.svd(matrix[:, ~held], full_matrices=True)
-    own = np.concatenate([own, np.zeros(int((~held).sum()) - len(own))])
+    loose: Bools = np.abs(amounts) < (1.0 - AT_A_BOUND) * bounds
+    _, own, directions = np.linalg.svd(matrix[:, loose], full_matrices=True)
+    own = np.concatenate([own, np.zeros(int(loose.sum()) - len(own))])
     freedom = len(after) - int((own > 1.0 / bounds).sum())
     factor = max(1.0, math.sqrt(float(after @ after) / freedom) if freedom > 0 else 1.0)
-
-    def deviations(beside: float) -> Array:
-        """Of corrections that are on no bound, where they are known to so many mm beside the file."""
-        found = np.zeros(len(zero))
-        found[~held] = np.sqrt(directions.T**2 @ (1.0 / ((own / factor) ** 2 + beside**-2)))
-        return found
-
+    deviations = np.zeros(len(zero))
+    deviations[loose] = np.sqrt(directions.T**2 @ (1.0 / ((own / factor) ** 2 + prior**-2)))
+    tail = 0.5 * (1.0 + CONFIDENCE)
+    half = deviations * float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail))
+    drawn = np.array([_place(scene, name) for name in curves.free])
+    low, high = np.maximum(amounts - half, -bounds), np.minimum(amounts + half, bounds)
+    known = (part.tolist() for part in (drawn, amounts, drawn + amounts, deviations, low, high, ~loose))
+    coordinates = [Coordinate(*one) for one in zip(*known, strict=True)]
     with np.errstate(divide="ignore"):
         by_file = factor / singular
-    known = min(bounds, prior)  # beforehand
-    tail = 0.5 * (1.0 + CONFIDENCE)
-    half = float(stdtrit(freedom, tail) if factor > 1.0 else ndtri(tail))
+    combinations = [
+        Combination(w, d, d < min(bounds, prior), dict(zip(curves.free, row, strict=True)))
+        for row, w, d in zip(turned.tolist(), singular.tolist(), by_file.tolist(), strict=True)
+    ]
     better = lsq_linear(solved.jac, -rest, bounds=(-bounds - amounts, bounds - amounts))
     return Fit(
-        curves.design(amounts),
-        {
-            name: Coordinate(
-                (at := _place(scene, name)),
-                a,
-                at + a,
-                d,
-                max(a - half * d, -bounds),
-                min(a + half * d, bounds),
-                on,
-            )
-            for name, a, d, on in zip(
-                curves.free, amounts.tolist(), deviations(prior).tolist(), held.tolist(), strict=True
-            )
-        },
-        tuple(
-            name for name, alone in zip(curves.free, deviations(OPEN * known), strict=True) if alone >= known
-        ),
-        _columns(measured, used, gap(first), after * spread, spread),
-        tuple(
-            Combination(
-                float(w), float(d), bool(d < known), dict(zip(curves.free, row.tolist(), strict=True))
-            )
-            for row, w, d in zip(turned, singular, by_file, strict=True)
-        ),
-        factor,
-        freedom,
-        bounds,
-        prior,
-        bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
-        int(solved.nfev),
-        tuple(failures),
-        (*left_out, *_notes(curves, start)),
+        scene=curves.design(amounts),
+        coordinates=dict(zip(curves.free, coordinates, strict=True)),
+        columns=_columns(measured, used, gap(first), after * spread, spread),
+        combinations=tuple(combinations),
+        factor=factor,
+        freedom=freedom,
+        bounds=bounds,
+        prior=prior,
+        converged=bool(float(rest @ rest) - 2.0 * float(better.cost) <= SETTLED * factor**2),
+        solves=int(solved.nfev),
+        failures=tuple(failures),
+        notes=(*left_out, *_notes(curves, start)),
     )
 
 

@@ -42,7 +42,6 @@ def text_of(fit: Fit, name: str, source: str) -> str:
     width = max(len(at) for at in fit.coordinates)
     for at, one in fit.coordinates.items():
         known = f"+- {one.deviation:.2g}   {one.low:+z.4f} to {one.high:+z.4f}"
-        known += "   not known from these data" if at in fit.unknown else ""
         known = "  on its bound, and held there" if one.on_bound else known
         lines.append(f"    {at.ljust(width)} {one.correction:+z10.4f} {known}")
     head = "  singular values of the scaled Jacobian, 1/mm, and how well each combination is known, mm"

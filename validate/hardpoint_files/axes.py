@@ -34,7 +34,7 @@ ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".jo
 class Axes:
     """Where the x, y and z of a file point."""
 
-    directions: tuple[str, str, str]
+    directions: tuple[str, ...]
 
     @classmethod
     def of(cls, words: str | Sequence[str]) -> Axes:
@@ -47,8 +47,7 @@ class Axes:
         if sorted(DIRECTIONS.get(word, (-1, 0))[0] for word in found) != [0, 1, 2]:
             text = words if isinstance(words, str) else ",".join(found)
             raise UsageError(f"axes are {text!r}; allowed: {ALLOWED}; each line of the car once")
-        x, y, z = found
-        return cls((x, y, z))
+        return cls(tuple(found))
 
     @property
     def words(self) -> str:
@@ -63,16 +62,13 @@ class Axes:
     @property
     def other_handed(self) -> Axes:
         """The same axes with left for right."""
-        x, y, z = ({"left": "right", "right": "left"}.get(word, word) for word in self.directions)
-        return Axes((x, y, z))
+        other = {"left": "right", "right": "left"}
+        return Axes(tuple(other.get(word, word) for word in self.directions))
 
     @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
-        turned = np.zeros((3, 3))
-        for row, word in zip(turned, self.directions, strict=True):
-            at, sign = DIRECTIONS[word]
-            row[at] = sign
+        turned = [np.eye(3)[at] * sign for at, sign in map(DIRECTIONS.__getitem__, self.directions)]
         return bool(np.linalg.det(turned) > 0.0)
 
     def to_scene(self, place: Place, unit: str) -> Place:

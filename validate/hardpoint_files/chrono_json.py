@@ -1,8 +1,8 @@
 """A suspension of Project Chrono, or a vehicle that names some: JSON, with comments as Chrono allows them.
 
 A point is a key `Location ...` or `COM` of a part, with three numbers; here it is called `Part: Key`.
-A vehicle names the files of its suspensions and steering from Chrono's folder of data, and puts each
-suspension at a place of its chassis (WheeledVehicle.cpp).
+A vehicle names the files of its suspensions from Chrono's folder of data, and puts each suspension at a
+place of its chassis (WheeledVehicle.cpp). What steers an axle is not read: here it is a straight rack.
 """
 
 from __future__ import annotations
@@ -14,44 +14,41 @@ from dataclasses import dataclass, replace
 from decimal import Decimal, DecimalException
 from math import cos, radians, sin
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, finite, short
+from validate.hardpoint_files.contents import (
+    Axle,
+    Contents,
+    FilePoint,
+    Place,
+    SpinAxis,
+    number_of,
+    place_of,
+    short,
+)
 from validate.tables.errors import FileError
 
 CAMBER, TOE = "Camber Angle (deg)", "Toe Angle (deg)"
 FORM = "JSON of a Project Chrono suspension"
 KINDS = "Type Suspension with a Template, or Type Vehicle with Template WheeledVehicle"
 AXLES, SUSPENSION, PLACE = "Axles", "Suspension Input File", "Suspension Location"
-STEERINGS, STEERING, ORIENTATION = "Steering Subsystems", "Steering Index", "Orientation"
-RACK = "RackPinion"
-# A printed quaternion has some eight digits.
-ACROSS = 1e-6
+STEERED = "the tie rod's inner end runs along a straight rack across the car, whatever steering the car has"
 # A text in quotes, which is kept, or a comment.
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
 
-def _blank(found: re.Match[str]) -> str:
+def _without_comment(found: re.Match[str]) -> str:
     """Texts as they are; comments as the line breaks in them."""
     return found[0] if found[0].startswith('"') else "\n" * found[0].count("\n") + " "
 
 
-def _no_number(word: str) -> NoReturn:
-    raise ValueError(f"{word} is no number")
-
-
 @dataclass(frozen=True)
 class _Json:
-    """A file.
-
-    Attributes:
-        data: what it holds. text: the same as it is written, without comments.
-    """
+    """A file, and what it holds."""
 
     source: str
     data: Mapping[str, Any]
-    text: str
 
     @classmethod
     def of(cls, text: str, source: str) -> _Json:
@@ -60,74 +57,54 @@ class _Json:
         Raises:
             FileError: it is no JSON, or no table.
         """
-        clean = _COMMENT.sub(_blank, text)
+        clean = _COMMENT.sub(_without_comment, text)
         try:
-            data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=_no_number)
+            data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=Decimal)
         except json.JSONDecodeError as error:
             raise FileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
         except (ValueError, RecursionError, DecimalException) as error:
             raise FileError(source, 0, f"is no JSON: {error}", FORM) from None
         if not isinstance(data, dict):
             raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
-        return cls(source, data, clean)
+        return cls(source, data)
 
     @property
-    def called(self) -> tuple[Any, Any]:
-        """Its type and its template, of which either may be anything."""
-        return self.data.get("Type"), self.data.get("Template")
+    def template(self) -> Any:
+        """What kind it is of its type; anything."""
+        return self.data.get("Template")
 
-    def refuse(self, told: str, allowed: str, *keys: str) -> FileError:
-        """What is wrong at the place of keys."""
-        return FileError(self.source, self.line(*keys), told, allowed)
+    @property
+    def is_suspension(self) -> bool:
+        """Whether it is a suspension of some kind."""
+        return self.data.get("Type") == "Suspension" and bool(self.template)
 
-    def line(self, *keys: str) -> int:
-        """The line of a key inside others; 0 if it is not there as written."""
-        at = 0
-        for key in keys:
-            written = re.escape(json.dumps(key, ensure_ascii=False))
-            found = re.compile(written + r"\s*:").search(self.text, at) or re.compile(written).search(
-                self.text, at
-            )
-            if found is None:
-                return 0
-            at = found.start()
-        return self.text.count("\n", 0, at) + 1
+    def refuse(self, told: str, allowed: str) -> FileError:
+        return FileError(self.source, 0, told, allowed)
 
-    def named(self, name: object, place: str, *keys: str) -> _Json:
+    def named(self, name: object, place: str) -> _Json:
         """The file that it names at a place, from the nearest folder above it that has one of that name."""
         if not isinstance(name, str):
-            raise self.refuse(f"has no {place}", "the name of a file", *keys)
+            raise self.refuse(f"has no {place}", "the name of a file")
         paths = (folder / name for folder in Path(self.source).absolute().parents)
         path = next((path for path in paths if path.is_file()), None)
         if path is None:
             told = f"names {short(name)}, which is in none of the folders above it"
             allowed = "a vehicle in Chrono's folder of data with the files that it names"
-            raise self.refuse(told, f"{allowed}, or a suspension's own file", name)
+            raise self.refuse(told, f"{allowed}, or a suspension's own file")
         data = read_file(path, f"the path of a file that {self.source} names")
         return _Json.of(data.decode("utf-8-sig", "replace"), str(path))
 
-    def numbers(self, value: object, axes: str, name: str, *keys: str) -> list[Decimal]:
-        """A number for each axis, which are called so together."""
-        name, words = short(name), {3: "three", 4: "four"}[len(axes)]
-        if not isinstance(value, list) or len(value) != len(axes):
-            told = f"{len(value)} values" if isinstance(value, list) else f"{short(str(value))}"
-            raise self.refuse(f"{name} has {told}", f"a list of {words} numbers", *keys)
-        for axis, number in zip(axes, value, strict=True):
-            if not isinstance(number, Decimal):
-                raise self.refuse(f"{axis} of {name} is {short(str(number))}", "a number", *keys)
-            finite(number, self.source, self.line(*keys), f"{axis} of {name}")
-        return value
-
-    def place(self, value: object, name: str, *keys: str) -> Place:
+    def place(self, value: object, name: str) -> Place:
         """Three coordinates."""
-        x, y, z = self.numbers(value, "xyz", name, *keys)
-        return x, y, z
+        if not isinstance(value, list):
+            raise self.refuse(f"{short(name)} has {short(str(value))}", "a list of three numbers")
+        return place_of(value, self.source, 0, name)
 
     def angle(self, key: str) -> float:
         """An angle at a key, rad; 0 if it is not there."""
-        value = self.data.get(key, Decimal(0))
-        if not isinstance(value, Decimal) or not abs(finite(value, self.source, self.line(key), key)) < 90:
-            raise self.refuse(f"{key} is {short(str(value))}", "an angle below 90 deg", key)
+        value = number_of(self.data.get(key, 0), self.source, 0, key)
+        if not abs(value) < 90:
+            raise self.refuse(f"{key} is {value}", "an angle below 90 deg")
         return radians(float(value))
 
 
@@ -139,33 +116,18 @@ def read(text: str, source: str) -> Contents:
             file that is not there.
         SceneError: a file that it names cannot be read.
     """
-    file, on_the_way = _Json.of(text, source), {source}
-    while not _is_suspension(file):
-        # A simulation's own files name the vehicle.
-        within = file.data.get("Vehicle")
-        name = within.get("Input File") if isinstance(within, dict) else file.data.get("Vehicle Input File")
-        inner = file.named(name, "vehicle") if isinstance(name, str) else file
-        if inner.source in on_the_way:
-            return _vehicle(file)
-        on_the_way.add(inner.source)
-        file = inner
+    file = _Json.of(text, source)
+    if not file.is_suspension:
+        return _vehicle(file)
     points, axle = _suspension(file)
-    notes = (
-        "points are in the frame of the suspension, which the car's own file puts somewhere",
-        "the tie rod's inner end runs along a rack, whatever steering the car's own file has",
-    )
-    return Contents(tuple(points), {"": replace(axle, notes=notes)})
-
-
-def _is_suspension(file: _Json) -> bool:
-    kind, template = file.called
-    return kind == "Suspension" and isinstance(template, str) and bool(template)
+    framed = "points are in the frame of the suspension, which the car's own file puts somewhere"
+    return Contents(tuple(points), {"": replace(axle, notes=(framed, STEERED))})
 
 
 def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
     """The points of a suspension, and its spin axis."""
     points = [
-        FilePoint(f"{part}: {key}", file.place(value, f"{part}: {key}", part, key), file.line(part, key))
+        FilePoint(f"{part}: {key}", file.place(value, f"{part}: {key}"))
         for part, keys in file.data.items()
         if isinstance(keys, dict)
         for key, value in keys.items()
@@ -178,7 +140,7 @@ def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
         f"{key} {file.data[key]}" if key in file.data else f"no {key}, which is 0 then"
         for key in (CAMBER, TOE)
     )
-    return points, Axle(file.called[1], {}, SpinAxis(axis, " and ".join(taken)))
+    return points, Axle(str(file.template), {}, SpinAxis(axis, " and ".join(taken)))
 
 
 # A vehicle, and the files that it names.
@@ -186,38 +148,32 @@ def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
 
 def _vehicle(file: _Json) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
-    (kind, template), axles = file.called, file.data.get(AXLES)
+    kind, axles = file.data.get("Type"), file.data.get(AXLES)
     if kind != "Vehicle" or not isinstance(axles, list):
-        told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(template))}"
-        if not isinstance(kind, str):
-            told = "is JSON without a Type, which every file of Chrono's has"
-        raise file.refuse(told, KINDS, "Type")
+        told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(file.template))}"
+        raise file.refuse(told, KINDS)
     if not axles or not all(isinstance(axle, dict) for axle in axles):
-        raise file.refuse(f"has no {AXLES}", f"one with {SUSPENSION} each", AXLES)
-    places = [
-        file.place(axle.get(PLACE), f"{PLACE} of axle {number}", PLACE)
-        for number, axle in enumerate(axles, 1)
-    ]
+        raise file.refuse(f"has no {AXLES}", f"one with {SUSPENSION} each")
+    places = [file.place(axle.get(PLACE), f"{PLACE} of axle {i}") for i, axle in enumerate(axles, 1)]
     points: list[FilePoint] = []
     read: dict[str, Axle] = {}
     for label, axle, place in zip(_labels(places), axles, places, strict=True):
         if place[1]:
             told = f"{PLACE} of its {label} axle has y {place[1]}, beside the middle of the car"
-            raise file.refuse(told, "y 0", PLACE)
-        own = file.named(axle.get(SUSPENSION), f"{SUSPENSION} of an axle", AXLES)
-        if not _is_suspension(own):
-            told = f"is of Type {short(str(own.called[0]))}, and {file.source} has it as a suspension"
-            raise own.refuse(told, "Type Suspension with a Template", "Type")
+            raise file.refuse(told, "y 0")
+        own = file.named(axle.get(SUSPENSION), f"{SUSPENSION} of an axle")
+        if not own.is_suspension:
+            told = f"is of Type {short(str(own.data.get('Type')))}, and {file.source} has it as a suspension"
+            raise own.refuse(told, "Type Suspension with a Template")
         theirs, alone = _suspension(own)
         for point in theirs:
             x, y, z = (a + b for a, b in zip(point.place, place, strict=True))
             points.append(replace(point, part=label, place=(x, y, z)))
-        steered, doubts = _steering(axle, file)
         moved = (
-            f"points and their lines are those of {own.source}, moved by its {PLACE} "
+            f"points are those of {own.source}, moved by its {PLACE} "
             f"{[float(n) for n in place]} m into the frame of the chassis"
         )
-        read[label] = replace(alone, notes=(moved, steered), doubts=doubts)
+        read[label] = replace(alone, notes=(moved, STEERED))
     return Contents(tuple(points), read)
 
 
@@ -229,37 +185,3 @@ def _labels(places: Sequence[Place]) -> list[str]:
         ahead = places[0][0] > places[1][0]
         return ["front", "rear"] if ahead else ["rear", "front"]
     return [str(number) for number, _ in enumerate(places, 1)]
-
-
-def _steering(axle: Mapping[str, Any], file: _Json) -> tuple[str, tuple[str, ...]]:
-    """What moves the inner end of an axle's tie rods, and what may be another motion than our rack's."""
-    index, steerings = axle.get(STEERING), file.data.get(STEERINGS)
-    # Chrono's -1 is an axle that is not steered.
-    if index is None or index == -1:
-        return (
-            "the axle is not steered: the chassis holds the tie rod's inner end, as an unmoved rack does",
-            (),
-        )
-    there = steerings if isinstance(steerings, list) else []
-    if not isinstance(index, Decimal) or index != int(index) or not 0 <= index < len(there):
-        told = f"{STEERING} is {short(str(index))}, but there are {len(there)} {STEERINGS}"
-        raise file.refuse(told, "the number of one, from 0", STEERING)
-    one = there[int(index)] if isinstance(there[int(index)], dict) else {}
-    name = one.get("Input File")
-    kind = short(str(file.named(name, f"Input File of {STEERINGS} {index}", STEERINGS).called[1]))
-    if kind != short(RACK):
-        note = f"it is steered by a {kind} ({name}), here by a straight rack"
-        return note, (
-            f"{note}, which moves the tie rod's inner end otherwise once it is steered; "
-            "with the rack as drawn they are the same",
-        )
-    turned = one.get(ORIENTATION, [Decimal(1), Decimal(0), Decimal(0), Decimal(0)])
-    w, x, y, z = (float(n) for n in file.numbers(turned, "wxyz", ORIENTATION, ORIENTATION))
-    # The rack slides along its own y axis (ChRackPinion.cpp), turned by the quaternion.
-    along = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
-    note = f"it is steered by a {kind} ({name}), which moves the tie rod's inner end across the car, as here"
-    if abs(along[0]) <= ACROSS and abs(along[2]) <= ACROSS:
-        return note, ()
-    words = ", ".join(f"{part:.6g}" for part in along)
-    note = f"it is steered by a {kind} ({name}) that runs along {words}, here straight across the car"
-    return note, (f"{note}; with the rack as drawn they are the same",)

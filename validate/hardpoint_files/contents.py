@@ -24,23 +24,32 @@ class FilePoint:
     Attributes:
         name: what the file calls it.
         place: its coordinates in the file's axes and unit.
-        line: where it is, counted from 1.
+        line: where it is, counted from 1; 0 where a file has no lines to speak of.
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        error: why it is no point; None of one. value: the first number that such a line has, if any.
+        error: why it is no point; None of one.
     """
 
     name: str
     place: Place
-    line: int
+    line: int = 0
     side: str = ""
     part: str = ""
     error: FileError | None = None
-    value: str = ""
 
     def of(self, part: str, side: str) -> bool:
         """Whether it may belong to that wheel; an empty axle or side leaves it open."""
         return all(mine in ("", its) or not its for mine, its in ((self.part, part), (self.side, side)))
+
+    @property
+    def source(self) -> str:
+        """Its name and its line."""
+        return f"{self.name}, line {self.line}" if self.line else self.name
+
+    @property
+    def told(self) -> str:
+        """The same in a sentence."""
+        return short(self.name) + (f" on line {self.line}" if self.line else "")
 
 
 @dataclass(frozen=True)
@@ -59,14 +68,13 @@ class Axle:
         called: what it calls the suspension; empty if it does not say.
         angles: static angles that it prints, by its own words, deg, each with its line.
         spin_axis: where its wheel's spin axis points, if said without a point.
-        notes: what the user should know of its points. doubts: what may make them another car than is meant.
+        notes: what the user should know of its points.
     """
 
     called: str = ""
     angles: Mapping[str, tuple[Decimal, int]] = field(default_factory=dict)
     spin_axis: SpinAxis | None = None
     notes: tuple[str, ...] = ()
-    doubts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -74,60 +82,50 @@ class Contents:
     """A file, read.
 
     Attributes:
-        points: in the order of the file.
+        points: in the order of the file, lines that hold none among them.
         axles: by part; what is said of the whole file under the empty one.
-        unit: of its lengths, if it says so.
-        axes: where x, y and z point, if it says so.
-        spoilt: lines that hold no point; right unless they are called like one.
+        unit: of its lengths, if it says so. axes: where x, y and z point, if it says so.
     """
 
     points: tuple[FilePoint, ...]
     axles: Mapping[str, Axle] = field(default_factory=dict)
     unit: str = ""
     axes: tuple[str, ...] = ()
-    spoilt: tuple[FilePoint, ...] = ()
 
     def axle(self, part: str) -> Axle:
         """What is said of an axle, or else of the whole file."""
         return self.axles.get(part) or self.axles.get("", Axle())
 
 
-def decimal_of(text: str, source: str, line: int, what: str) -> Decimal:
+def number_of(value: object, source: str, line: int, what: str) -> Decimal:
     """A finite number with the digits of its text.
 
     Raises:
-        FileError: it is none.
+        FileError: it is none, or farther off than any car.
     """
     try:
-        number = Decimal(text.strip())
+        number = Decimal(value.strip() if isinstance(value, str) else str(value))
     except InvalidOperation:
-        raise FileError(source, line, f"{what} is {short(text)}", "a number") from None
-    return finite(number, source, line, what)
+        number = Decimal("nan")
+    # The exponent too: 1e-999999999 compares as small and has a billion digits.
+    if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
+        raise FileError(source, line, f"{what} is {short(str(value))}", "a number up to 1e9")
+    return number
 
 
-def place_of(numbers: Sequence[str], source: str, line: int, name: str) -> Place:
+def place_of(numbers: Sequence[object], source: str, line: int, name: str) -> Place:
     """Three coordinates with the digits of their texts.
 
     Raises:
-        FileError: one is no number.
+        FileError: one is no number, or there are not three.
     """
+    if len(numbers) != 3:
+        raise FileError(source, line, f"has {len(numbers)} numbers for {short(name)}", "x, y and z")
     x, y, z = (
-        decimal_of(number, source, line, f"{axis} of {short(name)}")
+        number_of(number, source, line, f"{axis} of {short(name)}")
         for axis, number in zip("xyz", numbers, strict=True)
     )
     return x, y, z
-
-
-def finite(number: Decimal, source: str, line: int, what: str) -> Decimal:
-    """A number that a coordinate or an angle can be.
-
-    Raises:
-        FileError: it is not finite, or farther off than any car.
-    """
-    # The exponent first: 1e-999999999 compares as small and has a billion digits.
-    if not number.is_finite() or number.copy_abs() > FARTHEST or int(number.as_tuple().exponent) < -1100:
-        raise FileError(source, line, f"{what} is {short(str(number))}", "a number up to 1e9")
-    return number
 
 
 def plain(name: str) -> str:
@@ -135,12 +133,11 @@ def plain(name: str) -> str:
     return " ".join(re.findall(r"[^\W_]+", name.casefold()))
 
 
-def words_of(text: str) -> frozenset[str]:
-    """The words of a text."""
-    return frozenset(plain(text).split())
+def words_of(name: str) -> list[str]:
+    """The words of a name, of which `lowerWishbone` has two."""
+    return plain(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)).split()
 
 
 def short(text: str) -> str:
     """A text of a file in at most 60 characters, in quotes."""
-    quoted = repr(text if len(text) <= 60 else text[:57] + "...")
-    return shown(quoted)
+    return shown(repr(text if len(text) <= 60 else text[:57] + "..."))

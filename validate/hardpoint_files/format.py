@@ -18,7 +18,7 @@ from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file
 from validate.hardpoint_files import chrono_json, columns, lotus_report
 from validate.hardpoint_files.axes import Axes
-from validate.hardpoint_files.contents import Contents, plain
+from validate.hardpoint_files.contents import Contents, plain, words_of
 from validate.tables.errors import FileError
 
 FORMATS = Path(__file__).parent / "formats"
@@ -33,40 +33,23 @@ FORMS: Mapping[str, Callable[..., Contents]] = {
 HEAD = 4000
 
 
-class Names(BaseModel):
-    """A suspension in the words of a format.
-
-    Attributes:
-        called: what the format calls it, for people, with a pattern of each; empty if it does not say.
-        names: what it calls each of our points, any of several names, beside those that the format has.
-        notes: what the user should know of these points.
-    """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    called: dict[str, str] = {}
-    names: dict[str, tuple[str, ...]] = {}
-    notes: tuple[str, ...] = ()
-
-
 class Format(BaseModel):
     """A format, as its table says it.
 
     Attributes:
         name: what the command line calls it. words: the same for people.
         known_by: a pattern by which the beginning of a file shows it; empty fits every file.
-        axes, unit: of a file that does not say.
+        axes: of a file that does not say, by a pattern of names that tell them; empty if every file has them.
+        unit: of a file that does not say.
         side: the wheel whose points it gives, whatever their signs say; empty if it gives either.
-        axes_told_by: a pattern of names that tell these axes; empty if every file of the format has them.
         vocabulary: by words of its names, others for these; words that say nothing are others for the empty
             text. None at all if names are as they are listed.
-        refused: a pattern of files of the same program that are not read. refused_words: what they are.
         angles: for our names, a pattern of its own words for a static angle.
-        not_needed: patterns of names that are known and hold nothing that moves the wheel.
         our_own_names: whether its points may have our own names, and words for a wheel before or after a
             name; where all have our own, its axes are ours as well.
         names: what it calls our points in every suspension that has them.
-        suspensions: by our name of each.
+        suspensions: the same by our type of suspension. called: our type, by a pattern of its own words for
+            it. notes: what the user should know of the points of each.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -75,16 +58,14 @@ class Format(BaseModel):
     words: str
     form: str
     known_by: str
-    axes: Annotated[Axes, BeforeValidator(Axes.of)]
+    axes: dict[str, Annotated[Axes, BeforeValidator(Axes.of)]]
     unit: str
-    not_needed: tuple[str, ...]
-    suspensions: dict[str, Names]
+    suspensions: dict[str, dict[str, tuple[str, ...]]]
+    called: dict[str, str] = {}
+    notes: dict[str, str] = {}
     names: dict[str, tuple[str, ...]] = {}
     side: str = ""
-    axes_told_by: str = ""
     vocabulary: dict[str, tuple[str, ...]] = {}
-    refused: str = ""
-    refused_words: str = ""
     angles: dict[str, str] = {}
     our_own_names: bool = False
 
@@ -93,7 +74,7 @@ class Format(BaseModel):
         if kind not in self.suspensions:
             return {}
         shared = {ours: self.names[ours] for ours in mechanism_file(kind).points if ours in self.names}
-        return shared | self.suspensions[kind].names
+        return shared | self.suspensions[kind]
 
     @cached_property
     def _phrases(self) -> dict[tuple[str, ...], tuple[str, ...]]:
@@ -111,35 +92,19 @@ class Format(BaseModel):
         these are the same: a word too many, such as that of a damper, is another point, and so is one said
         twice, as in `Rear upper rear pivot`.
         """
-        left = plain(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)).split()
+        left, found = words_of(name), list[str]()
         longest = max(map(len, self._phrases), default=1)
-        found: list[str] = []
         while left:
-            size = next(
-                (n for n in range(min(longest, len(left)), 0, -1) if tuple(left[:n]) in self._phrases), 0
-            )
-            found += self._phrases[tuple(left[:size])] if size else left[:1]
-            left = left[max(size, 1) :]
+            phrases = (tuple(left[:size]) for size in range(longest, 0, -1))
+            known = next((phrase for phrase in phrases if phrase in self._phrases), None)
+            found += left[:1] if known is None else self._phrases[known]
+            left = left[1 if known is None else len(known) :]
         return tuple(sorted([word for word in found if not word.isdigit()] or found))
 
-    def called(self, said: str) -> str | None:
+    def kind_called(self, said: str) -> str | None:
         """Our type of the suspension that a file calls so; None if it is none of ours."""
-        return next(
-            (
-                kind
-                for kind, words in self.suspensions.items()
-                if any(re.fullmatch(pattern, said, re.IGNORECASE) for pattern in words.called.values())
-            ),
-            None,
-        )
-
-    @property
-    def known_suspensions(self) -> str:
-        """The suspensions that this format has, in its own words and ours."""
-        return ", ".join(
-            f"{' or '.join(words.called)} ({kind})" if words.called else kind
-            for kind, words in self.suspensions.items()
-        )
+        found = (k for pattern, k in self.called.items() if re.fullmatch(pattern, said, re.IGNORECASE))
+        return next(found, None)
 
     def read(self, text: str, source: str, said: Mapping[str, str | int]) -> Contents:
         """What a file of this format holds.
@@ -151,11 +116,7 @@ class Format(BaseModel):
         """
         if said and self.form != "columns":
             raise FileError(source, 0, f"is a {self.words}", "[table] in a file of names for tables")
-        return FORMS[self.form](text, source, said) if said else FORMS[self.form](text, source)
-
-    def holds_nothing(self, name: str) -> bool:
-        """Whether a point of this name is known and not needed."""
-        return any(re.fullmatch(pattern, plain(name)) for pattern in self.not_needed)
+        return FORMS[self.form](text, source, *([said] if said else []))
 
 
 @lru_cache
@@ -168,19 +129,13 @@ def formats() -> Mapping[str, Format]:
     return {one.name: one for one in sorted(found, key=lambda one: (not one.known_by, one.name))}
 
 
-def format_of(text: str, name: str | None, source: str) -> Format:
+def format_of(text: str, name: str | None) -> Format:
     """The format that is named, or the first that the beginning of a text shows.
 
     Raises:
         UnknownName: there is none of that name.
-        FileError: it is a file of a known program that is not read.
     """
     known = formats()
-    for one in known.values():
-        if one.refused and re.search(one.refused, text):
-            raise FileError(source, 0, f"is {one.refused_words}", f"a {one.words}")
-    if name is not None:
-        if name not in known:
-            raise UnknownName("format", name, known)
-        return known[name]
-    return next(one for one in known.values() if re.search(one.known_by, text[:HEAD]))
+    if name is not None and name not in known:
+        raise UnknownName("format", name, known)
+    return known[name] if name else next(f for f in known.values() if re.search(f.known_by, text[:HEAD]))

@@ -70,12 +70,12 @@ class Choices:
 
     def __post_init__(self) -> None:
         allowed: dict[str, Iterable[str]] = {"suspension": shipped(), "side": SIDES, "unit": LENGTHS}
+        if self.part is not None and not self.part.isdecimal():
+            allowed["part"] = (*PARTS, "1", "2", "3")
         for kind, names in allowed.items():
             chosen = getattr(self, kind)
             if chosen is not None and chosen not in names:
                 raise UnknownName(kind, chosen, names)
-        if self.part is not None and not self.part.isdecimal() and self.part not in PARTS:
-            raise UnknownName("part", self.part, (*PARTS, "1", "2", "3"))
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Imported:
     Attributes:
         scene: checked, with a bounce. text: the same as a scene file, with a comment for each point.
         points: of the scene, in its axes, with where each comes from.
-        not_needed: points of the file that are known and hold nothing. unknown: points that are not known.
+        others: points of the file that are none of ours.
         angles: static angles that the file prints, held to the drawing's.
         stands: the drawing, closed. facts: what was taken for granted, in words.
         doubts: what looks wrong and was taken as the user said it.
@@ -95,8 +95,7 @@ class Imported:
     scene: Scene
     text: str
     points: tuple[ScenePoint, ...]
-    not_needed: tuple[FilePoint, ...]
-    unknown: tuple[FilePoint, ...]
+    others: tuple[FilePoint, ...]
     angles: tuple[AngleCheck, ...]
     stands: Standing
     facts: tuple[str, ...]
@@ -143,7 +142,7 @@ def _opened(source: str, choices: Choices) -> tuple[Format, str]:
     text = text_of(read_file(source, "the path of a file of hardpoints"))
     if text is None:
         raise FileError(source, 0, "is no text", "a text file; of a workbook, one sheet saved as CSV")
-    return format_of(text, choices.format, source), text
+    return format_of(text, choices.format), text
 
 
 @dataclass(frozen=True)
@@ -151,14 +150,13 @@ class _Wheel:
     """The points of one wheel.
 
     Attributes:
-        ours: by our names. others: the file's others.
-        values: lines without a point that give a number, in words.
+        ours: by our names. others: the file's others. lines: those without a point, in words.
         part, side: its axle and side, by the file; empty where that does not say.
     """
 
     ours: Mapping[str, FilePoint]
     others: tuple[FilePoint, ...]
-    values: tuple[str, ...]
+    lines: str
     part: str
     side: str
 
@@ -187,7 +185,7 @@ class _Import:
         return FileError(self.source, line, problem, allowed)
 
     def result(self) -> Imported:
-        kind, topology = self.kind, self.topology
+        kind, topology, choices = self.kind, self.topology, self.choices
         if not (topology.wheel_axis and topology.inboard):
             raise self.refuse(
                 f"is read as {kind}, whose file names no wheel: the roles wheel_axis and inboard",
@@ -198,23 +196,21 @@ class _Import:
         axis = self.spin_axis(axle)
         self.require_all(wheel, axis)
         axes, axes_by, doubted = self.axes(wheel)
-        unit = self.unit()
-        doubts = [*axle.doubts, *doubted, *self.against_unit(unit, wheel)]
+        unit, unit_by = self.unit()
+        doubts = [*doubted, *self.against_unit(unit, wheel)]
+        if not axes.right_handed:
+            doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         turned = {name: axes.to_scene(place, unit) for name, place in wheel.places.items()}
         side = self.side(wheel, turned, axes)
         points = self.placed(wheel, turned, axis, side)
-        unit_by = "the file" if self.contents.unit else "--unit" if self.choices.unit else "its format"
         facts = [
             f"the file's axes are {axes.words}, by {axes_by}, in {unit}, by {unit_by}; "
             "here x rearward, y right, z up, in mm",
             *axle.notes,
+            *([self.format.notes[kind]] if kind in self.format.notes else []),
+            *([f"lines without a point: {wheel.lines}"] if wheel.lines else []),
         ]
-        facts += self.format.suspensions[kind].notes if kind in self.format.suspensions else ()
-        if wheel.values:
-            facts.append(f"lines without a point: {some_of(wheel.values, NAMED)}")
-        if not axes.right_handed:
-            doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
-        if self.choices.mirror:
+        if choices.mirror:
             facts.append(f"the file's wheel is a {side} one; here it is mirrored in the middle of the car")
             side = SIDES[side == "left"]
             points = {name: point.mirrored for name, point in points.items()}
@@ -233,8 +229,7 @@ class _Import:
             scene=scene,
             text=scene_text(self.source, *words),
             points=tuple(points.values()),
-            not_needed=tuple(point for point in wheel.others if self.holds_nothing(point)),
-            unknown=tuple(point for point in wheel.others if not self.holds_nothing(point)),
+            others=wheel.others,
             angles=tuple(angles),
             stands=stands,
             facts=tuple(facts),
@@ -251,12 +246,12 @@ class _Import:
         if called := self.called:
             part = self.one_of("part", "axle", self.choices.part, {*called})
             said = called.get(part) or next(iter(called.values()))
-            kind = self.format.called(said)
-            if kind is not None:
+            if kind := self.format.kind_called(said):
                 return kind
+            known = ", ".join(f"{theirs} ({ours})" for theirs, ours in self.format.called.items())
             raise self.refuse(
                 f"holds a suspension called {short(said)}" + (f" at its axle {part}" if part else ""),
-                f"{self.format.known_suspensions}; a like one by another name: say so with --suspension",
+                f"{known}; a like one by another name: say so with --suspension",
             )
         best = self.closest()
         if len(best) > 1:
@@ -312,19 +307,16 @@ class _Import:
         """A name whole, and without words of a wheel that it begins or ends with, and the wheel."""
         yield name, NO_WHEEL
         words = re.findall(r"[^\W_]+", name) if self.format.our_own_names else []
-        for ahead, behind in ((0, 1), (1, 0), (1, 1), (2, 0), (2, 1)):
+        # Two behind come last: the axle of an arm's rear pivot is no axle of the car.
+        for ahead, behind in ((0, 1), (1, 0), (1, 1), (2, 0), (2, 1), (0, 2)):
             base = words[ahead : len(words) - behind]
             edge = [plain(word) for word in (*words[:ahead], *words[len(words) - behind :])]
             if base and all(word in WHEELS for word in edge):
                 yield " ".join(base), wheel_of(edge)
 
-    def holds_nothing(self, point: FilePoint) -> bool:
-        """Whether a point is known and not needed, whatever tells its wheel."""
-        return any(self.format.holds_nothing(base) for base, _ in self.readings(point.name))
-
     def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
         """The file's points that are ours, by our names, and the others."""
-        found = [*map(self.lookup(kind), self.contents.points)]
+        found = [self.lookup(kind)(point) for point in self.contents.points if not point.error]
         return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
 
     def chosen(self) -> _Wheel:
@@ -345,19 +337,17 @@ class _Import:
         for ours, point in known:
             other = found.setdefault(ours, point) if point.of(part, side) else point
             if other.place != point.place:
-                told = f"has {ours} twice, {short(other.name)} on line {other.line} and {short(point.name)} "
+                told = f"has {ours} twice, {other.told} and {short(point.name)} "
                 more = "; the points of one wheel of one axle"
                 more = more if other.name == point.name else ", or a file of names (--names) that says which"
                 raise self.refuse(f"{told}elsewhere", f"one of them{more}", point.line)
-        spoilt = [one for one in self.contents.spoilt if one.of(part, side)]
-        for our, own in map(self.lookup(self.kind), spoilt):
-            if our and own.error and own.of(part, side) and our not in {*found, *self.own.points}:
-                raise own.error
-        values = dict.fromkeys(
-            f"{short(one.name)} {one.value} on line {one.line}" for one in spoilt if one.value
-        )
+        spoilt = [point for point in self.contents.points if point.error and point.of(part, side)]
+        for our, point in map(self.lookup(self.kind), spoilt):
+            if our and point.error and point.of(part, side) and our not in {*found, *self.own.points}:
+                raise point.error
         others = [point for point in others if point.of(part, side)]
-        return _Wheel(found | dict(self.own.points), tuple(others), tuple(values), part, side)
+        lines = some_of([*dict.fromkeys(point.told for point in spoilt)], NAMED)
+        return _Wheel(found | dict(self.own.points), tuple(others), lines, part, side)
 
     def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
         """The part or side of a file that may hold several."""
@@ -383,19 +373,15 @@ class _Import:
         ]
         if not lost:
             return
-        theirs = [
-            f"{name} (looked for: {', '.join(map(short, names[name]))})" if name in names else name
-            for name in lost
-        ]
-        unknown = [p for p in wheel.others if not self.holds_nothing(p)]
-        listed = some_of([f"{short(point.name)} on line {point.line}" for point in unknown], NAMED)
+        looked = (f"{n} (looked for: {', '.join(map(short, names[n]))})" if n in names else n for n in lost)
+        listed = some_of([point.told for point in wheel.others], NAMED)
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
         if self.topology.wheel_axis[0] in lost:
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
-        told = f"lacks {', '.join(theirs)} of a {self.kind}"
+        told = f"lacks {', '.join(looked)} of a {self.kind}"
         told += f"; not known in it: {listed}" if listed else ""
-        told += f"; no points: {some_of(wheel.values, NAMED)}" if wheel.values else ""
+        told += f"; no points: {wheel.lines}" if wheel.lines else ""
         raise self.refuse(told, advice)
 
     def spin_axis(self, axle: Axle) -> SpinAxis | None:
@@ -431,22 +417,22 @@ class _Import:
         outboard = wheel.difference(topology.inboard, topology.wheel_centre)
         both = [] if seen is None else [seen, seen.other_handed]
         ways = [(one.option, SIDES[one.to_scene(outboard, "mm")[1] > 0]) for one in both]
+        every = [f"--axes {option} of a {side} wheel" for option, side in ways]
         said, by = self.axes_said(wheel)
         if said is None:
-            told = "does not say where x, y and z point"
-            if seen is None:
-                raise self.refuse(told, f"--axes with {ALLOWED}")
             # A wheel of a known side shows it.
             known = self.choices.side or wheel.side
-            some = [f"--axes {one} of a {side} wheel" for one, side in ways if known in ("", side)]
-            raise self.refuse(told, f"{' or '.join(some)}, as {words} lie; or others, if they are so")
+            some = [one for one, (_, side) in zip(every, ways, strict=True) if known in ("", side)]
+            fit = f"{' or '.join(some)}, as {words} lie; or others, if they are so"
+            raise self.refuse(
+                "does not say where x, y and z point", fit if some else f"--axes with {ALLOWED}"
+            )
         if seen is None or said in both:
             return said, by, []
         told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
         if self.choices.axes is not None:
             return said, by, [f"{told}: are these the right axes and names?"]
-        every = " or ".join(f"--axes {one} of a {side} wheel" for one, side in ways)
-        raise self.refuse(told, f"{every} if that is so, --axes {said.option} if not")
+        raise self.refuse(told, f"{' or '.join(every)} if that is so, --axes {said.option} if not")
 
     def axes_said(self, wheel: _Wheel) -> tuple[Axes | None, str]:
         """The axes that somebody says, and who; points under our own names have our own axes."""
@@ -457,19 +443,21 @@ class _Import:
         read = {name: point.name for name, point in wheel.ours.items() if name not in self.own.points}
         if self.format.our_own_names and all(_is_our_own(*one) for one in read.items()):
             return OUR_AXES, "its points' names, which are ours"
-        told_by = self.format.axes_told_by
-        if not told_by:
-            return self.format.axes, "its format"
-        telling = [name for name in read.values() if re.fullmatch(told_by, plain(name))]
-        return (self.format.axes, f"names such as {short(telling[0])}") if telling else (None, "")
+        for pattern, axes in self.format.axes.items():
+            telling = [name for name in read.values() if re.fullmatch(pattern or ".*", plain(name))]
+            if telling or not pattern:
+                return axes, f"names such as {short(telling[0])}" if pattern else "its format"
+        return None, ""
 
-    def unit(self) -> str:
+    def unit(self) -> tuple[str, str]:
+        """The unit of lengths, and who says it."""
         said, chosen = self.contents.unit, self.choices.unit
         if said and said not in LENGTHS:
             raise self.refuse(f"has lengths in {short(said)}", ", ".join(LENGTHS))
         if said and chosen and said != chosen:
             raise self.refuse(f"says that its lengths are in {said}", f"--unit {said}, or none")
-        return chosen or said or self.format.unit
+        by = {"the file": said, "--unit": chosen, "its format": self.format.unit}
+        return next((unit, who) for who, unit in by.items() if unit)
 
     def against_unit(self, unit: str, wheel: _Wheel) -> list[str]:
         """Refuse a unit that makes no car where nobody said it; doubt one that somebody did."""
@@ -498,9 +486,7 @@ class _Import:
                 allowed = f"--axes with the other of left and right than {axes.option}, or the {seen} side"
                 # Not where the file has the wheel that is asked for: a mirrored other one is another wheel.
                 if by == "--side" and file.side != said:
-                    made = f"--side {seen} --mirror makes the {said} wheel of it"
-                    both = (f"--side is of the file's wheel: {made}", allowed)
-                    allowed = "; or ".join(both if self.choices.mirror else (allowed, made))
+                    allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
                 raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not any(by_whom.values()):
             raise self.refuse(
@@ -516,15 +502,11 @@ class _Import:
     ) -> dict[str, ScenePoint]:
         """The scene's points in the order of its topology, with where each comes from."""
         structure, needed = mechanism_file(self.kind).structures[AS_DRAWN], self.missing(self.kind, turned)
-        found = {}
+        out, found = SIDES.index(side) * 2 - 1, {}
         for name in self.topology.points:
             if name in turned:
-                own = wheel.ours[name]
-                line = f", line {own.line}" if own.line else ""
-                found[name] = ScenePoint(name, turned[name], f"{own.name}{line}")
-            elif name in needed and (
-                one := derived(name, structure, turned, SIDES.index(side) * 2 - 1, axis)
-            ):
+                found[name] = ScenePoint(name, turned[name], wheel.ours[name].source)
+            elif name in needed and (one := derived(name, structure, turned, out, axis)):
                 found[name] = ScenePoint(name, *one, derived=True)
         return found
 

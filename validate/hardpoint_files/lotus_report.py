@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 
-from validate.hardpoint_files.contents import Axle, Contents, FilePoint, decimal_of, place_of, short
+from validate.hardpoint_files.contents import Axle, Contents, FilePoint, number_of, place_of
 from validate.tables.errors import FileError
 
 _AXLE = re.compile(r"^\s*(FRONT|REAR)\s+SUSPENSION\b")
@@ -36,22 +36,15 @@ def read(text: str, source: str) -> Contents:
         elif found := _UNIT.match(words):
             unit = unit or found[1]
         elif found := _POINT.match(words):
-            points.append(_point(found[1], found[2].strip(), source, line, part))
+            name = found[2].strip()
+            if not name:
+                raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
+            points.append(FilePoint(name, place_of(found[1].split(), source, line, name), line, part=part))
         elif found := _ANGLE.match(words):
-            value = decimal_of(found[2], source, line, found[1].strip())
+            value = number_of(found[2], source, line, found[1].strip())
             angles.setdefault(part, {}).setdefault(found[1].strip(), (value, line))
     if not points:
         like = "lines such as -110.00 257.00 69.00 POINT ( 1 ) = Lower wishbone front pivot"
         raise FileError(source, 0, "has no points", like)
     axles = {part: Axle(called.get(part, ""), angles.get(part, {})) for part in (*called, *angles)}
     return Contents(tuple(points), axles, unit)
-
-
-def _point(numbers: str, name: str, source: str, line: int, part: str) -> FilePoint:
-    given = numbers.split()
-    if len(given) != 3:
-        told = f"has {len(given)} numbers before POINT ({short(numbers.strip())})"
-        raise FileError(source, line, told, "x, y and z")
-    if not name:
-        raise FileError(source, line, "has a point without a name", "POINT ( number ) = name")
-    return FilePoint(name, place_of(given, source, line, name), line, part=part)

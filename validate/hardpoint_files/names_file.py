@@ -14,22 +14,20 @@ corner = 6                              # only if there is one
 
 from __future__ import annotations
 
-import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal, DecimalException
-from typing import Any
 
 from pointcoord.errors import UnknownName
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.toml_text import read_file
-from validate.hardpoint_files.contents import FilePoint, finite, short
+from validate.hardpoint_files.contents import FilePoint, place_of, short
 from validate.plain_text import shown
 from validate.tables.errors import FileError
 from validate.toml_written import value_of
 
-COLUMNS = ("name", "x", "y", "z")
+COLUMNS = {"name", "x", "y", "z"}
 FORM = '[names] with lines such as our_name = "its name", or our_name = [x, y, z]'
 
 
@@ -58,45 +56,35 @@ def read_names(path: str) -> NamesFile:
         FileError: it is not written as it must be.
         UnknownName: a point is none of ours.
     """
+    text = read_file(path, "a file of names, TOML").decode("utf-8-sig", "replace")
     try:
-        data = tomllib.loads(
-            read_file(path, "a file of names, TOML").decode("utf-8-sig"), parse_float=Decimal
-        )
+        data = tomllib.loads(text, parse_float=Decimal)
     except (ValueError, RecursionError, DecimalException) as error:
-        found = re.search(r"at line (\d+)", str(error))
-        raise FileError(path, int(found[1]) if found else 0, f"is not TOML: {error}", FORM) from None
-    columns, table = data.pop("table", {}), data.pop("names", None)
-    if data or not isinstance(table, dict | None) or (table is None and not columns):
+        raise FileError(path, 0, f"is not TOML: {error}", FORM) from None
+    table, said = data.pop("table", {}), data.pop("names", {})
+    if data or not isinstance(said, dict):
         told = f"has the key {short(next(iter(data)))}" if data else "has no table [names]"
         raise FileError(path, 0, told, FORM)
-    if columns and (
-        not isinstance(columns, dict)
-        or not {*COLUMNS} <= columns.keys() <= {*COLUMNS, "corner"}
-        or not all(isinstance(one, str) or (type(one) is int and one > 0) for one in columns.values())
+    if table and (
+        not isinstance(table, dict)
+        or not COLUMNS <= table.keys() <= COLUMNS | {"corner"}
+        or not all(isinstance(one, str) or (type(one) is int and one > 0) for one in table.values())
     ):
-        told = f"[table] is {short(str(columns))}"
+        told = f"[table] is {short(str(table))}"
         raise FileError(path, 0, told, "name, x, y, z and corner, each a title or a number from 1")
     ours = tuple(dict.fromkeys(point for kind in shipped() for point in mechanism_file(kind).points))
     names: dict[str, str] = {}
     points: dict[str, FilePoint] = {}
-    for name, value in (table or {}).items():
+    for name, value in said.items():
         if name not in ours:
             raise UnknownName(f"point of ours in {path}", name, ours)
         if isinstance(value, str):
             names[name] = value
+        elif not isinstance(value, list) or not all(type(one) in (int, Decimal) for one in value):
+            raise FileError(path, 0, f"{name} is {short(str(value))}", FORM)
         else:
-            points[name] = FilePoint(f"given in {path}", _place(value, path, name), 0)
-    return NamesFile(names, points, columns)
-
-
-def _place(value: Any, path: str, name: str) -> tuple[Decimal, Decimal, Decimal]:
-    numbers = value if isinstance(value, list) else []
-    if len(numbers) != 3 or any(isinstance(n, bool) or not isinstance(n, int | Decimal) for n in numbers):
-        raise FileError(path, 0, f"{name} is {short(str(value))}", FORM)
-    x, y, z = (
-        finite(Decimal(n), path, 0, f"{axis} of {name}") for axis, n in zip("xyz", numbers, strict=True)
-    )
-    return x, y, z
+            points[name] = FilePoint(f"given in {path}", place_of(value, path, 0, name))
+    return NamesFile(names, points, table)
 
 
 def names_to_fill_in(
@@ -108,7 +96,7 @@ def names_to_fill_in(
         needed: our names of the points that a car of this kind has.
         ours: the points of the file that are known. others: those that are not.
     """
-    points = [f"#   {shown(p.name)}, line {p.line}" for p in others]
+    points = [f"#   {shown(point.source)}" for point in others]
     lines = [f"# Which points of {shown(source)} are which of a {kind}. Fill in, and take the # away."]
     lines += ["# Points of the file that are not known:", *points] if points else []
     lines += ["", "[names]"]

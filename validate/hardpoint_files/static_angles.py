@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
-from math import degrees
+from math import degrees, dist
 
 from pointcoord.linkage.topology import Topology
 from validate.hardpoint_files.contents import Place
@@ -53,13 +53,11 @@ def check_angles(
     Args:
         patterns: of the file's words, for our names. drawn: our angles, rad. places: as the file has them.
     """
+    axes = [ends for ends in (topology.wheel_axis, topology.steering_axis) if ends and {*ends} <= {*places}]
     left_open = 0.0
-    for ends in filter(None, (topology.wheel_axis, topology.steering_axis)):
-        if all(name in places for name in ends):
-            one, other = (places[name] for name in ends)
-            length = sum(float(a - b) ** 2 for a, b in zip(one, other, strict=True)) ** 0.5
-            half = max(map(_half_a_digit, (*one, *other)))
-            left_open = max(left_open, 4.0 * half / length if length else 0.0)
+    for one, other in ([places[name] for name in ends] for ends in axes):
+        half = max(map(_half_a_digit, (*one, *other)))
+        left_open = max(left_open, 4.0 * half / length if (length := dist(one, other)) else 0.0)
     for name, pattern in patterns.items():
         for words, (value, line) in printed.items():
             if name in drawn and re.match(pattern, words):

@@ -131,7 +131,7 @@ def scene_text(
         "",
         "[mechanism.points]    # mm",
         *(f"{name.ljust(first)} = {place.ljust(second)}    # {shown(words)}" for name, place, words in rows),
-        *(f"# not used: {shown(point.name)}, line {point.line}" for point in others),
+        *(f"# not used: {shown(point.source)}" for point in others),
         "",
         "[inputs]",
         *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),

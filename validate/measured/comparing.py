@@ -105,22 +105,11 @@ def compare_results(
     outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
     explanations = _explained(poses.driven, scene, measured, by_row, ours, wrong, factor)
-    if wrong:
-        found = meant_otherwise(scene, measured, held, accuracy, factor, poses.driven)
+    if wrong and (found := meant_otherwise(scene, measured, held, accuracy, factor, poses.driven)):
+        # What explains the whole file leaves nothing for what explains a part of some difference.
         names = tuple(map(".".join, wrong))
-        of_kind = {
-            kind: tuple(
-                Explanation(one.words, kind, names, one.leftover) for one in found if one.kind == kind
-            )
-            for kind in ("travel", "input")
-        }
-        # Of a single number its own fault is as likely.
-        whole = len(rows) == 1 and any(one.leftover <= 1.0 for one in explanations)
-        if found:
-            # What explains the whole file leaves nothing for what explains a part of some difference.
-            explanations = tuple(one for one in explanations if one.leftover <= 1.0)
-        both = (explanations, of_kind["input"]) if whole else (of_kind["input"], explanations)
-        explanations = (*of_kind["travel"], *both[0], *both[1])
+        first = (Explanation(one.words, one.kind, names, one.leftover) for one in found)
+        explanations = (*first, *(one for one in explanations if one.leftover <= 1.0))
     one, *others = measured.independent
     over = "row" if others else f"{one.column} [{one.meaning.unit}]"
     outcome = replace(outcome, explanations=explanations)

@@ -31,7 +31,7 @@ and which no other column is said to be, and times, inputs and travels by their 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Annotated, Any, Literal
@@ -56,7 +56,7 @@ from validate.measured.meanings import (
     meanings_of,
     named,
 )
-from validate.measured.reading import NOTHING_AT_ALL, Columns, read_columns
+from validate.measured.reading import Columns, read_columns
 from validate.plain_text import shown
 from validate.tables.errors import FileError
 from validate.tables.units import allowed_units, below_of, factor_of, is_unit
@@ -266,19 +266,13 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    if printed := [s.column for s in numbers if s.column in columns.fixed and not s.said]:
-        places = columns.fixed[printed[0]]
-        notes.append(
-            f"{listed(printed)}: taken as written in full, as other columns are; if rounded to "
-            f"{places} decimals, say printed = {10.0**-places:g} of it in a map"
-        )
     held, held_rates = (
         {name: value for name, value in map.held.items() if (map.meanings[name].kind == "rate") is rate}
         for rate in (False, True)
     )
     measured = Measured(columns.source, independent, numbers, held, map.said.rolling_radius, map.solve_for)
     more = replace(measured, rows=columns.rows, notes=tuple(notes), rates=rates, held_rates=held_rates)
-    return _without_repeats(more)
+    return _with_poses(more)
 
 
 def map_to_fill_in(file: str, scene: Scene) -> str:
@@ -325,15 +319,11 @@ class _Map:
     scene: Scene
 
     def __post_init__(self) -> None:
-        for name, part in self.said.columns.items():
-            holds = self.columns.no_numbers.get(name)
-            if holds is None and name not in self.columns.names:
+        for name in self.said.columns:
+            if name not in self.columns.names:
                 hint = meant(name, self.columns.names)
                 problem = f"no column of {self.columns.source} is called {shown(name)!r}{hint}"
                 raise self._wrong("columns", problem, ", ".join(self.columns.names))
-            if holds is not None and part.is_ != IGNORE:
-                problem = f"column {shown(name)!r} of {self.columns.source} holds {holds}"
-                raise self._wrong("columns", problem, f'columns of numbers, or is = "{IGNORE}"')
 
     def _part(self, column: str) -> ColumnSaid:
         """What is said of a column."""
@@ -382,13 +372,11 @@ class _Map:
         return {column: self.meaning(column) for column in self.columns.names}
 
     @property
-    def ignored(self) -> Iterator[str]:
+    def ignored(self) -> tuple[str, ...]:
         """Columns that are left out, in words."""
-        for name, holds in self.columns.no_numbers.items():
-            if holds != NOTHING_AT_ALL:
-                yield f"ignored: {shown(name)}, which holds {holds} and no numbers"
-        if out := [name for name, one in self.meant_by.items() if one is None]:
-            yield f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)"
+        out = [name for name, one in self.meant_by.items() if one is None]
+        why = "name not recognised, without a unit, or as the map says"
+        return (f"ignored: {listed(out)} ({why})",) if out else ()
 
     def meaning(self, column: str) -> Meaning | None:
         """What a column is; None for what is to be left out.
@@ -481,6 +469,8 @@ class _Map:
 
     def _one(self, column: str, meaning: Meaning) -> Series:
         i, part = self.columns.names.index(column), self._part(column)
+        if holds := self.columns.words.get(column):
+            raise self._column(column, f"holds {holds}", f'columns of numbers, or is = "{IGNORE}" in a map')
         factor = self._factor(column, meaning)
         # A derivative is by its own column, which goes the other way than ours where the map says so.
         by = {one.words: self._part(name).sign for name, one in self.meant_by.items() if one is not None}
@@ -546,37 +536,15 @@ def _unit_at_the_end(column: str) -> str:
     return end if end != column and is_unit(end) else ""
 
 
-def _without_repeats(measured: Measured) -> Measured:
-    """Rows that stand twice are taken once.
+def _with_poses(measured: Measured) -> Measured:
+    """The rows that say at which pose they are.
 
     Raises:
-        FileError: two rows are at the same pose and say different things.
+        FileError: none does.
     """
-    keys = np.stack([s.values for s in measured.independent], axis=-1)
-    whole = np.stack([s.values for s in (*measured.numbers, *measured.rates)], axis=-1)
-    lost: NDArray[np.bool_] = np.asarray(np.isnan(keys).any(axis=-1))
-    # Rows without a pose are each their own.
-    _, place, of = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    first = place[np.ravel(of)]
-    again = first < np.arange(len(keys))
-    same = (whole == whole[first]) | (np.isnan(whole) & np.isnan(whole[first]))
-    for i in np.flatnonzero(again & ~same.all(axis=-1))[:1].tolist():
-        at = ", ".join(
-            f"{shown(s.column)} = {v:.10g} {s.meaning.unit}"
-            for s, v in zip(measured.independent, keys[i].tolist(), strict=True)
-        )
-        problem = f"is at {at} as {measured.rows[first[i]]} is, and says something else"
-        allowed = "one row for each pose; of a loop its two ways in files of their own"
-        raise FileError(measured.source, measured.rows[i], problem, allowed)
-    keep = ~(again | lost)
-    notes = [
-        f"{what}: {int(rows.sum())}, from {measured.rows[int(np.argmax(rows))]} on"
-        for what, rows in (
-            ("rows that repeat another", again),
-            ("rows that do not say at which pose they are", lost),
-        )
-        if rows.any()
-    ]
-    if not keep.any():
+    lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in measured.independent]).any(axis=0))
+    if lost.all():
         raise FileError(measured.source, "", "no row says at which pose it is", "at least one")
-    return replace(measured.taken(keep), notes=(*measured.notes, *notes))
+    first = measured.rows[int(np.argmax(lost))]
+    note = f"rows that do not say at which pose they are: {int(lost.sum())}, from {first} on"
+    return replace(measured.taken(~lost), notes=(*measured.notes, note)) if lost.any() else measured

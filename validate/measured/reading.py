@@ -32,7 +32,6 @@ from validate.tables.units import is_unit
 Array = NDArray[np.float64]
 
 NOTHING = {"", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "?"}
-NOTHING_AT_ALL = "nothing"
 # Digits that only a double in full has.
 DOUBLE = 15
 _UNIT_BEHIND = re.compile(r"(.*\S)\s*(?:\[([^\]]*)\]|\(([^)]*)\))")
@@ -48,9 +47,7 @@ class Columns:
         values: (columns, rows), NaN where there is none.
         steps: the unit of the last digit of each number, likewise; 0 where a number is written in full.
         rows: what to call each row, such as "line 7".
-        fixed: names of columns that look printed, with their decimals, in a file that is taken as written in
-            full because of others.
-        no_numbers: columns that hold none, and what they hold; they are in nothing else here.
+        words: columns that hold no numbers, and what they hold.
     """
 
     source: str
@@ -59,8 +56,7 @@ class Columns:
     values: Array
     steps: Array
     rows: tuple[str, ...]
-    fixed: Mapping[str, int] = field(default_factory=dict)
-    no_numbers: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         (name, count), *_ = Counter(self.names).most_common(1)
@@ -105,14 +101,13 @@ def _parquet(path: str, source: str) -> Columns:
     except Exception as error:
         problem = f"is no Parquet that can be read ({' '.join(str(error).split())})"
         raise FileError(source, "", problem, "Parquet, or text") from None
-    others = {
-        name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"
-    }
-    found = {head: column for head, column in found.items() if head[0] not in others}
-    if not found or not table.num_rows:
-        holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in others.items())
+    words = {name: str(column.dtype) for (name, _), column in found.items() if column.dtype.kind not in "iuf"}
+    if len(words) == len(found) or not table.num_rows:
+        holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in words.items())
         problem = f"has no column of numbers: {holds}" if table.num_rows else "has no rows"
         raise FileError(source, "", problem, "a column of numbers for each quantity, and at least one row")
+    nothing = np.full(table.num_rows, np.nan)
+    found = {head: nothing if head[0] in words else column for head, column in found.items()}
     values = np.stack([column.astype(float) for column in found.values()])
     for column, row in np.argwhere(np.isinf(values))[:1].tolist():
         place = f"row {row + 1}, column {shown([*found][column][0])!r}"
@@ -125,7 +120,7 @@ def _parquet(path: str, source: str) -> Columns:
     ]
     names, units = zip(*found, strict=True)
     rows = tuple(f"row {i + 1}" for i in range(table.num_rows))
-    return Columns(source, names, units, values, np.stack(steps), rows, no_numbers=others)
+    return Columns(source, names, units, values, np.stack(steps), rows, words)
 
 
 def columns_of_text(text: str, source: str) -> Columns:
@@ -151,37 +146,23 @@ def columns_of_text(text: str, source: str) -> Columns:
         before = [row for number, row in lines.comments if number < rows[0][0]]
         head = [row for row in before[-1:] if len(joined(row)) == count]
     names, units = _names(head, count, source)
-    unsaid = [not name for name in names]
     names = tuple(name or f"column {i + 1}" for i, name in enumerate(names))
     for line, row in rows:
         if len(row) < count or any(row[count:]):
             allowed = f"{count}, one for each of {', '.join(names)}"
             raise FileError(source, f"line {line}", f"has {len(row)} cells", allowed)
-    words = {i: said for i in range(count) if (said := _words([row[i] for _, row in rows], unsaid[i]))}
-    kept = [i for i in range(count) if i not in words] or [*range(count)]
-    told = {names[i]: said for i, said in words.items() if i not in kept}
-    rows = [(line, [row[i] for i in kept]) for line, row in rows]
-    names, units = tuple(names[i] for i in kept), tuple(units[i] for i in kept)
-    read = [[_number(row[j], source, line, names[j]) for line, row in rows] for j in range(len(kept))]
-    values, decimals, digits = np.moveaxis(np.array(read, dtype=float), -1, 0)
+    words: dict[str, str] = {}
+    read = np.zeros((count, len(rows), 3))
+    for j, name in enumerate(names):
+        some = [row[j] for _, row in rows if row[j].lower() not in NOTHING]
+        if some and not any(map(is_number, some)):
+            words[name], read[j, :, 0] = f"{shown(some[0])!r} and the like", np.nan
+        else:
+            read[j] = [_number(row[j], source, line, name) for line, row in rows]
+    values, decimals, digits = np.moveaxis(read, -1, 0)
     with np.errstate(over="ignore"):
         steps = np.where(np.isfinite(values) & (digits.max() < DOUBLE), 10.0**-decimals, 0.0)
-    fixed: dict[str, int] = {}
-    for j, name in enumerate(names) if digits.max() >= DOUBLE else ():
-        # What looks printed beside others in full: of the same decimals, with zeros at the end.
-        same = {*decimals[j][np.isfinite(values[j])].tolist()}
-        if digits[j].max() < DOUBLE and len(same) == 1 and max(same) > 1:
-            fixed |= {name: int(max(same))} if any(row[j].endswith("0") for _, row in rows) else {}
-    places = tuple(f"line {line}" for line, _ in rows)
-    return Columns(source, names, units, values, steps, places, fixed, told)
-
-
-def _words(cells: Sequence[str], unnamed: bool) -> str:
-    """What a column holds in which no line has a number; empty of another one, and of an empty one."""
-    some = [cell for cell in cells if cell.lower() not in NOTHING]
-    if not some:
-        return NOTHING_AT_ALL if unnamed else ""
-    return "" if any(map(is_number, some)) else f"{shown(some[0])!r} and the like"
+    return Columns(source, names, units, values, steps, tuple(f"line {line}" for line, _ in rows), words)
 
 
 def _numeric(row: Sequence[str]) -> bool:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice, product
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,11 +62,7 @@ class Supposed:
 
 @dataclass(frozen=True)
 class _Change:
-    """x = factor v + more of a column v.
-
-    Attributes:
-        found: whether `more` was found by least squares.
-    """
+    """x = factor v + more of a column v; `found` of one whose `more` was found by least squares."""
 
     factor: float = 1.0
     more: float = 0.0
@@ -77,16 +73,17 @@ class _Change:
         """How far-fetched it is."""
         return (abs(self.factor) != 1.0) + (self.factor < 0.0) + 1.1 * (self.more != 0.0) + 2.0 * self.found
 
+    def of(self, s: Series) -> Series:
+        """A column that is changed so."""
+        return replace(s, values=self.factor * s.values + self.more, off=abs(self.factor) * s.off)
+
     def words(self, s: Series, drawn: float) -> str:
         """What is said of the column."""
-        unit, said = s.meaning.unit, _unit_of(s)
         if (self.factor, self.more) == (-1.0, math.pi):
-            return "is pi minus ours"
-        parts, turned = [], self.factor < 0.0
-        if other := next(
-            (n for n, size in _units(unit) if math.isclose(size / s.factor, abs(self.factor))), ""
-        ):
-            parts += [] if other == said else [f"is in {other}, not in {said}"]
+            return f"{shown(s.column)} is pi minus ours"
+        said, turned = _unit_of(s), self.factor < 0.0
+        other = _unit_of(replace(s, factor=abs(self.factor) * s.factor))
+        parts = [] if other == said else [f"is in {other}, not in {said}"]
         if not self.more:
             parts += ["has the other sign"] * turned
         elif abs(self.more - drawn) <= NEAR * abs(drawn):
@@ -95,7 +92,7 @@ class _Change:
             parts += ["counts the other way"] * turned
             missing = "missing" if self.more > 0.0 else "too many"
             parts.append(f"counts from another zero: {abs(self.more / s.factor):.5g} {said} are {missing}")
-        return ", and ".join(parts)
+        return f"{shown(s.column)} {', and '.join(parts)}"
 
 
 Changes = dict[int, _Change]
@@ -131,9 +128,23 @@ def meant_otherwise(
 
 
 def meant(measured: Measured, driven: Driven) -> str:
-    """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely."""
-    known = (one.words for one in _likely(driven, measured))
-    return next(known, "") or next(_in_reach(driven, measured), "")
+    """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely.
+
+    Where no number tells, a unit that brings nearly all rows within reach, nearest the said one first.
+    """
+    if known := next(_likely(driven, measured), None):
+        return known.words
+    some = _some(measured)
+    for i, s in enumerate(some.independent):
+        for size in sorted(_sizes(s), key=lambda size: abs(math.log(size / s.factor))):
+            change = _Change(size / s.factor)
+            values = [v.values for v in _moved(some, {i: change})]
+            out = len(driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(some.rows)
+            if abs(change.factor - 1.0) <= 1e-9 or out:
+                continue
+            if s.meaning.kind == TIME or driven.poses(values).reached.mean() >= NEARLY_ALL:
+                return change.words(s, 0.0)
+    return ""
 
 
 def _reached(held: Sequence[Held]) -> int:
@@ -158,8 +169,7 @@ def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Ite
 
     def left(radius: float) -> float:
         """The largest difference in its tolerance, of poses alone."""
-        driven = Driven.of(scene, by(radius))
-        found = driven.poses([s.values for s in independent], measured.numbers)
+        found = Driven.of(scene, by(radius)).poses([s.values for s in independent], measured.numbers)
         there = (h for h in held if of_a_pose(h.series.meaning))
         shares = [replace(h, ours=np.asarray(ours_of(h.series, found, scene)[0])).share for h in there]
         return float(np.max(np.nan_to_num(shares), initial=0.0))
@@ -172,9 +182,8 @@ def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Ite
             except PointcoordError:
                 return
         of = f" with a rolling radius of {radius:.4g} mm"
-    yield Supposed(
-        f"{shown(said.column)} is {other.words}{of}, not {said.meaning.words}", by(radius), "travel"
-    )
+    words = f"{shown(said.column)} is {other.words}{of}, not {said.meaning.words}"
+    yield Supposed(words, by(radius), "travel")
 
 
 def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
@@ -183,10 +192,10 @@ def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
         of_a_pose(s.meaning) for s in measured.numbers
     ):
         return
-    trial = _Trial(driven, _some(measured))
+    some = _some(measured)
     try:
-        before = trial.left({})
-        tried = [(trial.left(changes), changes) for changes in trial.supposed()]
+        before = _left(driven, some, {})
+        tried = [(_left(driven, some, changes), changes) for changes in _changes(driven, some)]
     except PointcoordError:
         return
     kept = [(left, changes) for left, changes in tried if left <= PROMISING and left < before]
@@ -194,33 +203,31 @@ def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
     kept.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), sum(c.cost for c in one[1].values())))
     for _, changes in kept:
         said = ((measured.independent[i], change) for i, change in changes.items())
-        words = (f"{shown(s.column)} {change.words(s, trial.drawn(s))}" for s, change in said)
+        words = ", and ".join(change.words(s, _drawn(driven, s)) for s, change in said)
         independent = _moved(measured, changes)
         # Derivatives by a column that counts the other way do so too.
         turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
         numbers = (replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers)
         other = replace(measured, independent=independent, numbers=tuple(numbers))
-        yield Supposed(", and ".join(words), other, found=any(one.found for one in changes.values()))
+        yield Supposed(words, other, found=any(one.found for one in changes.values()))
+
+
+def _changes(driven: Driven, some: Measured) -> Iterator[Changes]:
+    """What each column may be changed by: one alone, all with the other sign, one by another zero."""
+    for i, s in enumerate(some.independent):
+        factors = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
+        zeros = {0.0, _drawn(driven, s)}
+        changes = [_Change(1.0 if math.isclose(f, 1.0) else f, more) for f in factors for more in zeros]
+        changes += [_Change(-1.0, math.pi)] if s.meaning.unit == "rad" else []
+        yield from ({i: change} for change in changes if change != _Change())
+    yield {i: _Change(-1.0) for i in range(len(some.independent))}
+    for i in range(len(some.independent)):
+        yield from ({i: one} for sign in (1.0, -1.0) if (one := _other_zero(driven, some, i, sign)))
 
 
 def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
     """The independent columns, some of them changed."""
-    of = ((s, changes.get(i, _Change())) for i, s in enumerate(measured.independent))
-    return tuple(replace(s, values=c.factor * s.values + c.more, off=abs(c.factor) * s.off) for s, c in of)
-
-
-def _in_reach(driven: Driven, measured: Measured) -> Iterator[str]:
-    """Units of a column that bring nearly all rows within reach, in words; nearest the said one first."""
-    some = _some(measured)
-    for i, s in enumerate(some.independent):
-        others = [(name, size / s.factor) for name, size in _units(s.meaning.unit)]
-        for name, factor in sorted(others, key=lambda one: abs(math.log(one[1]))):
-            values = [factor * v.values if k == i else v.values for k, v in enumerate(some.independent)]
-            _, lost = driven.inputs(values)
-            if abs(factor - 1.0) <= 1e-9 or len(lost) > (1.0 - NEARLY_ALL) * len(some.rows):
-                continue
-            if s.meaning.kind == TIME or driven.poses(values).reached.mean() >= NEARLY_ALL:
-                yield f"{shown(s.column)} is in {name}, not in {_unit_of(s)}"
+    return tuple(changes.get(i, _Change()).of(s) for i, s in enumerate(measured.independent))
 
 
 def _some(measured: Measured) -> Measured:
@@ -231,91 +238,62 @@ def _some(measured: Measured) -> Measured:
     return replace(measured, numbers=numbers).taken(rows)
 
 
-class _Trial:
-    """A file's numbers by other values of its independent columns."""
+def _drawn(driven: Driven, s: Series) -> float:
+    """An input of the drawing; a travel counts from there by itself."""
+    return driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
 
-    def __init__(self, driven: Driven, measured: Measured) -> None:
-        self.driven, self.measured = driven, measured
-        self.theirs = np.stack([s.values for s in measured.numbers])
-        self.there = np.isfinite(self.theirs)
-        wide = np.max(self.theirs, axis=1, where=self.there, initial=-np.inf)
-        wide -= np.min(self.theirs, axis=1, where=self.there, initial=np.inf)
-        self.spread = np.where(wide > 0.0, wide, 1.0)[:, None]
 
-    def supposed(self) -> Iterator[Changes]:
-        """What each column is changed by: one alone, all with the other sign, one by another zero."""
-        for i, s in enumerate(self.measured.independent):
-            factors = [sign * size / s.factor for _, size in _units(s.meaning.unit) for sign in (1.0, -1.0)]
-            zeros = {0.0, self.drawn(s)}
-            changes = [_Change(1.0 if math.isclose(f, 1.0) else f, more) for f in factors for more in zeros]
-            changes += [_Change(-1.0, math.pi)] if s.meaning.unit == "rad" else []
-            yield from ({i: change} for change in changes if change != _Change())
-        yield {i: _Change(-1.0) for i in range(len(self.measured.independent))}
-        for i, factor in product(range(len(self.measured.independent)), (1.0, -1.0)):
-            if change := self._other_zero(i, factor):
-                yield {i: change}
+def _gaps(driven: Driven, some: Measured, changes: Changes) -> Array:
+    """Theirs less ours, of the spread of theirs, (columns, rows); NaN where most rows have no pose."""
+    values = [s.values for s in _moved(some, changes)]
+    gap = np.full((len(some.numbers), len(some.rows)), np.nan)
+    if len(driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(some.rows):
+        return gap
+    found = driven.poses(values, some.numbers)
+    for i, s in enumerate(some.numbers):
+        ours, _ = ours_of(s, found, driven.scene)
+        if ours is not None:
+            wide = np.nanmax(s.values, initial=-np.inf) - np.nanmin(s.values, initial=np.inf)
+            gap[i] = s.apart(ours, s.values) / (wide if wide > 0.0 else 1.0)
+    # A supposition must make sense of nearly all rows.
+    there = np.isfinite([s.values for s in some.numbers])
+    enough = (np.isfinite(gap) | ~there).all(axis=0).mean() >= NEARLY_ALL
+    return gap if enough else np.full_like(gap, np.nan)
 
-    def drawn(self, s: Series) -> float:
-        """An input of the drawing; a travel counts from there by itself."""
-        return self.driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
 
-    def left(self, changes: Changes) -> float:
-        """What is left of the differences, of their numbers' spread; infinite where rows are out of reach."""
-        gap = self._gaps(changes)
-        found = np.isfinite(gap)
-        # A supposition must make sense of nearly all rows.
-        if not (found | ~self.there).all(axis=0).mean() >= NEARLY_ALL or not found.any():
-            return math.inf
-        return float(np.sqrt(np.nanmean(gap**2)))
+def _left(driven: Driven, some: Measured, changes: Changes) -> float:
+    """What is left of the differences, of their numbers' spread; infinite where rows are out of reach."""
+    gap = _gaps(driven, some, changes)
+    return float(np.sqrt(np.nanmean(gap**2))) if np.isfinite(gap).any() else math.inf
 
-    def _other_zero(self, i: int, factor: float) -> _Change | None:
-        """The zero that least squares find for a column, as round as it may be; None if none comes near."""
-        s = self.measured.independent[i]
-        drawn = self.drawn(s)
 
-        def left(more: float) -> float:
-            return self.left({i: _Change(factor, more)})
+def _other_zero(driven: Driven, some: Measured, i: int, factor: float) -> _Change | None:
+    """The zero that least squares find for a column, as round as it may be; None if none comes near."""
+    s = some.independent[i]
 
-        def gaps(sets: Array) -> Array:
-            gap = np.stack([self._gaps({i: _Change(factor, float(more))}) for (more,) in sets])
-            # Rows out of reach say nothing of it; most of them must say something.
-            found = np.isfinite(gap)
-            enough = (found | ~self.there).mean(axis=(1, 2), keepdims=True) >= NEARLY_ALL
-            return np.where(found | enough, np.nan_to_num(gap), np.nan).reshape(len(sets), -1)
+    def left(more: float) -> float:
+        return _left(driven, some, {i: _Change(factor, more)})
 
-        nothing = np.zeros(self.theirs.size)
-        starts = (fitted(gaps, [begin], STEP[s.meaning.unit], nothing) for begin in {0.0, drawn})
-        zeros = [float(one[0]) for one in starts if one is not None]
-        best = min(zeros, key=left, default=0.0)
-        least = left(best)
-        if not zeros or not least <= PROMISING:
-            return None
-        more = float(roundest(best, 7, lambda near: left(float(near)) <= CLOSE * least, s.factor))
-        return _Change(factor, more, found=True)
+    def gaps(sets: Array) -> Array:
+        found = [_gaps(driven, some, {i: _Change(factor, float(more))}).ravel() for (more,) in sets]
+        # Rows out of reach say nothing of it.
+        return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
 
-    def _gaps(self, changes: Changes) -> Array:
-        """Theirs less ours, of the spread of theirs, (columns, rows); NaN where there is no pose."""
-        numbers = self.measured.numbers
-        values = [s.values for s in _moved(self.measured, changes)]
-        if len(self.driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(values[0]):
-            return np.full_like(self.theirs, np.nan)
-        found = self.driven.poses(values, numbers)
-        ours = [ours_of(s, found, self.driven.scene)[0] for s in numbers]
-        nothing = np.full(len(values[0]), np.nan)
-        gap = [
-            s.apart(nothing if one is None else one, s.values) for s, one in zip(numbers, ours, strict=True)
-        ]
-        return np.stack(gap) / self.spread
+    nothing = np.zeros(len(some.numbers) * len(some.rows))
+    starts = (fitted(gaps, [begin], STEP[s.meaning.unit], nothing) for begin in {0.0, _drawn(driven, s)})
+    best = min((float(one[0]) for one in starts if one is not None), key=left, default=math.nan)
+    if math.isnan(best) or not (least := left(best)) <= PROMISING:
+        return None
+    more = float(roundest(best, 7, lambda near: left(float(near)) <= CLOSE * least, s.factor))
+    return _Change(factor, more, found=True)
+
+
+def _sizes(s: Series) -> list[float]:
+    """The units that a column can be in, each in ours."""
+    return [*dict.fromkeys(KINDS[s.meaning.unit].values())]
 
 
 def _unit_of(s: Series) -> str:
-    """The unit that a column is said to be in."""
-    return next((n for n, size in _units(s.meaning.unit) if math.isclose(size, s.factor)), s.meaning.unit)
-
-
-def _units(unit: str) -> list[tuple[str, float]]:
-    """Units of a kind by their first names, and their sizes in ours."""
-    found: dict[float, str] = {}
-    for name, size in KINDS[unit].items():
-        found.setdefault(size, name)
-    return [(name, size) for size, name in found.items()]
+    """The unit that a column is said to be in, by its first name."""
+    units = KINDS[s.meaning.unit].items()
+    return next((name for name, size in units if math.isclose(size, s.factor)), s.meaning.unit)

@@ -34,8 +34,8 @@ from validate.solvers.plain import NoSolver, Solve, SolverFailed, no_mapping, ra
 LIMIT = 600.0  # s, an answer: no motion of a suspension takes so long
 PARTING = 2.0  # s, that a child is given to end by itself
 
-# What the child says first: how it went. Then what there is to say of it.
-FOUND, NONE, ANSWER, FAILED = "found", "no solver", "answer", "failed"
+# What the child says first: how it went, or that it says nothing more. Then what there is to say of it.
+FOUND, NONE, ANSWER, FAILED, ENDED = "found", "no solver", "answer", "failed", "ended"
 BUILTIN = (str, bytes, bool, int, float, complex, type(None))
 
 
@@ -51,8 +51,15 @@ class Apart:
         self.place = place
         self.limit = limit
         self._with_traceback = with_traceback
-        self._child: _Child | None = _Child(place, with_traceback)
-        self._found = False
+        self._start()
+
+    def _start(self) -> None:
+        context = get_context("spawn")
+        self._pipe, there = context.Pipe()
+        self._process = context.Process(target=serve, args=(there, self.place, self._with_traceback))
+        self._process.start()
+        there.close()
+        self._runs, self._found = True, False
 
     def __enter__(self) -> Self:
         return self
@@ -70,13 +77,13 @@ class Apart:
         """
         if self._found:
             return
-        if self._child is None:
-            self._child = _Child(self.place, self._with_traceback)
-        answer = self._said(max(self.limit, LIMIT))
-        if isinstance(answer, str):
-            what = f"the solver {shown(self.place)!r}"
-            raise NoSolver(what, f"cannot be imported: {answer}", "mend the module")
-        kind, rest = answer
+        if not self._runs:
+            self._start()
+        kind, rest = self._said(max(self.limit, LIMIT))
+        if kind == ENDED:
+            raise NoSolver(
+                f"the solver {shown(self.place)!r}", f"cannot be imported: {rest}", "mend the module"
+            )
         if kind == NONE:
             self._end(idle=True)
             raise NoSolver(*rest)
@@ -92,68 +99,39 @@ class Apart:
             self.found()
         except NoSolver as error:
             raise SolverFailed(f"made anew after it ended, it {error.problem}") from error
-        assert self._child is not None  # it was found
-        self._child.ask(given)
-        answer = self._said(self.limit)
-        if isinstance(answer, str):
-            raise SolverFailed(answer)
-        kind, rest = answer
-        if kind == FAILED:
-            raise SolverFailed(*rest)
+        # That it has ended is found when its answer is awaited.
+        with suppress(OSError):
+            self._pipe.send(given)
+        kind, rest = self._said(self.limit)
+        if kind != ANSWER:
+            raise SolverFailed(*([rest] if kind == ENDED else rest))
         found: Mapping[str, Any] = rest
         return found
 
-    def _said(self, limit: float) -> tuple[str, Any] | str:
+    def _said(self, limit: float) -> tuple[str, Any]:
         """What the child says next; or in words why it will say nothing more, and then it is ended."""
-        assert self._child is not None  # whoever asks has one
-        answer: tuple[str, Any] | str = ""
         try:
-            answer = self._child.said(limit)
-        finally:
+            if not wait([self._pipe, self._process.sentinel], min(limit, TIMEOUT_MAX)):
+                why = f"it took longer than {limit:g} s and was stopped; --solver-timeout S allows more"
+            else:
+                # An answer that is cut off in the middle is an end like any other.
+                with suppress(Exception):
+                    answer: tuple[str, Any] = self._pipe.recv()
+                    return answer
+                self._process.join(PARTING)
+                why = _ended(self._process.exitcode)
+        except BaseException:
             # Ctrl-C while it works ends it too.
-            if isinstance(answer, str):
-                self._end(idle=False)
-        return answer
+            self._end(idle=False)
+            raise
+        self._end(idle=False)
+        return ENDED, why
 
     def _end(self, idle: bool) -> None:
-        if self._child is not None:
-            self._child.end(idle)
-        self._child, self._found = None, False
-
-
-class _Child:
-    """The process, and the pipe to it."""
-
-    def __init__(self, place: str, with_traceback: bool) -> None:
-        context = get_context("spawn")
-        self._pipe, there = context.Pipe()
-        self._process = context.Process(target=serve, args=(there, place, with_traceback))
-        self._process.start()
-        there.close()
-
-    def ask(self, what: object) -> None:
-        """Send something; that it has ended is found when its answer is awaited."""
-        with suppress(OSError):
-            self._pipe.send(what)
-
-    def said(self, limit: float) -> Any:
-        """What it says next, or in words why it says nothing."""
-        if not wait([self._pipe, self._process.sentinel], min(limit, TIMEOUT_MAX)):
-            return f"it took longer than {limit:g} s and was stopped; --solver-timeout S allows more"
-        # An answer that is cut off in the middle is an end like any other.
-        with suppress(Exception):
-            return self._pipe.recv()
-        self._process.join(PARTING)
-        status = self._process.exitcode
-        if status is None:
-            return "its process closed its output without an answer"
-        if status >= 0:
-            return f"its process ended with exit status {status} and without an answer"
-        names = {int(one): one.name for one in signal.Signals}
-        return f"its process was ended by {names.get(-status, f'signal {-status}')}"
-
-    def end(self, idle: bool) -> None:
         """End it and what it started; an idle one by the end of its requests, so that it can close files."""
+        if not self._runs:
+            return
+        self._runs = self._found = False
         self._pipe.close()
         if idle:
             self._process.join(PARTING)
@@ -162,6 +140,16 @@ class _Child:
                 os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.join()
+
+
+def _ended(status: int | None) -> str:
+    """How a process ended without an answer, by its exit status."""
+    if status is None:
+        return "its process closed its output without an answer"
+    if status >= 0:
+        return f"its process ended with exit status {status} and without an answer"
+    names = {int(one): one.name for one in signal.Signals}
+    return f"its process was ended by {names.get(-status, f'signal {-status}')}"
 
 
 def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:

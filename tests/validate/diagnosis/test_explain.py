@@ -1,9 +1,9 @@
 """Faults planted into solutions: the right diagnosis comes first, and noise has none."""
 
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
+from itertools import cycle
 
 import numpy as np
 import pytest
@@ -15,7 +15,6 @@ from pointcoord.scene.input_part import InputPart
 from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain, explain_outcome
-from validate.diagnosis.kinds import KINDS
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.output import report
@@ -169,9 +168,8 @@ FAULTS: Mapping[str, tuple[Callable[[Solution], Numbers], str, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", SCENES)
-@pytest.mark.parametrize("fault", FAULTS)
-def test_a_planted_fault_is_the_first_diagnosis(name: str, fault: str) -> None:
+@pytest.mark.parametrize(("fault", "name"), [*zip(FAULTS, cycle(SCENES), strict=False)])
+def test_a_planted_fault_is_the_first_diagnosis(fault: str, name: str) -> None:
     plant, kind, words = FAULTS[fault]
     numbers = plant(solved(name)[1])
     first = diagnosis(name, numbers)[0]
@@ -221,7 +219,7 @@ def test_a_sign_of_rates_is_said_of_all_where_those_that_agree_have_it_too() -> 
     assert (found[0].quantities, found[0].words) == (("velocity",), "velocity: the other sign of x")
 
 
-@pytest.mark.parametrize("times", [1.5, 3.0, 30.0])
+@pytest.mark.parametrize("times", [1.5, 30.0])
 def test_differences_of_rounding_have_no_explanation(times: float) -> None:
     # Each off by a factor or a constant, so that a factor or an offset is what fits best.
     _, held = solved("double-wishbone")
@@ -268,7 +266,7 @@ def test_rates_per_input_are_told_from_rates_per_time() -> None:
     assert (first.kind, first.quantities) == ("per input", ("velocity",))
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", SCENES[:2])
 def test_a_time_shift_is_found_with_its_seconds(name: str) -> None:
     scene, _ = solved(name)
     time = scene.time
@@ -287,7 +285,7 @@ def drawn_with(name: str, **offsets: float) -> Numbers:
     return {q: {n: array[0] for n, array in part.items()} for q, part in wrong.numbers.items()}
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", SCENES[:2])
 def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong(name: str) -> None:
     numbers = drawn_with(name, tie_rod_outer__z=2.0)
     found = diagnosis(name, {**numbers, "wheel": {n: np.degrees(a) for n, a in numbers["wheel"].items()}})
@@ -296,8 +294,10 @@ def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong(nam
     assert "degrees for radians" in found[1].words
 
 
-@pytest.mark.parametrize("name", ["double-wishbone", "bmw-e90-strut", "wheel-travel"])
-@pytest.mark.parametrize("quantities", [("position",), ("wheel",), (*STATES, *TURNS, "wheel")])
+@pytest.mark.parametrize(
+    ("name", "quantities"),
+    [("double-wishbone", ("position",)), ("bmw-e90-strut", ("wheel",)), ("wheel-travel", (*STATES, "wheel"))],
+)
 def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_is_said(
     name: str, quantities: tuple[str, ...]
 ) -> None:
@@ -309,17 +309,12 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     assert found[0].words.endswith("and rack_centre with it")
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", SCENES[:2])
 def test_a_misread_wheel_is_a_misread_hardpoint_and_no_other_assembly(name: str) -> None:
     # No link holds a carried point, and so its lengths in other assemblies are those of its body.
     first = diagnosis(name, drawn_with(name, wheel_centre__x=5.0))[0]
     assert (first.kind, first.leftover <= 1.0) == ("hardpoint", True)
     assert "wheel_centre.x drawn 5 mm too far back" in first.words
-
-
-def test_two_faults_are_named_once_and_not_in_both_orders() -> None:
-    found = diagnosis("double-wishbone", camber(solved("double-wishbone")[1], lambda v: -np.degrees(v)))
-    assert [one.kind for one in found] == ["sign and unit"]
 
 
 @pytest.mark.parametrize("quantities", [("velocity",), (*STATES, *TURNS, "wheel")])
@@ -373,13 +368,6 @@ def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
     }
 
 
-def with_input(name: str, given: str, change: Callable[[InputPart], InputPart]) -> Numbers:
-    """The numbers of a solver that takes an input otherwise than it is given."""
-    scene, _ = solved(name)
-    other = scene.model_copy(update={"inputs": {**scene.inputs, given: change(scene.inputs[given])}})
-    return formulation("pointcoord").solve(other).numbers
-
-
 def taken(factor: float, more: float = 0.0) -> Callable[[InputPart], InputPart]:
     """An input as k x + m; of the laws that the built-in cars have."""
 
@@ -413,10 +401,9 @@ WRONG_INPUTS: Mapping[str, dict[str, tuple[float, float]]] = {
 }
 
 
-@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
-@pytest.mark.parametrize("words", WRONG_INPUTS)
+@pytest.mark.parametrize(("words", "name"), [*zip(WRONG_INPUTS, cycle(SCENES[:2]), strict=False)])
 def test_inputs_that_are_taken_otherwise_are_the_first_diagnosis_and_the_only_one(
-    name: str, words: str
+    words: str, name: str
 ) -> None:
     scene, _ = solved(name)
     wrong = {given: taken(*km)(scene.inputs[given]) for given, km in WRONG_INPUTS[words].items()}
@@ -425,13 +412,6 @@ def test_inputs_that_are_taken_otherwise_are_the_first_diagnosis_and_the_only_on
     assert (only.kind, only.leftover <= 1.0) == ("input", True)
     assert only.words.endswith(f": {words}")
     assert {"position", "velocity", "acceleration"} <= set(only.quantities)
-
-
-def test_another_motion_of_the_same_links_is_no_other_assembly(monkeypatch: pytest.MonkeyPatch) -> None:
-    # Another input keeps all lengths, and is away from ours by millimetres; as if inputs were never supposed.
-    others = tuple(kind for kind in KINDS if kind.name != "input")
-    monkeypatch.setattr(sys.modules[explain.__module__], "KINDS", others)
-    assert diagnosis("double-wishbone", with_input("double-wishbone", "rack", taken(1.05))) == ()
 
 
 def test_another_assembly_of_the_same_links_is_told_as_one() -> None:

@@ -84,18 +84,9 @@ def late(table: Table) -> Table:
             "wheel_travel",
             "upper_arm_front.y drawn 3 mm too far in",
         ),
-        ("double-wishbone", "tie_rod_inner__z", 5.0, "wheel_travel", "tie_rod_inner.z drawn 5 mm too high"),
         ("double-wishbone", "tie_rod_inner__z", 5.0, "rack", "tie_rod_inner.z drawn 5 mm too high"),
-        (
-            "hmmwv-front",
-            "upper_ball_joint__x",
-            4.0,
-            "wheel_travel",
-            "upper_ball_joint.x drawn 4 mm too far back",
-        ),
         ("bmw-e90-strut", "strut_top__x", 6.0, "wheel_travel", "strut_top.x drawn 6 mm too far back"),
         ("five-link", "toe_inner__z", 2.0, "wheel_travel", "toe_inner.z drawn 2 mm too high"),
-        ("semi-trailing-arm", "pivot_inner__z", 3.0, "wheel_travel", "pivot_inner.z drawn 3 mm too high"),
     ],
 )
 def test_a_misread_hardpoint_is_named_with_its_amount_on_every_car(
@@ -136,7 +127,6 @@ def test_rows_in_any_order_have_their_misread_hardpoint() -> None:
     ("change", "words"),
     [
         (late, "camber, kingpin, toe, caster: one sample late, the first one twice"),
-        (toe_out, "toe: the other sign"),
         (lambda t: t | {"camber": 1.03 * t["camber"]}, "camber: 1.03 times ours"),
         (lambda t: t | {"toe": t["toe"] + 0.3}, "toe: a constant offset of 0.00523599 rad (0.3 deg)"),
     ],
@@ -150,11 +140,3 @@ def test_noise_on_one_number_has_no_explanation() -> None:
     scene = asked("double-wishbone", "wheel_travel")
     noise = 1e-2 * np.random.default_rng(1).standard_normal(ROWS)
     assert explained(scene, scene, "wheel_travel", 4, lambda t: t | {"toe": t["toe"] + noise}) == []
-
-
-def test_another_closure_is_named() -> None:
-    scene = asked("off-axis-strut", "wheel_travel")
-    content = scene.model_dump(exclude_none=True)
-    content["mechanism"]["closure"] = "collinear"
-    (said,) = explained(scene, Scene.from_mapping(content, "collinear"), "wheel_travel", 4, same)
-    assert "the car is closed as collinear, where the scene asks for drawn" in said

@@ -31,8 +31,9 @@ def tolerances(found: DataOutcome) -> Mapping[str, Mapping[str, Any]]:
     return found.outcome.solutions[0].accuracy.claims
 
 
-@pytest.mark.parametrize("ending", ["csv", "parquet"])
-@pytest.mark.parametrize("scene", ["double-wishbone", "bounce-on-a-heaving-chassis"])
+@pytest.mark.parametrize(
+    ("scene", "ending"), [("double-wishbone", "csv"), ("bounce-on-a-heaving-chassis", "parquet")]
+)
 def test_what_simulate_writes_agrees_within_its_tolerance_and_a_changed_number_does_not(
     scene: str, ending: str, tmp_path: Path
 ) -> None:
@@ -157,7 +158,7 @@ DRAWN = standing(WISHBONE).inputs["arm_angle"]
 EVEN, UNEVEN = tuple(range(-30, 31, 5)), (-30.2, -23.7, -16.3, -9.6, 0.3, 7.8, 14.9, 22.4, 30.1)
 
 
-@pytest.mark.parametrize("wrong", [0.0, 0.3, 0.02])
+@pytest.mark.parametrize("wrong", [0.0, 0.02])
 def test_a_column_in_even_steps_is_set_and_not_rounded(wrong: float) -> None:
     found = compared(steered(EVEN, wrong), {}, WISHBONE)
     (row,) = found.outcome.rows
@@ -212,7 +213,6 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT + "0.3,1e308", {}, ("mine.csv: line 4, column 'camber': is 1e+308",)),
         (TEXT + "1e14,1.0", {}, ("line 4, column 'time': is 1e+14",)),
         (TEXT, {"colums": {}}, ("'colums'", "did you mean 'columns'?")),
-        (TEXT, {"columns": {"cambr": {}}}, ("'cambr'", "did you mean 'camber'?")),
         (TEXT, {"columns": {"camber": {"is": "wheel.cambre"}}}, ("did you mean 'wheel.camber'?",)),
         (TEXT, {"columns": {"camber": {"unit": "mm"}}}, ("'mm' is no unit of wheel.camber", "deg")),
         (TEXT, {"columns": {"camber": {"unit": ""}}}, ("columns.camber.unit", "its unit is not said", "deg")),
@@ -228,7 +228,6 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT.replace("time [s]", "tyme [s]"), {}, ("no column says at which pose",)),
         (TEXT.replace("camber", "cmaber").replace("time", "tim"), {}, ("none of tim, cmaber",)),
         (TEXT.replace("camber", "cmaber"), {}, ("nothing to compare",)),
-        (TEXT + "0.10,1.3\n", {}, ("line 4", "time = 0.1 s as line 2 is", "one row for each pose")),
         (BUMP + "0,1\n", CONTACT, ("rolling_radius",)),
         (BUMP + "900,1\n", CENTRE, ("line 2", "none of its 1 rows can be reached", "out of reach")),
     ],
@@ -285,7 +284,6 @@ camber = { is = "wheel.camber", printed = 1e-5 }
     ("change", "words"),
     [
         (lambda toe: -toe, "toe: the other sign"),
-        (np.radians, "toe: degrees taken for radians and converted once more"),
         (lambda toe: toe + 0.25, "toe: a constant offset of 0.004363"),
     ],
 )
@@ -316,16 +314,6 @@ def test_a_disagreement_over_travel_is_explained_and_stands_in_every_file(
     (failure,) = suite.iter("failure")
     assert f" at {wrong['place']}; at most " in str(failure.get("message"))
     assert f" at {wrong['place']}; at most " in Path("x.md").read_text()
-
-
-def test_a_column_that_looks_printed_beside_others_in_full_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "map.toml").write_text(MAP.replace(", printed = 1e-5", ""), encoding="utf-8")
-    (tmp_path / "x.csv").write_text(curves_over_travel(lambda toe: toe), encoding="utf-8")
-    files = ["--data", str(tmp_path / "x.csv"), "--map", str(tmp_path / "map.toml")]
-    assert main(["validate", *files, "double-wishbone"]) == 1
-    assert "if rounded to 5 decimals, say printed = 1e-05 of it in a map" in capsys.readouterr().out
 
 
 def test_a_factor_is_what_a_file_off_by_more_than_its_digits_needs(tmp_path: Path) -> None:

@@ -47,15 +47,13 @@ def test_the_same_table_is_read_from_any_of_its_ways_to_be_written(data: bytes, 
     assert np.degrees(camber.values) == pytest.approx([0.3, 0.0, -0.4])
     # To the last digit as written.
     assert np.degrees(camber.off) == pytest.approx([0.05] * 3)
-    told = " / ".join(found.notes)
-    assert ("who, which holds 'rig' and the like and no numbers" in told) == (b"who" in data)
-    assert ("column 1" in told) == data.startswith(b",")
+    assert any("ignored: who" in note for note in found.notes) == (b"who" in data)
 
 
 def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
     data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
     map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'
-    with pytest.raises(FileError, match=r"'toe' of .* holds 'rig' and the like; allowed: columns of numbers"):
+    with pytest.raises(FileError, match=r"'toe': holds 'rig' and the like; allowed: columns of numbers"):
         read(tmp_path, data, map)
     assert len(read(tmp_path, data, map.replace('unit = "deg"', 'is = "ignore"')).numbers) == 1
 
@@ -95,8 +93,3 @@ def test_more_than_half_of_the_rows_have_to_be_left_out_for_that(
     late = "".join(f"{1e3 * k},0\n" for k in range(1, lost + 1))
     found = compared(tmp_path, f"time [s],camber [deg]\n{told}{late}5e6,\n6e6,\n7e6,\n")
     assert [row.verdict for row in found.outcome.rows] == [verdict]
-
-
-def test_a_loop_is_refused_with_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(FileError, match="of a loop its two ways in files of their own"):
-        compared(tmp_path, TIDY + "0.0,0.9\n")

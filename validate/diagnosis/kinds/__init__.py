@@ -20,23 +20,23 @@ from validate.diagnosis.kinds.numbers import (
 from validate.diagnosis.kinds.rates import differences, rates_per_input
 from validate.diagnosis.kinds.time_shift import one_sample_off, shifted_in_time
 
-UNIT, OFFSET = "unit", "offset"
+UNIT = "unit"
 KINDS = (
     Kind("sign", other_signs, opens=True, closes=True),
     Kind("axes", exchanged_axes, opens=True),
     Kind("mirror", mirrored),
     Kind(UNIT, other_units, opens=True, closes=True),
-    Kind(OFFSET, offsets, closes=True),
+    Kind("offset", offsets, closes=True),
     Kind("definition", other_definitions, opens=True),
     Kind("digits", printed_digits, closes=True),
     Kind("swapped", swapped),
     Kind("differences", differences, of_time=True),
     Kind("per input", rates_per_input, opens=True, of_time=True),
     Kind("sample", one_sample_off, opens=True, neighbours=True),
-    Kind("closure", other_closures, "motion"),
-    Kind("input", wrong_inputs, "motion", of_time=True),
+    Kind("closure", other_closures, "car"),
+    Kind("input", wrong_inputs, "car", of_time=True),
     Kind("branch", other_assemblies, "car"),
-    Kind("hardpoint", misread_hardpoints, "car"),
     Kind("time shift", shifted_in_time, "car", of_time=True),
+    Kind("hardpoint", misread_hardpoints, "car"),
     Kind("factor", factors, "last"),
 )

@@ -1,9 +1,8 @@
 """Another definition of an angle.
 
-Ours is projected: atan2(p, q) with p and q the components of a line along two directions of the car. With l
-the line and r its third component, sources also print arcsin(p / |l|) (camber: Adams' turning tables; toe:
-OptimumK), the sine p / |l| itself, that of the projected angle, the slope p / q, and the angle to the
-plane's other direction.
+Ours is projected: atan2(p, q) with p and q the components of a line l along two directions of the car. Other
+sources print arcsin(p / |l|) (camber: Adams' turning tables; toe: OptimumK), the sine p / |l| itself, that of
+the projected angle, and the slope p / q.
 """
 
 from __future__ import annotations
@@ -22,9 +21,6 @@ Array = NDArray[np.float64]
 
 DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
     "arcsin of the component, not projected": lambda p, q, n: np.arcsin(p / n),
-    "the angle to its perpendicular": lambda p, q, n: np.arctan2(q, p),
-    "the angle between the line and the axis, in space": lambda p, q, n: np.arccos(q / n),
-    "the angle to the opposite direction": lambda p, q, n: np.arctan2(p, -q),
     "the component of a unit vector, no angle": lambda p, q, n: p / n,
     "the slope, no angle": lambda p, q, n: p / q,
     "the sine, no angle": lambda p, q, n: p / np.hypot(p, q),

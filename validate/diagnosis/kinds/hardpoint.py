@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
-from itertools import combinations, islice
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,78 +51,74 @@ def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
 
     A number that has a fault of its own hides what the others say.
     """
-    looked, done = evidence.first_wrong, False
-    for one in _misread(evidence, looked, 3):
-        yield one
-        done |= _gives(evidence, one, looked)
-    if done or len(looked) < ENOUGH_NUMBERS or any(kind_of(row) != "car" for row in looked):
-        return
-    for left_out in looked:
-        others = tuple(row for row in looked if row != left_out)
-        yield from (one for one in _misread(evidence, others, 1) if _gives(evidence, one, others))
+    looked = evidence.first_wrong
+    found = _misread(evidence, looked, 3)
+    yield from found
+    of_the_car = len(looked) >= ENOUGH_NUMBERS and all(kind_of(row) == "car" for row in looked)
+    if of_the_car and not any(_gives(evidence, one, looked) for one in found):
+        for others in combinations(looked, len(looked) - 1):
+            yield from (one for one in _misread(evidence, others, 1) if _gives(evidence, one, others))
 
 
 def _gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:
     return all(evidence.left(row, *one.rows[row]) <= 1.0 for row in rows)
 
 
-def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> Iterator[Hypothesis]:
+def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypothesis]:
     """The likeliest by some numbers, with more coordinates, `most` at most, only where fewer do not do."""
     scene, every = evidence.solved.fine, evidence.scene.instants
     some = np.arange(0, len(every), -(-len(every) // MOST_INSTANTS))
     if not np.isin(every[some], evidence.times).all():
-        return
+        return []
     time = scene.time.model_copy(update={"stop": float(every[some[-1]]), "samples": len(some)})
-    few = scene.model_copy(update={"time": time, "points": None})
-    at = np.searchsorted(evidence.times, every[some])
+    few, at = scene.model_copy(update={"time": time}), np.searchsorted(evidence.times, every[some])
     ours, theirs = (np.concatenate([part[row][at].ravel() for row in looked]) for part in evidence.both)
     if not np.isfinite(theirs).all():
-        return
-    names = _coordinates(scene)
-    steps = STEP * np.concatenate([np.eye(len(names)), -np.eye(len(names))])
-    read = _read(few, _offsets(few, names, steps.T), looked)
-    slopes = (read[: len(names)] - read[len(names) :]) / (2.0 * STEP)
-    usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
-    names, slopes = [n for n, use in zip(names, usable, strict=True) if use], slopes[usable]
+        return []
     farthest = FARTHEST * float(np.ptp([*scene.mechanism.points.values()], axis=0).max())
-    for choices in islice(_likeliest(names, slopes, theirs - ours, farthest), most):
-        found = []
-        for chosen in choices:
 
-            def moved(amounts: Array, chosen: Chosen = chosen) -> Array:
-                near = np.clip(amounts, -farthest, farthest)
-                return _read(few, _offsets(few, chosen, near.T), looked)
+    def read(chosen: Chosen, amounts: Array) -> Array:
+        """Numbers of designs by amounts, (designs, coordinates); NaN of those that cannot be solved."""
+        found = sweep(few, offsets=_offsets(few, chosen, np.clip(amounts, -farthest, farthest).T))
+        parts = [found.numbers[quantity][name].reshape(len(found), -1) for quantity, name in looked]
+        return np.concatenate(parts, axis=1)
 
-            amounts = fitted(moved, [0.0] * len(chosen), STEP, theirs)
-            if amounts is not None and np.abs(amounts).max() < farthest:
-                left = _left(moved, theirs, amounts)
-                near = partial(_as_near, moved, theirs, CLOSE * left)
-                found.append((left, chosen, roundest(amounts, DECIMALS, near)))
-        done = False
-        for left, chosen, amounts in found:
-            if left > POORER * min(rest for rest, _, _ in found):
-                continue
-            rows = _rows(evidence, chosen, amounts)
-            if rows:
-                said = (_said(evidence, c, a) for c, a in zip(chosen, amounts.tolist(), strict=True))
-                count = len(chosen)
-                one = Hypothesis(chosen, " and ".join(said), rows, count, 1.5 + count, whole=True)
-                yield one
-                done |= _gives(evidence, one, looked)
-        if done:
-            return
-
-
-def _left(read: Callable[[Array], Array], theirs: Array, amounts: Array) -> float:
-    """What amounts leave of the difference."""
-    return float(np.linalg.norm(theirs - read(amounts[None])[0]))
+    names = _coordinates(scene)
+    above, below = np.split(read(names, STEP * np.concatenate([np.eye(len(names)), -np.eye(len(names))])), 2)
+    slopes = (above - below) / (2.0 * STEP)
+    usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
+    names = tuple(name for name, use in zip(names, usable, strict=True) if use)
+    groups = _groups(names)[:most]
+    for choices in groups:
+        tried = [
+            (*found, chosen)
+            for chosen in _likeliest(choices, names, slopes[usable], theirs - ours, farthest)
+            if (found := _amounts(partial(read, chosen), len(chosen), theirs, farthest))
+        ]
+        best = min((left for left, *_ in tried), default=0.0)
+        likely = [(chosen, amounts) for left, amounts, chosen in tried if left <= POORER * best]
+        hypotheses = [one for chosen, amounts in likely if (one := _supposed(evidence, chosen, amounts))]
+        if any(_gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
+            return hypotheses
+    return []
 
 
-def _as_near(read: Callable[[Array], Array], theirs: Array, most: float, amounts: Array) -> bool:
-    return _left(read, theirs, amounts) <= most
+def _amounts(
+    read: Callable[[Array], Array], count: int, theirs: Array, farthest: float
+) -> tuple[float, Array] | None:
+    """By how much coordinates are off, as round as it may be, and what that leaves; None of too much."""
+
+    def left(amounts: Array) -> float:
+        return float(np.linalg.norm(theirs - read(amounts[None])[0]))
+
+    amounts = fitted(read, [0.0] * count, STEP, theirs)
+    if amounts is None or not np.abs(amounts).max() < farthest:
+        return None
+    least = left(amounts)
+    return least, roundest(amounts, DECIMALS, lambda near: left(near) <= CLOSE * least)
 
 
-def _coordinates(scene: Scene) -> list[Coordinate]:
+def _coordinates(scene: Scene) -> Chosen:
     """Every one of the drawing; those of a point that others stand at the place of also with theirs."""
     points = scene.mechanism.points
     with_others: dict[str, list[str]] = {}
@@ -130,14 +126,14 @@ def _coordinates(scene: Scene) -> list[Coordinate]:
         if missing in points and points[missing] == points[point]:
             with_others.setdefault(point, []).append(missing)
     together = [(point, *others) for point, others in with_others.items()]
-    return [
+    return tuple(
         tuple(f"{name}.{axis}" for name in some)
         for some in (*together, *((point,) for point in points))
         for axis in "xyz"
-    ]
+    )
 
 
-def _offsets(scene: Scene, chosen: Sequence[Coordinate], amounts: Array) -> dict[str, Array]:
+def _offsets(scene: Scene, chosen: Chosen, amounts: Array) -> dict[str, Array]:
     """Offsets of designs, by dotted name, from those of chosen coordinates, (coordinates, designs)."""
     mechanism = scene.mechanism
     # A point that is varied, by nothing, does not go along with the one that stands in for it.
@@ -149,50 +145,47 @@ def _offsets(scene: Scene, chosen: Sequence[Coordinate], amounts: Array) -> dict
     return offsets
 
 
-def _read(scene: Scene, offsets: Mapping[str, Array], rows: Sequence[Row]) -> Array:
-    """Numbers of rows of several designs, (designs, numbers); NaN of designs that cannot be solved."""
-    found = sweep(scene, offsets=offsets)
-    return np.concatenate([found.numbers[q][name].reshape(len(found), -1) for q, name in rows], axis=1)
+def _groups(names: Chosen) -> list[list[tuple[int, ...]]]:
+    """The choices of one coordinate, of two, and of the three of a point, by their places."""
+    places = range(len(names))
+    points = [tuple(name.rpartition(".")[0] for name in some) for some in names]
+    return [
+        [(i,) for i in places],
+        [(i, k) for i, k in combinations(places, 2) if not {*names[i]} & {*names[k]}],
+        [three for three in combinations(places, 3) if len({points[i] for i in three}) == 1],
+    ]
 
 
 def _likeliest(
-    names: Sequence[Coordinate], slopes: Array, gap: Array, farthest: float
-) -> Iterator[list[Chosen]]:
-    """The choices of one, two and three coordinates that leave the least by linear least squares."""
+    choices: Sequence[tuple[int, ...]], names: Chosen, slopes: Array, gap: Array, farthest: float
+) -> list[Chosen]:
+    """The choices that leave the least by linear least squares."""
     products, right, whole = slopes @ slopes.T, slopes @ gap, float(gap @ gap)
-    places = range(len(names))
-    twos = [(i, k) for i, k in combinations(places, 2) if not {*names[i]} & {*names[k]}]
-    points = [tuple(name.rpartition(".")[0] for name in some) for some in names]
-    threes = [t for t in combinations(places, 3) if len({points[i] for i in t}) == 1]
-    groups: tuple[list[tuple[int, ...]], ...] = (
-        [(i,) for i in places],
-        [*twos],
-        [*threes],
-    )
-    for choices in groups:
-        left: list[tuple[float, Chosen]] = []
-        for some in choices:
-            chosen = list(some)
-            amounts = np.linalg.lstsq(products[np.ix_(chosen, chosen)], right[chosen], rcond=1e-12)[0]
-            rest = whole - float(amounts @ right[chosen])
-            if rest <= LIKELY**2 * whole and np.abs(amounts).max() <= farthest:
-                left.append((rest, tuple(names[i] for i in some)))
-        yield [chosen for _, chosen in sorted(left)[:LIKELIEST]]
+    left: list[tuple[float, Chosen]] = []
+    for some in choices:
+        chosen = list(some)
+        amounts = np.linalg.lstsq(products[np.ix_(chosen, chosen)], right[chosen], rcond=1e-12)[0]
+        rest = whole - float(amounts @ right[chosen])
+        if rest <= LIKELY**2 * whole and np.abs(amounts).max() <= farthest:
+            left.append((rest, tuple(names[i] for i in some)))
+    return [chosen for _, chosen in sorted(left)[:LIKELIEST]]
 
 
-def _rows(evidence: Evidence, chosen: Chosen, amounts: Array) -> dict[Row, tuple[Array, Array]]:
-    """All numbers of a corrected design; none where it cannot be solved."""
+def _supposed(evidence: Evidence, chosen: Chosen, amounts: Array) -> Hypothesis | None:
+    """All numbers of a corrected design; None where it cannot be solved."""
     scene = evidence.solved.fine
     found = sweep(scene, offsets=_offsets(scene, chosen, amounts[:, None]))
     if not found.solved.all():
-        return {}
+        return None
     at = np.searchsorted(evidence.scene.instants, evidence.times)
-    return {
+    rows = {
         (q, name): (np.asarray(array[0])[at], evidence.rounded((q, name), *amounts))
         for q, part in found.numbers.items()
         for name, array in part.items()
         if (q, name) in evidence.held
     }
+    said = (_said(evidence, c, a) for c, a in zip(chosen, amounts.tolist(), strict=True))
+    return Hypothesis(chosen, " and ".join(said), rows, len(chosen), 1.5 + len(chosen), whole=True)
 
 
 def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import partial
-from itertools import permutations, product
+from itertools import combinations, permutations, product
 from math import pi
 from typing import NamedTuple
 
@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.rounding import EPS
-from pointcoord.simulation import scene_mechanism
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
 from validate.diagnosis.least import roundest
@@ -161,36 +159,21 @@ def _is_less(evidence: Evidence, row: Row, offset: Array) -> bool:
 
 
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
-    """What is subtracted: the chassis' motion, the first or the drawn value, another origin, a constant."""
-    if evidence.over_time:
-        yield from _relative_to_chassis(evidence)
+    """What is subtracted: the first value, another origin of all points, a constant."""
     placed = [row for row in evidence.wrong if order(row) == 0]
-    if not placed:
-        return
     first = {row: _less(evidence, row, evidence.held[row][0]) for row in placed}
-    yield Hypothesis("first", "the value at the first instant is subtracted", first)
-    drawn = {row: value for row in placed if (value := _drawn(evidence, row)) is not None}
-    if drawn:
-        rows = {row: _less(evidence, row, value) for row, value in drawn.items()}
-        yield Hypothesis("static", "the static value, as drawn, is subtracted", rows, cost=1.1)
+    if first:
+        yield Hypothesis("first", "the value at the first instant is subtracted", first)
     yield from _origin(evidence, [row for row in placed if kind_of(row) == "point"])
     for row in placed:
         gap = np.mean(evidence.given[row] - evidence.held[row], axis=0)
         noise = float(evidence.rounded(row).max())
         if np.isfinite(gap).all() and np.abs(gap).max() > 8.0 * noise and len(evidence.times) > 2:
             _, unit = evidence.theirs.get(row, ("", 1.0))
-            gap = roundest(
-                np.where(np.abs(gap) <= noise, 0.0, gap), 7, partial(_is_less, evidence, row), unit
-            )
+            near = np.where(np.abs(gap) <= noise, 0.0, gap)
+            gap = roundest(near, 7, partial(_is_less, evidence, row), unit)
             words, count = f"a constant offset of {evidence.in_words(row, gap)}", max(np.size(gap), 1)
             yield Hypothesis((row, "constant"), words, {row: _less(evidence, row, -gap)}, count, 1.0 + count)
-
-
-def _drawn(evidence: Evidence, row: Row) -> Array | float | None:
-    """A row's number in the drawing; of an angle in the closed drawing."""
-    if kind_of(row) == "point":
-        return np.array(evidence.scene.mechanism.points[row[1]])
-    return evidence.solved.drawn.get(row[1])
 
 
 def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
@@ -211,42 +194,14 @@ def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
     yield Hypothesis("origin", words, moved, fitted, 1.0 + 0.5 * fitted)
 
 
-def _relative_to_chassis(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Where an input displaces the chassis and none turns it."""
-    scene = evidence.scene
-    chassis = ChassisMotion.of(scene_mechanism(scene), scene.functions)
-    moved = () if chassis.turns else chassis.states(evidence.times, 2)
-    points = [row for row in evidence.wrong if kind_of(row) == "point"] if moved else []
-    if points:
-        rows = {row: _less(evidence, row, moved[order(row)]) for row in points}
-        yield Hypothesis("chassis", "relative to the chassis, whose own motion is left out", rows)
-
-
 def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Two points or angles in each other's place, in all quantities; or two quantities, such as rates."""
-
-    def would_be(pairs: Iterable[tuple[Row, Row]]) -> dict[Row, WouldBe]:
-        """Rows as others, where these are held."""
-        return {
-            row: (evidence.held[other], evidence.allowed[other])
-            for row, other in pairs
-            if other in evidence.held
-        }
-
-    names = tuple(dict.fromkeys(row[1] for row in evidence.wrong))
-    for name, other in product(names, dict.fromkeys(row[1] for row in evidence.held)):
-        if name == other or (other in names and other < name):
-            continue
-        partner = {name: other, other: name}
-        rows = would_be((row, (row[0], partner[row[1]])) for row in evidence.wrong if row[1] in partner)
-        if rows:
-            yield Hypothesis((name, other), f"{name} is swapped with {other}", rows, cost=1.5)
-    for one, two in permutations(evidence.wrong_quantities, 2):
-        if QUANTITIES[one].of == QUANTITIES[two].of and one < two:
-            partner = {one: two, two: one}
-            rows = would_be((row, (partner[row[0]], row[1])) for row in evidence.wrong if row[0] in partner)
-            words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
-            yield Hypothesis((one, two), words, rows, cost=1.1)
+    """Two quantities in each other's place, such as velocities and accelerations."""
+    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
+        partner = {one: two, two: one}
+        others = {r: (partner[r[0]], r[1]) for r in evidence.wrong if r[0] in partner}
+        rows = {r: (evidence.held[o], evidence.allowed[o]) for r, o in others.items() if o in evidence.held}
+        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
+        yield Hypothesis((one, two), words, rows, cost=1.1)
 
 
 def _decimal_step(numbers: Array, places: int) -> Array:

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, simulate
+from pointcoord import PointcoordError, simulate
 from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.evidence import Evidence
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import fitted
 
@@ -20,7 +20,7 @@ FEW = 256  # instants that a shift is found from, and shifts by whole instants t
 
 def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
     """Their numbers at t are ours at t + s, of the whole car: s from the grid, then by least squares."""
-    times, looked = evidence.times, evidence.first_wrong
+    times, looked, scene = evidence.times, evidence.first_wrong, evidence.solved.fine
     if len(times) < 5 or evidence.solved.motion is None:
         return
     ours, theirs = (
@@ -33,37 +33,56 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
         return
     pad = 2.0 * float(np.diff(times).max())
     whole = _on_the_grid(times, theirs[:, used] / spread[used], ours[:, used] / spread[used])
-    motion = _longer_motion(evidence, whole, pad) or evidence.solved.motion
-    first, last = float(motion.times[0]), float(motion.times[-1])
+    first, last = times[0] + min(0.0, whole - pad), times[-1] + max(0.0, whole + pad)
+    try:
+        longer = scene.time.model_copy(update={"start": float(first), "stop": float(last), "samples": 2})
+        motion = simulate(scene.model_copy(update={"time": longer}))
+    except PointcoordError:
+        # The car does not go so far.
+        motion, first, last = evidence.solved.motion, times[0], times[-1]
     some = np.unique(np.linspace(0, len(times) - 1, min(FEW, len(times))).astype(np.intp))
     some = some[(times[some] + whole - pad >= first) & (times[some] + whole + pad <= last)]
     if len(some) < 5:
         return
 
     def read(shifts: Array) -> Array:
-        found = [_moved(motion, times[some] + whole + np.clip(shift, -pad, pad)) for (shift,) in shifts]
-        return np.stack([np.concatenate([one[row].ravel() for row in looked]) for one in found])
+        found = [motion.at(times[some] + whole + np.clip(shift, -pad, pad)).numbers for (shift,) in shifts]
+        return np.stack([np.concatenate([one[q][of].ravel() for q, of in looked]) for one in found])
 
-    flat = np.concatenate([evidence.given[row][some].ravel() for row in looked])
-    rest = fitted(read, [0.0], 1e-4 * pad, flat)
+    rest = fitted(read, [0.0], 1e-4 * pad, np.concatenate([evidence.given[r][some].ravel() for r in looked]))
     # Where whole instants leave nothing but rounding, there is nothing to find.
     shift = whole + (0.0 if rest is None else float(rest[0]))
     if abs(shift) <= 1e-9 * float(np.ptp(times)):
         return
     inside = (times + shift >= first) & (times + shift <= last)
-    found = _moved(motion, np.clip(times + shift, first, last))
+    found = motion.at(np.clip(times + shift, first, last)).numbers
+    rows = {}
+    for row in evidence.held:
+        if row[1] in found[row[0]]:
+            value = np.asarray(found[row[0]][row[1]])
+            # The instants are rounded too, and so moves what is read there.
+            speed = np.abs(np.gradient(value, times, axis=0)).max()
+            # What is claimed varies along the motion: the most of it, since it is read elsewhere.
+            most = np.broadcast_to(evidence.rounded(row).max(axis=0), value.shape)
+            allowed = most + 8.0 * EPS * speed * (abs(shift) + np.abs(times).max())
+            allowed[~inside] = np.inf
+            rows[row] = (value, allowed)
     reach = "" if inside.all() else ", as far as ours reach"
     words = f"the same curves {abs(shift):.6g} s {'later' if shift < 0.0 else 'earlier'}{reach}"
-    rows = {}
-    for row in evidence.held.keys() & found.keys():
-        # The instants are rounded too, and so moves what is read there.
-        speed = np.abs(np.gradient(found[row], times, axis=0)).max()
-        # What is claimed varies along the motion: the most of it, since it is read elsewhere.
-        most = np.broadcast_to(evidence.rounded(row).max(axis=0), found[row].shape)
-        allowed = most + 8.0 * EPS * speed * (abs(shift) + np.abs(times).max())
-        allowed[~inside] = np.inf
-        rows[row] = (found[row], allowed)
     yield Hypothesis("shift", words, rows, 1, 2.0, whole=True)
+
+
+def _on_the_grid(times: Array, theirs: Array, ours: Array) -> float:
+    """The shift by whole instants under which both curves are nearest; of many some, then those about it."""
+    half, coarse = len(times) // 2, -(-len(times) // FEW)
+
+    def left(k: int) -> float:
+        mine, other = (ours[k:], theirs[: len(ours) - k]) if k >= 0 else (ours[:k], theirs[-k:])
+        return float(np.mean((mine[::coarse] - other[::coarse]) ** 2))
+
+    best = min(range(-half, half + 1, coarse), key=left)
+    best = min(range(max(best - coarse, -half), min(best + coarse, half) + 1), key=left)
+    return float(times[best] - times[0]) if best >= 0 else float(times[0] - times[-best])
 
 
 SAMPLES: Mapping[str, Callable[[Array], Array]] = {
@@ -82,34 +101,3 @@ def one_sample_off(evidence: Evidence) -> Iterator[Hypothesis]:
         looked = (*evidence.wrong, *evidence.beside)
         rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in looked}
         yield Hypothesis(words, words, rows, cost=1.2)
-
-
-def _longer_motion(evidence: Evidence, shift: float, pad: float) -> Motion | None:
-    """The scene's motion over the instants that a shift needs; None where it has none there."""
-    scene = evidence.solved.fine
-    time = scene.time
-    first, last = min(time.start, time.start + shift - pad), max(time.stop, time.stop + shift + pad)
-    longer = time.model_copy(update={"start": first, "stop": last, "samples": 2})
-    try:
-        return simulate(scene.model_copy(update={"points": None, "time": longer}))
-    except PointcoordError:
-        return None
-
-
-def _on_the_grid(times: Array, theirs: Array, ours: Array) -> float:
-    """The shift by whole instants under which both curves are nearest; of many some, then those about it."""
-    half, coarse = len(times) // 2, -(-len(times) // FEW)
-
-    def left(k: int) -> float:
-        mine, other = (ours[k:], theirs[: len(ours) - k]) if k >= 0 else (ours[:k], theirs[-k:])
-        return float(np.mean((mine[::coarse] - other[::coarse]) ** 2))
-
-    best = min(range(-half, half + 1, coarse), key=left)
-    best = min(range(max(best - coarse, -half), min(best + coarse, half) + 1), key=left)
-    return float(times[best] - times[0]) if best >= 0 else float(times[0] - times[-best])
-
-
-def _moved(motion: Motion, times: Array) -> Mapping[Row, Array]:
-    """Our numbers at other instants."""
-    samples = motion.at(times)
-    return {(q, name): np.asarray(a) for q, part in samples.numbers.items() for name, a in part.items()}
