@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.comparing import Page
-from validate.commands.usage import Commands, add_json, refuse, require_results, share
+from validate.commands.usage import JSON, QUIET, REPORT, Command, require_results
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -17,18 +18,11 @@ in extreme sizes and rates. Every answer is compared with a reference that is so
 digits and proven: it must be right within its error bound, or refused with a reason.
 `pointcoord study hard` does the same by several processes or machines, and keeps records."""
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "hard", help="try the cases that are known to be hard", description=DESCRIPTION
-    )
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
-    parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
-    add_json(parser, "every trial, or the list,")
-    parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
-    share(parser, "--report", "--quiet")
-    parser.set_defaults(run=run)
+OPTIONS = f"""\
+cases=[CASE ...]  a hard case's name; none: all cases
+--list  name the cases and say why each is hard
+--times  say how long each case took, the longest first
+{JSON}{REPORT}{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -39,35 +33,40 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     from validate.hard import run as hard_run
 
     cases = catalogue.chosen(options.cases)
-    if options.list:
-        refuse(options, ("--report",), "is about cases that are tried; leave it out with --list")
+    if options.list and options.report is not None:
+        raise UsageError("--report is about cases that are tried; leave it out with --list")
     require_results({"--json": options.json}, (), options, console)
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
-    journal = Journal(options.json, head, console)
     if options.list:
         console.say(hard_report.listing(cases))
-        journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")
-        return ExitStatus.AGREE
+        listed = Journal(
+            options.json, head, console, lambda: hard_report.listing_data(cases), lambda: "the list"
+        )
+        with listed.closing():
+            return ExitStatus.AGREE
     page = Page.of(options)
     if page is not None:
         page.require()
     results: list[hard_run.Examined] = []
-    headings: list[str] = []
-
-    def finished() -> str:
-        return f"{len(results)} of {hard_report.numbered(len(cases), 'case')}"
+    journal = Journal(
+        options.json,
+        head,
+        console,
+        lambda: hard_report.results_data(results),
+        lambda: f"{len(results)} of {hard_report.numbered(len(cases), 'case')}",
+        lambda: results,
+    )
 
     def tell(result: hard_run.Examined) -> None:
-        results.append(result)
-        if result.case.group not in headings:
-            headings.append(result.case.group)
+        if result.case.group not in {one.case.group for one in results}:
             console.say(f"== {result.case.group}\n")
+        results.append(result)
         console.show((*hard_report.case_parts(result, bool(options.cases)), ""))
-        journal.keep(lambda: hard_report.results_data(results), finished())
+        journal.keep()
         working(f"cases, {result.case.name} done", len(results))
 
     with (
-        journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending,
+        journal.closing() as ending,
         progress(console, "cases", total=len(cases), lines=False) as working,
     ):
         hard_run.run(cases, tell)
@@ -83,3 +82,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             document = head.document(hard_report.results_data(results), ending.status, complete=True)
             ending.status = page.write(Run(head, hard=HardCases.of(document)), console).status
     return ending.status
+
+
+COMMANDS = {"hard": Command(DESCRIPTION, OPTIONS, run)}

@@ -18,11 +18,12 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from glob import glob
 from pathlib import Path
 
 from validate.errors import UsageError
 from validate.extras import needed
-from validate.output.files import remove_left_over, unwritable, write_content, write_whole
+from validate.output.files import unwritable, write_content, write_whole
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
 
@@ -128,14 +129,12 @@ def adding_to(folder: Path, study: Study) -> Iterator[Store]:
     needed("study", "pyarrow.parquet", "cluster")
     store = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
     new, there = not os.path.exists(folder), _found(folder)
-    if not new:
-        remove_left_over(folder)
     # A run that ended before anything was recorded left nothing to be held to.
     if there is not None and there.files():
         _require_same(there, store)
     elif not new and not folder.is_dir():
         raise _unusable(folder, "is a file, and records take a folder; give another name")
-    elif not new and set(os.listdir(folder)) - {HEAD, LOCK}:
+    elif not new and set(glob("*", root_dir=folder)) - {HEAD, LOCK}:
         raise _unusable(folder, "holds something else than records of a study; give another folder")
     try:
         folder.mkdir(parents=True, exist_ok=True)
