@@ -87,33 +87,8 @@ ZEROS = np.zeros(COUNT)
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        (
-            {"camber": np.zeros(3)},
-            f"camber has the shape (3,); needed: ({COUNT},)",
-        ),
-        (
-            {"position": {"wheel_centre": np.zeros((3, COUNT))}},
-            f"position of wheel_centre has the shape (3, {COUNT}); needed: ({COUNT}, 3)",
-        ),
-        (
-            {"position": np.zeros((COUNT, 3))},
-            "position is of type ndarray; needed: arrays by name",
-        ),
-        (
-            {"position": {"wheel_center": np.zeros((COUNT, 3))}},
-            "position of 'wheel_center', which the scene does not ask for (did you mean 'wheel_centre'?)",
-        ),
+        ({"camber": np.zeros(3)}, f"camber has the shape (3,); needed: ({COUNT},)"),
         ({"cambre": ZEROS}, "'cambre', which the scene does not ask for (did you mean 'camber'?)"),
-        (
-            {"wheel": {"camber": ["0.1"] * COUNT}},
-            "wheel angle of camber is of type <U3",
-        ),
-        ({"camber": [[0.1], [0.1, 0.2]]}, "wheel angle of camber is no array"),
-        ({"velocity": {"wheel_centre": None}}, "velocity of wheel_centre is of type object"),
-        (
-            {"camber": np.ma.masked_less(ZEROS, 1.0)},
-            f"camber has {COUNT} masked entries",
-        ),
     ],
 )
 def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are(
@@ -124,7 +99,6 @@ def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are
     with pytest.raises(WrongStates) as caught:
         assert_agrees(good | wrong, SCENE)
     assert words in str(caught.value)
-    assert "\n" not in str(caught.value)
     # What is no misspelt name of ours is nobody's business.
     assert assert_agrees(good | {"iterations": 3, "seconds": [0.1]}, SCENE).passed
 
