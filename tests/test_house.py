@@ -41,7 +41,6 @@ ROOMS = {
         "errors",
         "extras",
         "exit_status",
-        "running",
         "plain_text",
         "toml_written",
         "closed_drawing",

@@ -9,14 +9,11 @@ Names are imported when they are first used, so that a part of the package costs
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from validate.running import check_what_is_run
-
 if TYPE_CHECKING:
     from validate.comparison.compare import Comparison, Outcome, compare
     from validate.formulations.protocol import Accuracy, Formulation, FormulationError, Solution
     from validate.solvers.check import check
-    from validate.testing.assertion import NotTested, assert_agrees, assert_refuses
-    from validate.testing.states import WrongStates
+    from validate.testing.assertion import NotTested, WrongStates, assert_agrees, assert_refuses
 
 __all__ = [
     "Accuracy",
@@ -40,7 +37,7 @@ _MODULES = {
     "Comparison": "comparison.compare",
     "NotTested": "testing.assertion",
     "Outcome": "comparison.compare",
-    "WrongStates": "testing.states",
+    "WrongStates": "testing.assertion",
     "assert_agrees": "testing.assertion",
     "assert_refuses": "testing.assertion",
     "check": "solvers.check",
@@ -58,6 +55,3 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
-
-
-check_what_is_run()

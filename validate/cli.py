@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from importlib import import_module
 from typing import NoReturn
 
@@ -21,25 +22,25 @@ share no code, and everything that they compute is compared. A mechanism and its
 scene: `pointcoord scenes` lists those that are built in, and a file of your own has the same
 form."""
 
-COMMANDS = {
-    "validate": "comparison",
-    "simulate": "solved",
-    "sweep": "sweep",
-    "plan": "scenes",
-    "scenes": "scenes",
-    "new": "new",
-    "draw": "scenes",
-    "plot": "solved",
-    "table": "solved",
-    "hard": "hard",
-    "cost": "cost",
-    "import": "hardpoints",
-    "report": "report",
-    "fit": "fit",
-    "study": "study",
-    "help": "topics",
+COMMANDS: Mapping[str, tuple[str, str]] = {
+    "validate": ("comparison", "solve scenes by two formulations and compare them"),
+    "simulate": ("solved", "solve a scene by point coordinates and write its motion"),
+    "sweep": ("sweep", "solve many designs of a suspension together"),
+    "plan": ("scenes", "say what a scene would compute, and where its drawing stands"),
+    "scenes": ("scenes", "list the built-in scenes"),
+    "new": ("new", "write a scene and its mechanism file to start from"),
+    "draw": ("scenes", "make a picture of a scene's hardpoints (SVG)"),
+    "plot": ("solved", "draw curves of a scene's motion (SVG, PNG)"),
+    "table": ("solved", "print a car's angles and dimensions over travel"),
+    "hard": ("hard", "try the cases that are known to be hard"),
+    "cost": ("cost", "measure and show what accuracy costs in time"),
+    "import": ("hardpoints", "make a scene from another program's hardpoints"),
+    "report": ("report", "validate scenes and write a page of HTML about it"),
+    "fit": ("fit", "fit hardpoints to measured curves"),
+    "study": ("study", "long studies, by several processes or a cluster"),
+    "help": ("topics", "print a page on a topic"),
 }
-"""Every command, and the module of `validate.commands` that it is in."""
+"""Every command: the module of `validate.commands` that it is in, and what it does."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -59,41 +60,12 @@ def _run(words: list[str], console: Console) -> ExitStatus:
     return ExitStatus(options.run(options, console))
 
 
-def _parsed(words: list[str]) -> argparse.Namespace:
-    """The options of a command line, whatever order they and the names of scenes stand in."""
-    if words and not words[0].startswith("-") and words[0] not in COMMANDS:
-        hint, known = meant(words[0], COMMANDS), ", ".join(COMMANDS)
-        raise UsageError(
-            f"no command is called {shown(words[0])}{hint}; there are: {known}; see pointcoord --help"
-        )
-    top = parser(words[:1])
-    try:
-        return top.parse_args(words)
-    except UsageError:
-        # Without options between names it is parsed by now; argparse has a second way for the rest, which
-        # knows no commands of commands.
-        found = _command(top, words)
-        if found is None or "--" in words:
-            raise
-        try:
-            return found.parse_intermixed_args(words[1:])
-        except (UsageError, TypeError):
-            pass
-        raise
-
-
-def _command(top: argparse.ArgumentParser, words: list[str]) -> argparse.ArgumentParser | None:
-    """The parser of the command that the words begin with."""
-    choices = (action.choices for action in top._actions if isinstance(action, argparse._SubParsersAction))
-    return next((among[words[0]] for among in choices if words and words[0] in among), None)
-
-
 class Answer(Exception):
     """The help, the version or the schema was asked for, and nothing else is to be done."""
 
 
-class _Parser(argparse.ArgumentParser):
-    """Says nothing itself and ends nothing itself."""
+class Parser(argparse.ArgumentParser):
+    """Says nothing itself and ends nothing itself: raises UsageError, or Answer of its help."""
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message}; see {self.prog} --help")
@@ -102,45 +74,56 @@ class _Parser(argparse.ArgumentParser):
         raise Answer(self.format_help())
 
 
-class _Say(argparse.Action):
-    """An option that answers with a text."""
-
-    def __init__(self, option_strings: Sequence[str], dest: str, const: Callable[[], str], help: str) -> None:
-        super().__init__(option_strings, dest, nargs=0, const=const, help=help)
-
-    def __call__(self, *_: object) -> NoReturn:
-        raise Answer(self.const())
-
-
-def parser(first: Sequence[str] = ()) -> argparse.ArgumentParser:
-    """The parser of the command line.
-
-    Its `parse_args` raises UsageError, and Answer where only a text is asked for.
-
-    Args:
-        first: the first word of the command line. Where that is a command no other one's module is imported,
-            for that takes longer than to solve a scene.
-    """
-    top = _Parser(
-        prog="pointcoord",
-        description=DESCRIPTION,
-        epilog=HELP,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+def _overview() -> str:
+    width = max(map(len, COMMANDS))
+    return "\n".join(
+        (
+            "usage: pointcoord COMMAND ...\n",
+            DESCRIPTION,
+            "\ncommands, each with --help:",
+            *(f"  {name.ljust(width)}  {words}" for name, (_, words) in COMMANDS.items()),
+            "\noptions:",
+            "  -h, --help  print this",
+            "  --version   print the version",
+            "  --schema    print the JSON Schema of what --json writes\n",
+            HELP,
+        )
     )
-    top.add_argument(
-        "--version", action=_Say, const=lambda: f"pointcoord {program_version()}", help="print the version"
-    )
-    top.add_argument(
-        "--schema", action=_Say, const=schema_text, help="print the JSON Schema of what --json writes"
-    )
-    commands = top.add_subparsers(required=True, metavar="COMMAND")
-    asked = [word for word in first if word in COMMANDS]
-    for module in dict.fromkeys(COMMANDS[name] for name in asked or COMMANDS):
-        import_module(f"validate.commands.{module}").add(commands)
-    for one in commands.choices.values():
-        one.epilog = HELP
-        one.formatter_class = argparse.RawDescriptionHelpFormatter
-    return top
+
+
+ANSWERS: Mapping[str, Callable[[], str]] = {
+    "-h": _overview,
+    "--help": _overview,
+    "--version": lambda: f"pointcoord {program_version()}",
+    "--schema": schema_text,
+}
+
+
+def _parsed(words: Sequence[str]) -> argparse.Namespace:
+    """The options of a command line, whatever order they and the names of scenes stand in."""
+    name = next(iter(words), "")
+    if name in ANSWERS:
+        raise Answer(ANSWERS[name]())
+    if name not in COMMANDS:
+        problem = "no command is given"
+        if name:
+            problem = f"no command is called {shown(name)}{meant(name, COMMANDS)}"
+        raise UsageError(f"{problem}; there are: {', '.join(COMMANDS)}; see pointcoord --help")
+    one = parser(name)
+    try:
+        return one.parse_args(words[1:])
+    except UsageError:
+        # argparse has a second way for options between names, which knows no commands of commands.
+        with suppress(UsageError, TypeError):
+            return one.parse_intermixed_args(words[1:])
+        raise
+
+
+def parser(name: str) -> Parser:
+    """The parser of a command. No other one's module is imported: that takes longer than to solve a scene."""
+    one, (module, _) = Parser(prog=f"pointcoord {name}"), COMMANDS[name]
+    import_module(f"validate.commands.{module}").COMMANDS[name].declare(one, name)
+    return one
 
 
 if __name__ == "__main__":

@@ -5,22 +5,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 
-from pointcoord import PointcoordError
-from validate.comparison.examined import told_failure
-from validate.errors import UsageError
 from validate.exit_status import ExitStatus, of_interruption
-from validate.extras import MissingPackage
-from validate.formulations.protocol import FormulationError
 from validate.output.console import Console
-from validate.output.files import OutputError
-from validate.solvers.plain import NoSolver
-from validate.studies.study import StudyStopped
-
-MEANINGS: tuple[tuple[tuple[type[BaseException], ...], ExitStatus], ...] = (
-    ((UsageError, PointcoordError, MissingPackage, NoSolver), ExitStatus.WRONG_INPUT),
-    ((OutputError, StudyStopped), ExitStatus.NOT_FINISHED),
-    ((FormulationError,), ExitStatus.NO_VERDICT),
-)
 
 
 def guarded(action: Callable[[Console], ExitStatus], program: str = "pointcoord") -> int:
@@ -48,12 +34,25 @@ def _ending(error: BaseException, console: Console) -> tuple[ExitStatus, str] | 
     for one in _chain(error):
         if isinstance(one, KeyboardInterrupt):
             status = of_interruption(one)
-            return status, f"{status.verdict}; {'; '.join(console.written) or 'nothing is written'}"
-    for kind, status in MEANINGS:
-        if isinstance(error, kind):
-            return status, str(error)
+            return status, f"{status.verdict}; {console.left or 'nothing is written'}"
     if not isinstance(error, Exception):
         return None
+    # Imported here: most runs end without an error, and need not have all that can raise one.
+    from pointcoord import PointcoordError
+    from validate.comparison.examined import told_failure
+    from validate.errors import UsageError
+    from validate.extras import MissingPackage
+    from validate.formulations.protocol import FormulationError
+    from validate.output.files import OutputError
+    from validate.solvers.plain import NoSolver
+    from validate.studies.study import StudyStopped
+
+    if isinstance(error, UsageError | PointcoordError | MissingPackage | NoSolver):
+        return ExitStatus.WRONG_INPUT, str(error)
+    if isinstance(error, FormulationError):
+        return ExitStatus.NO_VERDICT, str(error)
+    if isinstance(error, OutputError | StudyStopped):
+        return ExitStatus.NOT_FINISHED, str(error)
     name = "" if isinstance(error, MemoryError) else f"{type(error).__name__}: "
     return ExitStatus.NOT_FINISHED, f"{name}{told_failure(error)}"
 

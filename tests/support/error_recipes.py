@@ -394,7 +394,7 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: found("cambr", numbers_of(BOUNCE)),
         ("'cambr' is no number of this scene (did you mean 'camber'?)", "there are: time, "),
     ),
-    "validate.cli.Answer": Recipe(lambda *_: cli.parser().parse_args(["--version"]), ("pointcoord ",)),
+    "validate.cli.Answer": Recipe(lambda *_: cli._parsed(["--version"]), ("pointcoord ",)),
     "validate.errors.UsageError: a command": Recipe(
         lambda *_: cli._parsed(["simulat", "bounce"]),
         ("simulat", "did you mean 'simulate'?", "pointcoord --help"),
@@ -437,10 +437,10 @@ RECIPES: dict[str, Recipe] = {
     "validate.solvers.plain.SolverFailed": Recipe(
         lambda *_: failing_solver(), ("KeyError: 'strut'", "error_recipes.py:"), {}
     ),
-    "validate.testing.states.WrongStates": Recipe(
+    "validate.testing.assertion.WrongStates": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(3)}, BOUNCE),
-        ("the states: camber has the shape (3,); needed: (131,), one number for each instant",),
-        {"what": "camber"},
+        ("the states: wheel angle of camber has the shape (3,); needed: (131,)",),
+        {"faults": bool},
     ),
     "validate.testing.assertion.NotTested": Recipe(
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),

@@ -232,9 +232,6 @@ def lotus_table() -> Check:
     return Check("double-wishbone", path, deviations, limits, wheel_radius=lotus_front.ROLLING_RADIUS)
 
 
-ANDREWS = ("beta", "theta", "gamma", "phi", "delta", "omega", "epsilon")
-
-
 def andrews_angles(p: Points) -> Array:
     """The benchmark's seven angles, each up to whole turns."""
 

@@ -8,10 +8,10 @@ Beyond that bound it has moved: one of the claims is broken. Below it both may b
 
 The file is an npz: `format`, `version`, and `head`, a text of JSON, beside arrays `a0`, `a1`, ...; nothing in
 it runs when it is read. The head has `program`, the version that wrote it, and `scenes`. Each of these has
-`scene`, the name that it was run under; `mechanism`, the car's type, axes and points, and `car`, a SHA-256 of
-that; `motion`, a SHA-256 of its inputs and time; and `solutions`. Each of these has `formulation`, and the
-numbers of its arrays: of `times` (s) and `condition`, (N,), and by quantity and name of the `numbers`, (N, 3)
-or (N,), in the units of pointcoord's quantities, and of the `claims` about them.
+`scene`, the name that it was run under; `mechanism`, the car's type, axes and points; `motion`, a SHA-256 of
+its inputs and time; and `solutions`. Each of these has `formulation`, and the numbers of its arrays: of
+`times` (s) and `condition`, (N,), and by quantity and name of the `numbers`, (N, 3) or (N,), in the units of
+pointcoord's quantities, and of the `claims` about them.
 """
 
 from __future__ import annotations
@@ -277,11 +277,9 @@ class Recorder:
         """Take in a scene that was compared; one that was not has no numbers to keep."""
         if not outcomes or name in self._scenes:
             return
-        mechanism = _mechanism(scene)
         self._scenes[name] = {
             "scene": name,
-            "car": _digest(mechanism),
-            "mechanism": mechanism,
+            "mechanism": _mechanism(scene),
             "motion": _digest(_motion(scene)),
             "solutions": [
                 {
@@ -342,8 +340,6 @@ def read_baseline(target: str) -> Baseline:
 
 
 def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SavedScene:
-    if _digest(head["mechanism"]) != head["car"]:
-        raise ValueError(f"the car of {head['scene']} is not the one that was saved")
     solutions = tuple(
         Solution(
             one["formulation"],

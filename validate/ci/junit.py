@@ -30,8 +30,7 @@ from validate.ci.baseline import Move, Since
 from validate.ci.record import Record
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
-from validate.formulations.refusals import Refusal
-from validate.output.report import about, held_to, told_row, when
+from validate.output.report import about, told_row, when
 from validate.plain_text import shown
 
 UNUSABLE = "cannot be used"
@@ -84,7 +83,7 @@ def _suites(record: Record) -> Iterator[Suite]:
             yield examined.name, {"scene": examined.name}, faults
     for since in record.since:
         properties = {"scene": since.scene, **baseline, **factor}
-        yield f"{since.scene}: since the baseline", properties, [*_since(since, record.factor)]
+        yield f"{since.scene}: since the baseline", properties, [*_since(since)]
     for name in record.gone:
         case = _Case("in the run", "skipped", "gone", f"{name} is in the baseline and not in this run")
         yield f"{name}: since the baseline", {"scene": name, **baseline}, [case]
@@ -122,7 +121,7 @@ def _compared(row: Comparison, outcome: Outcome) -> _Case:
         return _Case(name, "skipped", row.verdict, f"not tested: {row.why}", out)
     if row.verdict == "agrees":
         return _Case(name, out=out)
-    message = f"{row.first} and {row.second} disagree: {told_row(row)}{_held(outcome.factor)}"
+    message = f"{row.first} and {row.second} disagree: {told_row(row)}"
     why = tuple(f"what would explain it: {words}" for words in outcome.explained(row))
     return _Case(name, "failure", row.verdict, "; ".join((message, *why[:1])), (*out, *why))
 
@@ -137,20 +136,16 @@ def _unusable(outcome: Outcome) -> Iterator[_Case]:
 
 
 def _numbers(row: Comparison, gap: str, bound: str) -> tuple[str, ...]:
-    return (
-        f"{gap}: {_told(row.difference, row.unit)}",
-        f"{bound}: {_told(row.tolerance, row.unit)}",
-        f"instant: {when(row)}",
-        f"{gap} / {bound}: {row.share:.6g}" if math.isfinite(row.share) else f"{gap} / {bound}: none",
+    values = (
+        (gap, row.difference, row.unit),
+        (bound, row.tolerance, row.unit),
+        (f"{gap} / {bound}", row.share, ""),
     )
-
-
-def _told(value: float, unit: str) -> str:
-    return f"{value:.6g} {unit}" if math.isfinite(value) else "not a number"
-
-
-def _held(factor: float) -> str:
-    return f"; {held_to(factor)}" if factor != 1.0 else ""
+    told = [
+        f"{what}: {f'{value:.6g} {unit}'.rstrip() if math.isfinite(value) else 'not a number'}"
+        for what, value, unit in values
+    ]
+    return (*told, f"instant: {when(row)}")
 
 
 def _faults(examined: Examined) -> Iterator[_Case]:
@@ -159,36 +154,29 @@ def _faults(examined: Examined) -> Iterator[_Case]:
         yield _Case("read", "error", "SceneError", examined.problem)
     for refusal in examined.refusals:
         name = f"solved by {refusal.formulation}"
-        yield _Case(name, "error", refusal.error, refusal.message, tuple(_about(refusal)))
+        yield _Case(name, "error", refusal.error, refusal.message, (f"reason: {refusal.reason}",))
     for failure in examined.failures:
         yield _Case(f"solved by {failure.formulation}", "error", failure.error, failure.message)
 
 
-def _about(refusal: Refusal) -> Iterator[str]:
-    yield f"reason: {refusal.reason}"
-    instant = None if refusal.instant is None else f"{refusal.instant:.9g} s"
-    told = {"instant": instant, "input": refusal.input, "value": refusal.value, "limit": refusal.limit}
-    yield from (f"{name}: {value}" for name, value in told.items() if value is not None)
-
-
-def _since(since: Since, factor: float) -> Iterator[_Case]:
+def _since(since: Since) -> Iterator[_Case]:
     if since.standing == "new" or since.standing == "not solved now":
         yield _Case("in the baseline", "skipped", since.standing, since.words)
     elif since.standing != "compared" or since.replaced:
         standing = "another formulation" if since.replaced else since.standing
         yield _Case("in the baseline", "error", standing, since.words)
     for move in since.moves:
-        yield _moved(move, factor, move in since.lost)
+        yield _moved(move, move in since.lost)
 
 
-def _moved(move: Move, factor: float, lost: bool) -> _Case:
+def _moved(move: Move, lost: bool) -> _Case:
     row = move.row
     words = {
         "agrees": "",
         "new": "new: the baseline has no such numbers",
         "gone": "gone: the baseline has such numbers, and this run has none",
         "not tested": "not tested: one error bound is too wide to test the other",
-        "moved": f"moved by more than both error bounds together: {told_row(row)}{_held(factor)}",
+        "moved": f"moved by more than both error bounds together: {told_row(row)}",
     }
     kind = "failure" if lost or move.verdict == "moved" else "" if move.verdict == "agrees" else "skipped"
     out = () if move.verdict in ("new", "gone") else _numbers(row, "moved", "bound")

@@ -14,9 +14,8 @@ from validate.ci.verdict import (
     by_scene,
     complaints,
     disagreements,
-    moves_table,
     sentence,
-    told_apart,
+    since_lines,
     undecided,
 )
 from validate.exit_status import MEANINGS, ExitStatus
@@ -43,10 +42,9 @@ def summary(record: Record, status: ExitStatus) -> str:
     ):
         blocks += _list(f"### {title}", by_scene(record, of))
     if record.baseline is not None:
-        moves = moves_table(record.since, ROWS)
-        blocks.append(f"### Since the baseline {markdown(record.baseline.target)}")
-        blocks += [moves.markdown] if moves.rows else []
-        blocks += _list("", [*told_apart(record.since, record.gone)])
+        lines = [f"{one.scene}: {line}" for one in record.since for line in since_lines(one)]
+        lines += [f"{name} is gone: it is in the baseline and not in this run" for name in record.gone]
+        blocks += _list(f"### Since the baseline {markdown(record.baseline.target)}", lines)
     return "\n\n".join(blocks) + "\n"
 
 
@@ -55,5 +53,4 @@ def _list(title: str, lines: Sequence[str]) -> list[str]:
     if not lines:
         return []
     more = [f"- and {len(lines) - LISTED} more"] if len(lines) > LISTED else []
-    told = "\n".join([*(f"- {markdown(line)}" for line in lines[:LISTED]), *more])
-    return [title, told] if title else [told]
+    return [title, "\n".join([*(f"- {markdown(line)}" for line in lines[:LISTED]), *more])]

@@ -14,6 +14,7 @@ from validate.exit_status import ExitStatus
 from validate.output.report import (
     about,
     agreeing,
+    counted_as,
     explained_lines,
     held_to,
     kind,
@@ -24,17 +25,14 @@ from validate.output.report import (
     told_row,
     used,
     when,
-    with_unit,
-    worst_of,
     worst_rows,
 )
-from validate.output.table import Cell, Part, Table
+from validate.output.table import Cell, Table
 from validate.plain_text import gathered, shown, some_of
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NUMBERS = 8  # numbers in a sentence: the table's notes have them all
 ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
-MOVES = ("scene", "solved by", "quantity", "worst at", "moved", "bound", "at", "moved / bound", "verdict")
 NOT_TESTED = "not tested"
 # The line of a scene tells of the last verdict that any of its numbers has.
 OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
@@ -109,26 +107,16 @@ def _since(record: Record) -> Iterator[str]:
             if moved
             else "nothing moved since the baseline"
         )
-    if lost := [line for since in record.since for line in lost_lines(since)]:
+    lost = [
+        f"{since.scene}: {some_of(whats, NUMBERS)} by {formulation}"
+        for since in record.since
+        for formulation, whats in _by_formulation(since.lost).items()
+    ]
+    if lost:
         yield f"given then and not now: {'; '.join(lost)}"
     yield from (f"no verdict: {since.words}" for since in record.since if since.replaced)
     if record.gone:
         yield f"gone, in the baseline and not in this run: {some_of(record.gone, NAMED)}"
-
-
-def scene_line(examined: Examined, seconds: float, width: int) -> str:
-    """A scene in one line: its verdict, how long it took, the largest share of a tolerance and where."""
-    verdict, why = standing(examined)
-    told = why
-    if verdict == NOT_TESTED and not why:
-        told = silence(examined)
-    elif not why and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
-        row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
-        told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
-        if outcome is not examined.outcomes[0]:
-            told += f", {outcome.solutions[0].formulation}"
-    said = verdict.upper() if verdict == "disagrees" else verdict
-    return f"{examined.name.ljust(width)}  {said:<10}  {seconds:>5.1f} s  {told}".rstrip()
 
 
 def scene_head(width: int) -> str:
@@ -136,9 +124,20 @@ def scene_head(width: int) -> str:
     return f"{'scene'.ljust(width)}  {'verdict':<10}    time  largest share of a tolerance, and where"
 
 
-def scene_parts(examined: Examined, seconds: float, width: int) -> Iterator[str]:
-    """The line of a scene, and below it what would explain that it does not agree."""
-    yield scene_line(examined, seconds, width)
+def scene_lines(examined: Examined, seconds: float, width: int) -> Iterator[str]:
+    """A scene in a line: its verdict, how long it took, the largest share of a tolerance and where.
+
+    Below it stands what would explain that it does not agree.
+    """
+    verdict, why = standing(examined)
+    told = why or (silence(examined) if verdict == NOT_TESTED else "")
+    if not told and (rows := [(row, outcome) for outcome in examined.outcomes for row in outcome.rows]):
+        row, outcome = max(rows, key=lambda one: severity(one[0], OF_THE_LINE))
+        told = f"{share_of(row.share):>4}  {about(row.quantity, row.name)} at {when(row, 4)}"
+        if outcome is not examined.outcomes[0]:
+            told += f", {outcome.solutions[0].formulation}"
+    said = verdict.upper() if verdict == "disagrees" else verdict
+    yield f"{examined.name.ljust(width)}  {said:<10}  {seconds:>5.1f} s  {told}".rstrip()
     for outcome in examined.outcomes:
         if not outcome.passed:
             yield from (f"  cannot be used: {fault}" for fault in outcome.faults)
@@ -260,64 +259,22 @@ def _cell(row: Comparison) -> Cell:
     return Cell(text, f"{used(row.share)}: {row.name}, {when(row, 4)}", row.verdict)
 
 
-def since_parts(since: Since) -> tuple[Part, ...]:
-    """A scene against the baseline: a row for each formulation and quantity."""
-    if since.standing != "compared":
-        return (f"Since the baseline: {since.words}.",)
-    table = moves_table([since])
-    notes = (*((since.words,) if since.words else ()), *_alone(since))
-    lines = (f"  note: {line}" for line in notes)
-    return f"{since.scene}: since the baseline", *((table,) if table.rows else ()), *lines
-
-
-def moves_table(found: Sequence[Since], most: int | None = None) -> Table:
-    """What moved by how much: of each scene, formulation and quantity the worst."""
-    return Table(MOVES, tuple(row for since in found for row in _moved(since))[:most])
-
-
-def _moved(since: Since) -> Iterator[tuple[str | Cell, ...]]:
-    """A row for each formulation and quantity: what uses most of its bound, or exceeds it the most."""
-    compared = [move.row for move in since.moves if move.verdict not in ALONE]
-    for formulation in dict.fromkeys(row.first for row in compared):
-        for quantity, row in worst_of(row for row in compared if row.first == formulation).items():
-            yield (
-                since.scene,
-                formulation,
-                quantity,
-                row.name,
-                with_unit(row.difference, row.unit),
-                with_unit(row.tolerance, row.unit),
-                when(row, 4),
-                with_unit(row.share, ""),
-                Cell("MOVED", verdict="moved") if row.verdict == "disagrees" else row.verdict,
-            )
+def since_lines(since: Since) -> Iterator[str]:
+    """What of a scene is not as it was in the baseline, the farthest moved first; and how much is."""
+    if since.words:
+        yield since.words
+    for move in sorted(since.moved, key=lambda move: -move.row.share):
+        yield f"MOVED, solved by {move.formulation}: {told_row(move.row)}"
+    shared = {move.formulation for move in since.moves if move.verdict not in ALONE}
+    for verdict, words in {**ALONE, "not tested": "one error bound is too wide to test the other"}.items():
+        found = _by_formulation(move for move in since.moves if move.verdict == verdict)
+        for formulation, whats in found.items():
+            what = ", ".join(whats) if formulation in shared else "every number"
+            yield f"{verdict}, {words}: {what} by {formulation}"
+    if same := sum(move.verdict == "agrees" for move in since.moves):
+        yield f"{counted_as(same, 'number')} did not move"
 
 
 def _by_formulation(moves: Iterable[Move]) -> dict[str, list[str]]:
     """What the numbers of each formulation are, in words."""
     return gathered((move.formulation, about(move.row.quantity, move.row.name)) for move in moves)
-
-
-def _alone(since: Since) -> Iterator[str]:
-    """Which numbers only the baseline or only this run has."""
-    shared = {move.formulation for move in since.moves if move.verdict not in ALONE}
-    for verdict, words in ALONE.items():
-        found = _by_formulation(move for move in since.moves if move.verdict == verdict)
-        for formulation, whats in found.items():
-            what = ", ".join(whats) if formulation in shared else "every number"
-            yield f"{verdict}, {words}: {what} by {formulation}"
-
-
-def lost_lines(since: Since) -> Iterator[str]:
-    """What of a scene was given then and is not now, a line for each formulation."""
-    for formulation, whats in _by_formulation(since.lost).items():
-        yield f"{since.scene}: {some_of(whats, NUMBERS)} by {formulation}"
-
-
-def told_apart(found: Iterable[Since], gone: Sequence[str]) -> Iterator[str]:
-    """What could not be held to the baseline, a line each: scenes, and numbers of scenes."""
-    for since in found:
-        if since.words:
-            yield f"scene {since.words}"
-        yield from (f"scene {since.scene}: {line}" for line in _alone(since))
-    yield from (f"scene {name} is gone: it is in the baseline and not in this run" for name in gone)

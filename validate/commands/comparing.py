@@ -17,7 +17,7 @@ from validate.comparison.examined import Examined
 from validate.errors import UsageError
 from validate.extras import needed
 from validate.output.console import Console
-from validate.output.document import Ending, Head, Journal
+from validate.output.document import Ending, Head, Journal, at_the_end
 from validate.output.report import counted_as
 from validate.plain_text import shown
 
@@ -49,9 +49,7 @@ class Page:
     @property
     def place(self) -> str:
         """The page itself, for people."""
-        from validate.html.folder import PAGE
-
-        return shown(os.path.join(self.folder, PAGE))
+        return shown(os.path.join(self.folder, "index.html"))
 
     def require(self) -> None:
         """Find out that there can be no page, before anything is solved.
@@ -81,7 +79,7 @@ class Page:
 
         whole = self.with_more(run)
         write_report(self.folder, whole)
-        console.written.append(f"{self.place} holds the report")
+        console.written[self.place] = "the report"
         return whole
 
 
@@ -92,19 +90,18 @@ class Comparing:
     record: Record
     files: Files
     journal: Journal
-    finished: Callable[[], str]
     drawings: Drawings | None
     ending: Ending
 
     def add(self, examined: Examined, since: Since | None = None, scene: Scene | None = None) -> None:
         """Take in what came of a scene, and write what there is so far."""
-        if scene is not None:
-            self.files.keep(examined.name, scene, examined.outcomes)
+        if scene is not None and self.files.baseline is not None:
+            self.files.recorder.add(examined.name, scene, examined.outcomes)
         self.record.add(examined, since, scene)
         # Of a file's scene no motion is solved.
         if self.drawings is not None and examined.name not in self.record.files:
             self.drawings.add(examined, scene)
-        self.journal.keep(self.record.data, self.finished())
+        self.journal.keep()
 
 
 def results_of(options: argparse.Namespace) -> dict[str, str | None]:
@@ -130,18 +127,18 @@ def comparing(
         drawings = Drawings(len(record.names))
     head = Head.of("validate", options.command, options.timings)
     files = Files(options.junit, options.summary, options.save_baseline)
-    journal = Journal(options.json, head, console)
+    journal = Journal(
+        options.json,
+        head,
+        console,
+        record.data,
+        lambda: f"{len(record.examined)} of {counted_as(len(record.names), noun)}",
+        lambda: record.examined,
+    )
     mute, brief = console.mute, page is not None and page.brief
     console.mute = mute or brief
-
-    def finished() -> str:
-        return f"{len(record.examined)} of {counted_as(len(record.names), noun)}"
-
-    with (
-        journal.closing(record.data, lambda: record.examined, finished) as ending,
-        files.closing(record, console),
-    ):
-        yield Comparing(record, files, journal, finished, drawings, ending)
+    with journal.closing() as ending, at_the_end(lambda end: files.write(record, end, console)):
+        yield Comparing(record, files, journal, drawings, ending)
         ending.status = record.status
         if page is not None and drawings is not None:
             made = page.write(Run(head, record, drawings.kept), console)

@@ -15,20 +15,22 @@ from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
 from validate.commands.comparing import Page, comparing, results_of
 from validate.commands.usage import (
+    DATA,
+    JSON,
+    MAP,
+    QUIET,
+    REPORT,
     SCENE_HELP,
     STANDARD_INPUT,
-    Commands,
-    add_json,
+    TIMINGS,
+    Command,
+    given,
     load_scene,
     name_of,
-    positive,
-    refuse,
     require_input_once,
     require_results,
-    share,
 )
 from validate.comparison.examined import Examined, examine
-from validate.diagnosis import explain_outcome
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation, second_there
@@ -47,7 +49,19 @@ from validate.solvers.plain import PlainSolver
 FIRST = "pointcoord"
 # Without names on the command line the paper's own algorithm is held to the other model too.
 FURTHER = "pointcoord-newton"
-OF_A_SOLVER = ("--traceback", "--solver-timeout", "--in-process")
+
+# Kinds of runs by the option that makes one, and the kinds that an option says something of.
+SCENES, A_SOLVER, A_FILE, TABLES = "scenes alone", "--solver", "--data", "--tables"
+GOES_WITH: Mapping[str, tuple[str, ...]] = {
+    "--first": (SCENES,),
+    "--second": (SCENES, A_SOLVER),
+    **dict.fromkeys((A_SOLVER, "--traceback", "--solver-timeout", "--in-process"), (A_SOLVER,)),
+    **dict.fromkeys((A_FILE, "--map"), (A_FILE,)),
+    "--accuracy": (A_SOLVER, A_FILE),
+    **dict.fromkeys(("--scenes-dir", "--fail-fast", "--save-baseline", "--baseline"), (SCENES, A_SOLVER)),
+    **dict.fromkeys(("--hard", "--cost"), (SCENES, A_SOLVER)),
+    **dict.fromkeys(("scenes", "--report", "--tolerance-factor"), (SCENES, A_SOLVER, A_FILE)),
+}
 
 _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
@@ -59,86 +73,36 @@ where; -v prints every quantity.
 formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "validate", help="solve scenes by two formulations and compare them", description=DESCRIPTION
-    )
-    add_options(parser)
-    parser.add_argument(
-        "--tables",
-        action="store_true",
-        help="compare tables that other programs printed of their own cars, in place of scenes: every column "
-        "with both models, to the last printed digit",
-    )
-    share(parser, "--report")
-    parser.set_defaults(run=run)
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """What is compared, how, and where results go beside a report."""
-    add = parser.add_argument
-    add("scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: all built-in scenes")
-    add("--first", metavar="NAME", help=f"a formulation ({FIRST} if not given)")
-    add(
-        "--second",
-        metavar="NAME",
-        help="the one to compare it with (absolute if not given, and where Pinocchio is not there, MuJoCo or "
-        f"Exudyn); without --first and --second {FURTHER} is compared with it as well",
-    )
-    share(parser, "--data", "--map")
-    add(
-        "--solver",
-        metavar="MODULE:NAME",
-        help="a solver of your own in the place of --first: a function, object or class that takes plain "
-        f"data (see the README); without --second it is compared with {FIRST}",
-    )
-    add(
-        "--accuracy",
-        metavar="A",
-        type=float,
-        help=f"how exactly the solver of --solver says it places points, mm ({ACCURACY:g} if not given): "
-        "what is tolerated of every number is derived from it, pose by pose; or how far off the numbers of "
-        "--data may be beside their digits, each in its column's unit",
-    )
-    add("--traceback", action="store_true", help="show where in its files that solver raises an error")
-    add(
-        "--solver-timeout",
-        type=positive("time limit in s"),
-        metavar="S",
-        help=f"how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes longer, "
-        "or crashes, has no answer there, and is made anew for the next scene",
-    )
-    add(
-        "--in-process",
-        action="store_true",
-        help="call that solver in this process, for a debugger: no time limit, and a crash ends the run",
-    )
-    add("--scenes-dir", metavar="DIR", help="compare every .toml file below this folder too, sorted by path")
-    add(
-        "--tolerance-factor",
-        type=positive("factor"),
-        default=1.0,
-        metavar="F",
-        help="hold differences to F times the derived tolerance; every result says so",
-    )
-    add(
-        "--fail-fast",
-        action="store_true",
-        help="stop at the first scene that disagrees, has moved or is refused; what was not run is named",
-    )
-    add_json(parser, "the results")
-    add("--junit", metavar="FILE", help="write JUnit XML, a case for each scene and quantity; - likewise")
-    add("--summary", metavar="FILE", help="write a summary in Markdown; - likewise")
-    add("--save-baseline", metavar="FILE", help="keep the solved numbers and their error bounds (npz)")
-    add(
-        "--baseline",
-        metavar="FILE",
-        help="say what moved since a kept baseline by more than both bounds",
-    )
-    add("-v", "--verbose", action="store_true", help="print the table of every quantity of each scene")
-    share(parser, "--timings", "--quiet")
+OPTIONS = f"""\
+scenes=[SCENE ...]  {SCENE_HELP}; none: all built-in scenes
+--first NAME  a formulation ({FIRST} if not given)
+--second NAME  the one to compare it with (absolute if not given, and where Pinocchio is not there, MuJoCo or
+    Exudyn); without --first and --second {FURTHER} is compared with it as well
+{DATA}{MAP}
+--solver MODULE:NAME  a solver of your own in the place of --first: a function, object or class that takes
+    plain data (see the README); without --second it is compared with {FIRST}
+--accuracy A  how exactly the solver of --solver says it places points, mm ({ACCURACY:g} if not given): what
+    is tolerated of every number is derived from it, pose by pose; or how far off the numbers of --data may be
+    beside their digits, each in its column's unit
+--traceback  show where in its files that solver raises an error
+--solver-timeout S  how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes
+    longer, or crashes, has no answer there, and is made anew for the next scene
+--in-process  call that solver in this process, for a debugger: no time limit, and a crash ends the run
+--scenes-dir DIR  compare every .toml file below this folder too, sorted by path
+--tolerance-factor F  hold differences to F times the derived tolerance; every result says so
+--fail-fast  stop at the first scene that disagrees, has moved or is refused; what was not run is named
+{JSON}
+--junit FILE  write JUnit XML, a case for each scene and quantity; - likewise
+--summary FILE  write a summary in Markdown; - likewise
+--save-baseline FILE  keep the solved numbers and their error bounds (npz)
+--baseline FILE  say what moved since a kept baseline by more than both bounds
+-v --verbose  print the table of every quantity of each scene
+{TIMINGS}{QUIET}"""
+"""What is compared, how, and where results go beside a report."""
+TABLES_OPTION = """\
+--tables  compare tables that other programs printed of their own cars, in place of scenes: every column with
+    both models, to the last printed digit
+"""
 
 
 def run(options: argparse.Namespace, console: Console, page: Page | None = None) -> ExitStatus:
@@ -147,21 +111,38 @@ def run(options: argparse.Namespace, console: Console, page: Page | None = None)
     Args:
         page: is made of the run, if there is one; that of --report if not given.
     """
+    kind = require_sense(options)
+    if options.tolerance_factor is None:
+        options.tolerance_factor = 1.0
     page = page or Page.of(options)
     # Most runs compare no file and no table.
-    if getattr(options, "tables", False):
+    if kind == TABLES:
         from validate.commands.tables import run as run_tables
 
-        return run_tables(options, console)
-    if options.data is not None:
+        return run_tables(options, console, page)
+    if kind == A_FILE:
         from validate.commands.data import run as run_data
 
         return run_data(options, console, page)
     return _compare_scenes(options, console, page)
 
 
+def require_sense(options: argparse.Namespace) -> str:
+    """The kind of a run.
+
+    Raises:
+        UsageError: an option is given that says nothing of such a run.
+    """
+    kind = next(iter(given(options, TABLES, A_FILE, A_SOLVER)), SCENES)
+    for name in given(options, *GOES_WITH):
+        if kind not in GOES_WITH[name]:
+            what = "SCENE" if name == "scenes" else name
+            with_what = f"goes with {' or '.join(GOES_WITH[name])} only"
+            raise UsageError(f"{what} {with_what if kind == SCENES else f'does not go with {kind}'}")
+    return kind
+
+
 def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
-    refuse(options, ("--map",), "is about a file of results; give it with --data FILE")
     names, pairs = _names(options), _pairs(options, console)
     require_input_once(names)
     if options.save_baseline == "-":
@@ -207,6 +188,11 @@ def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | 
 
 def explained(scene: Scene, examined: Examined) -> Examined:
     """What came of a scene, with what would explain where it disagrees."""
+    if not any(outcome.disagreements for outcome in examined.outcomes):
+        return examined
+    # Most runs have nothing to explain.
+    from validate.diagnosis import explain_outcome
+
     outcomes = (replace(one, explanations=explain_outcome(scene, one)) for one in examined.outcomes)
     return replace(examined, outcomes=tuple(outcomes))
 
@@ -240,16 +226,9 @@ def _pairs(options: argparse.Namespace, console: Console) -> tuple[tuple[str, st
     if "" in (options.first, options.second):
         raise UsageError(f"a formulation without a name; there are: {', '.join(NAMES)}")
     if options.solver is not None:
-        refuse(options, ("--first",), "is given, and --solver, which takes its place; leave one of them out")
-        if options.in_process:
-            refuse(options, ("--solver-timeout",), "is no limit of --in-process; leave one of them out")
+        if options.in_process and options.solver_timeout is not None:
+            raise UsageError("--solver-timeout is no limit of --in-process; leave one of them out")
         return ((shown(options.solver), options.second or FIRST),)
-    refuse(options, OF_A_SOLVER, "is about a solver of your own: give --solver MODULE:NAME")
-    refuse(
-        options,
-        ("--accuracy",),
-        "is about a solver or a file: give --solver MODULE:NAME or --data FILE",
-    )
     first, second = options.first or FIRST, options.second
     if second is None:
         second, why = second_there()
@@ -286,14 +265,15 @@ def _say(
     if examined.complaint and examined.problem is None:
         console.complain(examined.complaint)
     if not verbose:
-        console.show([*verdict.scene_parts(examined, seconds, width)])
+        console.show([*verdict.scene_lines(examined, seconds, width)])
     for i, outcome in enumerate(examined.outcomes if verbose else ()):
         notes = (f"  note: {note}" for note in examined.defaults if not i)
         brief = i and outcome.passed
         parts = (report.agreement_line(outcome),) if brief else report.outcome_parts(outcome)
         console.show((*parts, *notes, ""))
     if since is not None and (verbose or since.status is not ExitStatus.AGREE):
-        console.show((*verdict.since_parts(since), ""))
+        lines = (f"  {line}" for line in verdict.since_lines(since))
+        console.show((f"{since.scene}: since the baseline", *lines, ""))
 
 
 def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
@@ -321,3 +301,6 @@ def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
             if since.status is ExitStatus.NO_VERDICT:
                 words = since.words or f"{since.scene}: not every number is tested"
                 console.complain(f"no verdict since the baseline: {words}")
+
+
+COMMANDS = {"validate": Command(DESCRIPTION, OPTIONS + TABLES_OPTION + REPORT, run)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,17 +13,16 @@ from typing import TYPE_CHECKING
 from pointcoord import UnknownName
 from validate.commands.comparing import Page
 from validate.commands.usage import (
+    JSON,
+    QUIET,
     SCENE_HELP,
     STANDARD_INPUT,
-    Commands,
-    add_json,
+    Command,
     load_scene,
     name_of,
     require_input_once,
     require_results,
-    share,
     told_as,
-    write_result,
 )
 from validate.cost.report import Report
 from validate.cost.table import PARTS, Part, Row, Store, StoreError, latest, measured_here
@@ -51,37 +50,19 @@ instants, designs and unknowns.
 What is measured is kept in a Parquet file, a row for each number: a run that is stopped goes on
 with the scene that it was in, and --from-rows makes the report again without measuring."""
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "cost", help="measure and show what accuracy costs in time", description=DESCRIPTION
-    )
-    parser.add_argument(
-        "scenes", nargs="*", metavar="SCENE", help=f"{SCENE_HELP}; none: the scenes of the study"
-    )
-    parser.add_argument("--list", action="store_true", help="name the ways, scenes and parts, and end")
-    parser.add_argument(
-        "--quick", action="store_true", help="a first look at one scene: its accuracy, in under a minute"
-    )
-    parser.add_argument("--ways", metavar="A,B", help="measure these ways only; --list names them")
-    parser.add_argument(
-        "--parts",
-        metavar="A,B",
-        help=f"of {', '.join(PARTS)}; both if not given, with --quick accuracy",
-    )
-    parser.add_argument(
-        "--rows", metavar="FILE", default=ROWS, help=f"keeps what is measured; {ROWS} if not given"
-    )
-    parser.add_argument(
-        "--from-rows", action="store_true", help="report what the file holds, and measure nothing"
-    )
-    add_json(parser, "everything")
-    parser.add_argument("--csv", metavar="FILE", help="write every row as CSV; - for standard output")
-    pictures = ", the picture, all tables as Markdown and CSV, and the rows as JSON into a folder"
-    share(parser, "--report", help=f"write a page of HTML that needs no network{pictures}")
-    share(parser, "--quiet")
-    parser.set_defaults(run=run)
+OPTIONS = f"""\
+scenes=[SCENE ...]  {SCENE_HELP}; none: the scenes of the study
+--list  name the ways, scenes and parts, and end
+--quick  a first look at one scene: its accuracy, in under a minute
+--ways A,B  measure these ways only; --list names them
+--parts A,B  of {", ".join(PARTS)}; both if not given, with --quick accuracy
+--rows FILE  keeps what is measured; {ROWS} if not given
+--from-rows  report what the file holds, and measure nothing
+{JSON}
+--csv FILE  write every row as CSV; - for standard output
+--report DIR  write a page of HTML that needs no network, the picture, all tables as Markdown and CSV, and
+    the rows as JSON into a folder
+{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -103,18 +84,29 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         needed("--report", "matplotlib", "plot")
         Page(options.report).require()
     needed("cost", "pyarrow")
-    journal = Journal(options.json, Head.of("cost", options.command, timed=True), console)
     if options.from_rows:
         report = _from_rows(options, parts)
-        status = _told(report, options, console)
-        journal.close(report.data, status, True, counted_as(len(report.rows), "row"))
-        return status
+        with _journal(options, console, lambda: report).closing() as ending:
+            ending.status = _told(report, options, console)
+        return ending.status
     study = _study(options, parts)
     try:
         store = Store(Path(options.rows), measured_here(shlex.join(options.command)))
     except StoreError as error:
         raise UsageError(f"--rows {error}") from None
-    return _measured(study, store, options, journal, console)
+    return _measured(study, store, options, console)
+
+
+def _journal(options: argparse.Namespace, console: Console, report: Callable[[], Report]) -> Journal:
+    head = Head.of("cost", options.command, timed=True)
+    return Journal(
+        options.json,
+        head,
+        console,
+        lambda: report().data(),
+        lambda: counted_as(len(report().rows), "row"),
+        lambda: report().rows,
+    )
 
 
 def _listing() -> str:
@@ -171,31 +163,26 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     return found
 
 
-def _measured(
-    study: Study, store: Store, options: argparse.Namespace, journal: Journal, console: Console
-) -> ExitStatus:
+def _measured(study: Study, store: Store, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Measure, and report; what was measured is kept and named however it ends."""
     there = f"rows are kept in {options.rows} ({len(store.rows)} there)"
     console.note(f"{there}; a run that is stopped goes on with its scene")
+    rows: list[Row] = []
 
-    def report(rows: Iterable[Row]) -> Report:
+    def report() -> Report:
         return Report(options.rows, shlex.join(options.command), options.quick, tuple(rows))
 
-    rows: list[Row] = []
-    try:
-        with journal.closing(
-            lambda: report(rows).data(), lambda: rows, lambda: counted_as(len(rows), "row")
-        ) as ending:
-            try:
-                with progress(console, "what accuracy costs") as told:
-                    rows += needed("cost", "validate.cost.study").measure(study, store, told)
-            except BaseException:
-                # What was kept before it stopped is in the file only.
-                rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
-                raise
-            ending.status = _told(report(rows), options, console)
-    finally:
-        console.written.insert(0, f"{options.rows} holds {counted_as(len(store.rows), 'row')}")
+    with _journal(options, console, report).closing() as ending:
+        try:
+            with progress(console, "what accuracy costs") as told:
+                rows += needed("cost", "validate.cost.study").measure(study, store, told)
+        except BaseException:
+            # What was kept before it stopped is in the file only.
+            rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
+            raise
+        finally:
+            console.written[options.rows] = counted_as(len(store.rows), "row")
+        ending.status = _told(report(), options, console)
     return ending.status
 
 
@@ -227,7 +214,7 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
     status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
     console.show(report.parts())
     if options.csv:
-        write_result(options.csv, report.csv(), "the rows", console)
+        console.put(options.csv, report.csv(), "the rows")
     if options.report:
         # Most runs write no page.
         from validate.html.folder import make_folder
@@ -245,9 +232,11 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
             content = None
             console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
         if content is not None:
-            write_content(str(place), content)
-            console.written.append(f"{place} holds the picture")
+            console.put(str(place), content, "the picture")
             console.say(f"the picture: {place}")
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
     return status
+
+
+COMMANDS = {"cost": Command(DESCRIPTION, OPTIONS, run, {"--rows": {"default": ROWS}})}

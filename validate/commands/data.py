@@ -13,7 +13,6 @@ from validate.commands.usage import (
     STANDARD_INPUT,
     load_scene,
     name_of,
-    refuse,
     require_results,
     to_be_filled_in,
     told_as,
@@ -28,21 +27,9 @@ from validate.output import report
 from validate.output.console import Console
 from validate.plain_text import shown
 
-# What is not done for files, and why.
-OF_SCENES = ("--scenes-dir", "--fail-fast", "--solver", "--traceback", "--solver-timeout", "--in-process")
-BASELINES = ("--save-baseline", "--baseline")
-NO_BASELINE = (
-    "is about what is solved at a scene's own times, and a file brings rows of its own; leave it out with "
-    "--data: without --data it is kept of SCENE, and what two files say is in their --json"
-)
-
 
 def run(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
     """Compare a file with a scene's car."""
-    why = "is no word on --data, which is compared with pointcoord; leave --first and --second out"
-    refuse(options, ("--first", "--second"), why)
-    refuse(options, OF_SCENES, "is about scenes that are solved; leave it out with --data")
-    refuse(options, BASELINES, NO_BASELINE)
     if len(options.scenes) != 1:
         given = f"{len(options.scenes)} scenes are" if options.scenes else "no scene is"
         raise UsageError(f"{given} given with --data; give the one scene that the file is about")

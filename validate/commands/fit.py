@@ -5,20 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
+from collections.abc import Mapping
+from typing import Any
 
 from validate.commands.data import require_files
 from validate.commands.usage import (
+    JSON,
+    MAP,
+    QUIET,
+    SCENE,
     TOML,
-    Commands,
-    add_json,
-    add_output,
+    Command,
     load_scene,
     name_of,
     require_results,
-    share,
     to_be_filled_in,
     told_as,
-    write_result,
 )
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates, require_limits
@@ -30,8 +32,6 @@ from validate.output.document import Head, json_text
 from validate.output.progress import progress
 from validate.plain_text import shown
 
-HOLDS = {"-o": "the corrected scene", "--json": "the fit", "--csv": "the corrections"}
-
 DESCRIPTION = """\
 Find the corrections of hardpoints that best explain a file of results, by least squares, each
 number weighed by the digits that it is written with. Says what is left, how well each correction
@@ -39,50 +39,27 @@ is known, and which combinations of coordinates the data cannot see. Where there
 answer is one of many: the likeliest if every coordinate is off by --prior or so, not the one that
 moves the fewest hardpoints. Where you know which points are in doubt, name them by --free."""
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser("fit", help="fit hardpoints to measured curves", description=DESCRIPTION)
-    share(parser, "scene")
-    share(parser, "--data", required=True, help="a file of results, as for validate --data")
-    share(parser, "--map")
-    parser.add_argument(
-        "--free",
-        metavar="POINT.AXIS",
-        nargs="+",
-        default=[],
-        help="coordinates to correct, such as lower_ball_joint.z, or points for all three; none: every point",
-    )
-    parser.add_argument(
-        "--bounds",
-        metavar="MM",
-        type=float,
-        default=BOUNDS,
-        help=f"how far a coordinate may move at most ({BOUNDS:g} if not given)",
-    )
-    parser.add_argument(
-        "--prior",
-        metavar="MM",
-        type=float,
-        default=PRIOR,
-        help="how far off a coordinate is thought to be, a standard deviation: the smaller, the less "
-        f"hardpoints move along what the data leave open ({PRIOR:g} if not given, a fifth of the bounds that "
-        "are taken then)",
-    )
-    parser.add_argument(
-        "--accuracy",
-        metavar="A",
-        type=float,
-        default=0.0,
-        help="how far off the numbers of --data may be beside their digits, each in its column's unit",
-    )
-    add_output(parser, "SCENE.toml", "the corrected scene; - for the output")
-    add_json(parser, "all of it")
-    parser.add_argument(
-        "--csv", metavar="FILE", help="write the coordinates and their corrections as a table; - likewise"
-    )
-    share(parser, "--quiet")
-    parser.set_defaults(run=run)
+OPTIONS = f"""\
+{SCENE}
+--data FILE  a file of results, as for validate --data
+{MAP}
+--free POINT.AXIS  coordinates to correct, such as lower_ball_joint.z, or points for all three; none: every
+    point
+--bounds MM  how far a coordinate may move at most ({BOUNDS:g} if not given)
+--prior MM  how far off a coordinate is thought to be, a standard deviation: the smaller, the less hardpoints
+    move along what the data leave open ({PRIOR:g} if not given, a fifth of the bounds that are taken then)
+--accuracy A  how far off the numbers of --data may be beside their digits, each in its column's unit
+-o --output SCENE.toml  the corrected scene; - for the output
+{JSON}
+--csv FILE  write the coordinates and their corrections as a table; - likewise
+{QUIET}"""
+MORE: Mapping[str, Mapping[str, Any]] = {
+    "--data": {"required": True},
+    "--free": {"nargs": "+", "default": []},
+    "--bounds": {"default": BOUNDS},
+    "--prior": {"default": PRIOR},
+    "--accuracy": {"default": 0.0},
+}
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -113,24 +90,19 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.note(f"{name}: {note}")
     for warning in warnings_of_fit(fit):
         console.warn(f"{name}: {warning}")
-    texts = {
-        "-o": lambda: corrected_text(fit, name, source),
-        "--json": lambda: json_text(head.document(data_of(fit, name, source), status, True)),
-        "--csv": lambda: table_of(fit),
-    }
-    for option, target in targets.items():
-        if target is not None:
-            write_result(target, texts[option](), HOLDS[option], console)
+    if options.output is not None:
+        console.put(options.output, corrected_text(fit, name, source), "the corrected scene")
+    if options.json is not None:
+        document = head.document(data_of(fit, name, source), status, True)
+        console.put(options.json, json_text(document), "the fit")
+    if options.csv is not None:
+        console.put(options.csv, table_of(fit), "the corrections")
     if options.output not in (None, "-"):
-        console.say(f"{shown(options.output)} is written; try: {_next(options)}")
+        given = ["--data", options.data, *(() if options.map is None else ("--map", options.map))]
+        given += ["--accuracy", f"{options.accuracy:g}"] if options.accuracy else []
+        again = shlex.join(["pointcoord", "validate", *given, options.output])
+        console.say(f"{shown(options.output)} is written; try: {shown(again)}")
     return status
 
 
-def _next(options: argparse.Namespace) -> str:
-    """The command that holds the corrected scene to the same file."""
-    words = ["pointcoord", "validate", "--data", options.data]
-    if options.map is not None:
-        words += ["--map", options.map]
-    if options.accuracy:
-        words += ["--accuracy", f"{options.accuracy:g}"]
-    return shown(shlex.join([*words, options.output]))
+COMMANDS = {"fit": Command(DESCRIPTION, OPTIONS, run, MORE)}

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.comparing import Page
-from validate.commands.usage import Commands, add_json, refuse, require_results, share
+from validate.commands.usage import JSON, QUIET, REPORT, Command, given, require_results
+from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
@@ -20,19 +21,12 @@ digits and proven: it must be right within its error bound, or refused with a re
 With --assemblies the arguments are scenes: all assemblies of their knuckles are counted, complex
 ones too, with the inputs held as drawn, and certified one by one."""
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "hard", help="try the cases that are known to be hard", description=DESCRIPTION
-    )
-    parser.add_argument("cases", nargs="*", metavar="CASE", help="a hard case's name; none: all cases")
-    parser.add_argument("--list", action="store_true", help="name the cases and say why each is hard")
-    parser.add_argument("--assemblies", action="store_true", help="count the assemblies of scenes instead")
-    add_json(parser, "every trial, or the list,")
-    parser.add_argument("--times", action="store_true", help="say how long each case took, the longest first")
-    share(parser, "--report", "--quiet")
-    parser.set_defaults(run=run)
+OPTIONS = f"""\
+cases=[CASE ...]  a hard case's name; none: all cases
+--list  name the cases and say why each is hard
+--assemblies  count the assemblies of scenes instead
+--times  say how long each case took, the longest first
+{JSON}{REPORT}{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -45,35 +39,40 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     from validate.hard import run as hard_run
 
     cases = catalogue.chosen(options.cases)
-    if options.list:
-        refuse(options, ("--report",), "is about cases that are tried; leave it out with --list")
+    if options.list and options.report is not None:
+        raise UsageError("--report is about cases that are tried; leave it out with --list")
     require_results({"--json": options.json}, (), options, console)
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
-    journal = Journal(options.json, head, console)
     if options.list:
         console.say(hard_report.listing(cases))
-        journal.close(lambda: hard_report.listing_data(cases), ExitStatus.AGREE, True, "the list")
-        return ExitStatus.AGREE
+        listed = Journal(
+            options.json, head, console, lambda: hard_report.listing_data(cases), lambda: "the list"
+        )
+        with listed.closing():
+            return ExitStatus.AGREE
     page = Page.of(options)
     if page is not None:
         page.require()
     results: list[hard_run.Examined] = []
-    headings: list[str] = []
-
-    def finished() -> str:
-        return f"{len(results)} of {counted_as(len(cases), 'case')}"
+    journal = Journal(
+        options.json,
+        head,
+        console,
+        lambda: hard_report.results_data(results),
+        lambda: f"{len(results)} of {counted_as(len(cases), 'case')}",
+        lambda: results,
+    )
 
     def tell(result: hard_run.Examined) -> None:
-        results.append(result)
-        if result.case.group not in headings:
-            headings.append(result.case.group)
+        if result.case.group not in {one.case.group for one in results}:
             console.say(f"== {result.case.group}\n")
+        results.append(result)
         console.show((*hard_report.case_parts(result, bool(options.cases)), ""))
-        journal.keep(lambda: hard_report.results_data(results), finished())
+        journal.keep()
         working(f"cases, {result.case.name} done", len(results))
 
     with (
-        journal.closing(lambda: hard_report.results_data(results), lambda: results, finished) as ending,
+        journal.closing() as ending,
         progress(console, "cases", total=len(cases), lines=False) as working,
     ):
         hard_run.run(cases, tell)
@@ -95,15 +94,20 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Count assemblies; status 3 where two runs do not agree on a scene, or miss the drawing's."""
     from validate.assemblies import scenes
 
-    refuse(options, ("--list", "--times", "--report"), "is about cases; leave it out with --assemblies")
+    if others := given(options, "--list", "--times", "--report"):
+        raise UsageError(f"{others[0]} is about cases; leave it out with --assemblies")
     require_results({"--json": options.json}, (), options, console)
-    journal = Journal(options.json, Head.of("assemblies", options.command), console)
     found: list[scenes.SceneCount] = []
+    journal = Journal(
+        options.json,
+        Head.of("assemblies", options.command),
+        console,
+        lambda: scenes.data(found),
+        lambda: f"{len(found)} counts",
+        lambda: found,
+    )
     names = options.cases or scenes.SHIPPED
-    with (
-        journal.closing(lambda: scenes.data(found), lambda: found, lambda: f"{len(found)} counts") as ending,
-        progress(console, "scenes", total=len(names), lines=False) as working,
-    ):
+    with journal.closing() as ending, progress(console, "scenes", total=len(names), lines=False) as working:
         for done, name in enumerate(names, start=1):
             found.extend(scenes.counts(name))
             working(f"scenes, {name} done", done)
@@ -111,3 +115,6 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
         if not all(one.found for one in found):
             ending.status = ExitStatus.NO_VERDICT
     return ending.status
+
+
+COMMANDS = {"hard": Command(DESCRIPTION, OPTIONS, run)}

@@ -7,14 +7,7 @@ import os
 from dataclasses import fields
 
 from validate.closed_drawing import warnings_of
-from validate.commands.usage import (
-    TOML,
-    Commands,
-    add_output,
-    require_results,
-    to_be_filled_in,
-    write_result,
-)
+from validate.commands.usage import TOML, Command, require_results, to_be_filled_in
 from validate.exit_status import ExitStatus
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.format import formats
@@ -39,48 +32,21 @@ bounce to begin with. Points that are not known are listed, and what the file la
 formats:
 """ + "\n".join(f"  {one.name.ljust(8)}  {one.words}" for one in formats().values())
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "import", help="make a scene from another program's hardpoints", description=DESCRIPTION
-    )
-    parser.add_argument("file", metavar="FILE", help="the other program's file")
-    add_output(parser, "SCENE.toml", "the scene; standard output if not given, or for -")
-    parser.add_argument("--format", metavar="NAME", help="one of the formats; seen in the file if not given")
-    parser.add_argument(
-        "--suspension", metavar="TYPE", help="as in a scene; seen in the file or by its points if not given"
-    )
-    parser.add_argument(
-        "--side", metavar="|".join(SIDES), help="the file's wheel, if it has both or does not say"
-    )
-    parser.add_argument(
-        "--part",
-        metavar="|".join(PARTS),
-        help="the axle, of a file that has several; a number of three or more",
-    )
-    parser.add_argument(
-        "--names",
-        metavar="FILE.toml",
-        help='what the file calls our points: a table [names] of our_name = "its name", or of '
-        "our_name = [x, y, z] for a point that it does not have; one that is not there yet is written, to be "
-        "filled in",
-    )
-    parser.add_argument(
-        "--axes",
-        metavar="X,Y,Z",
-        help=f"where the file's x, y and z point, such as forward,left,up, of {', '.join(DIRECTIONS)}",
-    )
-    parser.add_argument("--unit", metavar="UNIT", help=f"of the file's lengths: {', '.join(LENGTHS)}")
-    parser.add_argument(
-        "--camber",
-        metavar="DEG",
-        type=float,
-        help="static camber, + leaning out at the top, of a file without an inner point of the spin axis",
-    )
-    parser.add_argument("--toe", metavar="DEG", type=float, help="static toe of such a file, + toe in")
-    parser.add_argument("--mirror", action="store_true", help="make the wheel of the other side of it")
-    parser.set_defaults(run=run)
+OPTIONS = f"""\
+file=FILE  the other program's file
+-o --output SCENE.toml  the scene; standard output if not given, or for -
+--format NAME  one of the formats; seen in the file if not given
+--suspension TYPE  as in a scene; seen in the file or by its points if not given
+--side {"|".join(SIDES)}  the file's wheel, if it has both or does not say
+--part {"|".join(PARTS)}  the axle, of a file that has several; a number of three or more
+--names FILE.toml  what the file calls our points: a table [names] of our_name = "its name", or of our_name =
+    [x, y, z] for a point that it does not have; one that is not there yet is written, to be filled in
+--axes X,Y,Z  where the file's x, y and z point, such as forward,left,up, of {", ".join(DIRECTIONS)}
+--unit UNIT  of the file's lengths: {", ".join(LENGTHS)}
+--camber DEG  static camber, + leaning out at the top, of a file without an inner point of the spin axis
+--toe DEG  static toe of such a file, + toe in
+--mirror  make the wheel of the other side of it
+"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -90,7 +56,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         DISAGREE if a static angle that the file prints is not that of its points; the scene is written.
     """
     target: str | None = None if options.output == "-" else options.output
-    result = {"-o": "-" if target is None else target}
+    result = {"-o": target or "-"}
     require_results(result, (options.file,), options, console, {"-o": TOML}, says=False)
     console.mute = False
     if options.names is not None and not os.path.exists(options.names):
@@ -100,7 +66,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     found = import_hardpoints(options.file, **said)
     name = shown(options.file)
     told = (*found.doubts, *warnings_of(found.scene, found.stands.closing))
-    write_result(target, found.text, "the scene", console)
+    console.put(target, found.text, "the scene")
     if target is not None:
         console.say("\n".join(_report(name, found)))
         console.say(f"{shown(target)} is written; try: pointcoord validate {shown(target)}")
@@ -136,3 +102,6 @@ def _report(name: str, found: Imported) -> list[str]:
         for check in found.angles
     ]
     return lines
+
+
+COMMANDS = {"import": Command(DESCRIPTION, OPTIONS, run)}

@@ -11,17 +11,22 @@ from pointcoord import Scene, SceneError, built_in_scenes
 from pointcoord.mechanism.file import MECHANISMS, is_path, shipped
 from pointcoord.scene.scene_file import SCENES
 from pointcoord.toml_text import parsed, read_file
-from validate.commands.usage import Commands
+from validate.commands.usage import Command
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.files import require_writable, write_content
+from validate.output.files import require_writable
 from validate.plain_text import shown
 
 DESCRIPTION = """\
 Write NAME.toml, a copy of a scene, and NAME-mechanism.toml, a copy of its mechanism with a note on
 every table: change names, bodies, rods and slides there, and points and inputs in the scene. A scene
 that holds its mechanism's tables itself stays one file."""
+
+OPTIONS = """\
+name=NAME  of the new files, without .toml; may have a folder
+--from SCENE  the scene to copy, built-in or a file; double-wishbone if not given
+"""
 
 TYPE = re.compile(r"^([ \t]*type[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')", re.MULTILINE)
 
@@ -40,22 +45,6 @@ MECHANISM_NOTE = """\
 #   [stand_ins]  points that a drawing may leave out, and the ones that then stand in for them
 # A scene drives as many inputs as there are freedoms: pointcoord plan says how many these are.
 """
-
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "new", help="write a scene and its mechanism file to start from", description=DESCRIPTION
-    )
-    parser.add_argument("name", metavar="NAME", help="of the new files, without .toml; may have a folder")
-    parser.add_argument(
-        "--from",
-        dest="scene",
-        metavar="SCENE",
-        default="double-wishbone",
-        help="the scene to copy, built-in or a file; double-wishbone if not given",
-    )
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -82,7 +71,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             raise UsageError(f"{shown(target)} is there already; allowed: a name of its own")
         require_writable(target)
     for target, content in files.items():
-        write_content(target, content)
-    console.written = [f"{' and '.join(files)} hold the scene"]
+        console.put(target, content, "the scene or its mechanism")
     console.say(f"{' and '.join(map(shown, files))} written; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
+
+
+COMMANDS = {
+    "new": Command(DESCRIPTION, OPTIONS, run, {"--from": {"dest": "scene", "default": "double-wishbone"}})
+}

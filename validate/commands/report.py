@@ -11,9 +11,9 @@ from pathlib import Path
 
 from pointcoord import built_in_scenes
 from validate.commands.comparing import Page
-from validate.commands.comparison import add_options
+from validate.commands.comparison import OPTIONS, require_sense
 from validate.commands.comparison import run as compare
-from validate.commands.usage import Commands, refuse
+from validate.commands.usage import Command
 from validate.cost.report import Report
 from validate.cost.table import StoreError
 from validate.errors import UsageError
@@ -40,19 +40,12 @@ tables, a few hard cases, and a first look at what accuracy costs in time. Whole
 are taken from files, for they take minutes: `pointcoord hard --json FILE` and then --hard FILE,
 `pointcoord cost --rows FILE` and then --cost FILE."""
 
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "report", help="validate scenes and write a page of HTML about it", description=DESCRIPTION
-    )
-    parser.add_argument("folder", metavar="DIR", help="the report's folder, made if it is not there")
-    add_options(parser)
-    parser.add_argument(
-        "--hard", metavar="FILE", help="show the hard cases that `pointcoord hard --json` kept"
-    )
-    parser.add_argument("--cost", metavar="FILE", help="show the times that `pointcoord cost --rows` kept")
-    parser.set_defaults(run=run, report=None)
+REPORT_OPTIONS = f"""\
+folder=DIR  the report's folder, made if it is not there
+{OPTIONS}
+--hard FILE  show the hard cases that `pointcoord hard --json` kept
+--cost FILE  show the times that `pointcoord cost --rows` kept
+"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -64,8 +57,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             f"{shown(folder)!r} is a scene, and the folder of the report comes first: pointcoord report DIR "
             f"{shown(folder)}; a folder of that name is given as {shown(os.path.join(os.curdir, folder, ''))}"
         )
-    if options.data is not None:
-        refuse(options, ("--hard", "--cost"), "is not about a file of results; leave it out with --data")
+    require_sense(options)
     hard = None if options.hard is None else read_hard_cases(options.hard)
     try:
         cost = None if options.cost is None else Report.of_file(options.cost)
@@ -119,3 +111,6 @@ def _first_look_at_cost(run: Run, console: Console) -> Report:
     with progress(console, "a first look at cost") as told:
         rows = measure(study, Store(None, measured_here(command)), told)
     return Report("in this run", command, True, tuple(rows))
+
+
+COMMANDS = {"report": Command(DESCRIPTION, REPORT_OPTIONS, run)}

@@ -16,16 +16,7 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import effort
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.usage import (
-    Commands,
-    add_output,
-    load_scene,
-    name_of,
-    place_of_result,
-    share,
-    told_as,
-    write_result,
-)
+from validate.commands.usage import SCENE, Command, load_scene, name_of, place_of_result, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
@@ -45,23 +36,6 @@ axis or side is seen before anything is solved. Where the drawing does not close
 a second time as it is solved."""
 
 
-def add(commands: Commands) -> None:
-    """Add the three commands."""
-    plan = commands.add_parser(
-        "plan", help="say what a scene would compute, and where its drawing stands", description=PLAN
-    )
-    share(plan, "scene")
-    plan.set_defaults(run=run_plan)
-    draw = commands.add_parser("draw", help="make a picture of a scene's hardpoints (SVG)", description=DRAW)
-    share(draw, "scene")
-    add_output(draw, "FILE.svg", "where to; standard output if not given, or for -")
-    draw.set_defaults(run=run_draw)
-    scenes = commands.add_parser(
-        "scenes", help="list the built-in scenes", description="List the built-in scenes with their titles."
-    )
-    scenes.set_defaults(run=run_scenes)
-
-
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
     """List the built-in scenes with their titles."""
     console.require("it is where the list goes")
@@ -79,7 +53,7 @@ def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
         drawing = closed_drawing(scene)
     for warning in warnings_of(scene, drawing.closing):
         console.warn(f"{name}: {warning}")
-    write_result(target, svg(drawing), "the picture", console)
+    console.put(target, svg(drawing), "the picture")
     return ExitStatus.AGREE
 
 
@@ -89,7 +63,6 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects, unreported=scene.unreported_points)
     part, name, silent = scene.mechanism, name_of(options.scene), scene.unreported_points
-    gradients = [effect for effect in plan.left_out if EFFECTS[effect].base]
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
         f"mechanism: {part.name}, {part.side} side; inputs: {', '.join(scene.inputs)}",
@@ -103,15 +76,9 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
             "them"
         )
     lines += [f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects]
-    lines += [
-        f"left out: {EFFECTS[effect].gives}; add {effect!r} to effects to have it"
-        for effect in plan.left_out
-        if effect not in gradients
-    ]
-    if gradients:
-        lines.append(
-            f"left out: what these change by per mm of travel and of rack; add one of {', '.join(gradients)}"
-        )
+    if plan.left_out:
+        names = ", ".join(plan.left_out)
+        lines.append(f"left out: {names}; name one under effects to have it (pointcoord help effects)")
     console.say("\n".join([*lines, *_work(plan, part.topology), *_effort(scene, plan)]))
     return _say_where_it_stands(scene, name, console)
 
@@ -249,3 +216,12 @@ def _degrees(angle: float) -> str:
 def _told(value: float, unit: str) -> str:
     """A value in its unit, and an angle in degrees too."""
     return f"{value:.6g} {unit}" + (f" ({np.degrees(value):.5g} deg)" if unit == "rad" else "")
+
+
+COMMANDS = {
+    "plan": Command(PLAN, SCENE, run_plan),
+    "draw": Command(
+        DRAW, f"{SCENE}-o --output FILE.svg  where to; standard output if not given, or for -", run_draw
+    ),
+    "scenes": Command("List the built-in scenes with their titles.", "", run_scenes),
+}

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
 from pointcoord.effects.car_number import CarNumber
@@ -16,15 +15,14 @@ from pointcoord.method import METHODS, Method
 from pointcoord.wording import meant
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import (
-    Commands,
-    add_output,
+    INSTANTS,
+    QUIET,
+    SCENE,
+    Command,
     load_scene,
     name_of,
     place_of_result,
-    share,
     told_as,
-    whole,
-    write_result,
 )
 from validate.curves.numbers import TIME, TRAVEL, Curves, Number, found, numbers_of, usual
 from validate.errors import UsageError
@@ -63,72 +61,31 @@ its inputs, with what they change by per mm of wheel travel and of rack. A sweep
 wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range; bump steer is toe_by_travel,
 the motion ratio damper over wheel minus damper_length_by_travel."""
 
-
-def add(commands: Commands) -> None:
-    """Add the three commands."""
-    parser = commands.add_parser(
-        "simulate", help="solve a scene by point coordinates and write its motion", description=SIMULATE
-    )
-    share(parser, "scene")
-    add_output(
-        parser, "FILE", f"where to, by its ending {' or '.join(ENDINGS)}; CSV on standard output if not given"
-    )
-    share(parser, "--instants", "--quiet")
-    parser.add_argument(
-        "--method",
-        choices=tuple(BY_NAME),
-        default="auto",
-        help="auto (if not given): series, or a map where these are too long or too rough; series: a chain "
-        "of power series in time; map: series in the inputs, on patches that cover their way; newton: "
-        "Newton's method at each instant; printed: that with the paper's formulas as printed, some of which "
-        "are wrong",
-    )
-    parser.set_defaults(run=run_simulate)
-
-    parser = commands.add_parser("plot", help="draw curves of a scene's motion (SVG, PNG)", description=PLOT)
-    share(parser, "scene")
-    add_output(
-        parser,
-        "FILE",
-        f"where to, by its ending {' or '.join(PICTURES)}; SVG on standard output if not given",
-    )
-    parser.add_argument(
-        "--y", metavar="NUMBER", action="append", help="what goes upward on the paper; may be given again"
-    )
-    parser.add_argument(
-        "--x",
-        metavar="NUMBER",
-        action="append",
-        help=f"what goes to the right ({TIME} if only --y is given); may be given again if --y is not, whose "
-        f"place {TRAVEL} takes",
-    )
-    parser.add_argument(
-        "--degrees",
-        action=argparse.BooleanOptionalAction,
-        default=True,
-        help="angles in degrees, as they are if nothing is said, or in radians",
-    )
-    share(parser, "--instants", help=f"points of a curve; the scene's own if not given, at least {SMOOTH}")
-    share(parser, "--quiet")
-    parser.set_defaults(run=run_plot)
-
-    parser = commands.add_parser(
-        "table", help="print a car's angles and dimensions over travel", description=TABLE
-    )
-    share(parser, "scene")
-    add_output(parser, "FILE", f"where to, by its ending {' or '.join(TABLES)}; a table in text if not given")
-    parser.add_argument(
-        "--rows",
-        metavar="N",
-        type=whole(1),
-        help=f"how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}",
-    )
-    parser.add_argument(
-        "--number", metavar="NAME", action="append", help="a column, by its name; may be given again"
-    )
-    parser.add_argument("--all", action="store_true", help="every number of the car that there is")
-    share(parser, "--quiet")
-    parser.set_defaults(run=run_table)
+SIMULATE_OPTIONS = f"""\
+{SCENE}
+-o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; CSV on standard output if not given
+{INSTANTS}{QUIET}
+--method NAME  auto (if not given): series, or a map where these are too long or too rough; series: a chain of
+    power series in time; map: series in the inputs, on patches that cover their way; newton: Newton's method
+    at each instant; printed: that with the paper's formulas as printed, some of which are wrong
+"""
+PLOT_OPTIONS = f"""\
+{SCENE}
+-o --output FILE  where to, by its ending {" or ".join(PICTURES)}; SVG on standard output if not given
+--y NUMBER  what goes upward on the paper; may be given again
+--x NUMBER  what goes to the right ({TIME} if only --y is given); may be given again if --y is not, whose
+    place {TRAVEL} takes
+--degrees  angles in degrees, as they are if nothing is said, or in radians
+--instants N  points of a curve; the scene's own if not given, at least {SMOOTH}
+{QUIET}"""
+TABLE_OPTIONS = f"""\
+{SCENE}
+-o --output FILE  where to, by its ending {" or ".join(TABLES)}; a table in text if not given
+--rows N  how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}
+--number NAME  a column, by its name; may be given again
+--all  every number of the car that there is
+{QUIET}"""
+AGAIN = {"action": "append"}
 
 
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -149,7 +106,7 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
             console.flush()
         else:
             write_motion(target, motion, instants)
-            console.written = [f"{target} holds the motion"]
+            console.written[target] = "the motion"
         count = instants or len(motion.times)
         return f"{count} instant{'' if count == 1 else 's'}"
 
@@ -175,7 +132,7 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
         curves = chosen or usual(scene, numbers, motion)
         picture = figure(curves, motion, samples, scene.title or name, options.degrees)
         ending = "svg" if target is None else Path(target).suffix.removeprefix(".")
-        write_result(target, drawn(picture, ending), "the picture", console)
+        console.put(target, drawn(picture, ending), "the picture")
         return "the picture"
 
     return solved(scene, target, options, console, write)
@@ -185,15 +142,18 @@ def run_table(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a table."""
     target = place_of_result(options, TABLES, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
-    chosen = _numbers(options, scene, name)
+    chosen = _chosen(options, scene, name)
     topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
     givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
     effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in chosen))))
     scene = scene.model_copy(update={"effects": effects})
+    numbers = {number.path[-1]: number for number in numbers_of(scene) if len(number.path) < 3}
+    driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
+    columns = [numbers[one] for one in (*driven, *chosen)]
 
     def write(motion: Motion) -> str:
         rows = options.rows or min(ROWS, len(motion.times))
-        write_result(target, _table(scene, motion, chosen, rows, target), "the table", console)
+        console.put(target, _table(columns, motion, rows, target), "the table")
         return "the table"
 
     return solved(scene, target, options, console, write)
@@ -276,8 +236,8 @@ def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: s
     return tuple({number.path: number for number in named}.values())
 
 
-def _numbers(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
-    """The numbers of the table's columns."""
+def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
+    """The numbers of the car that the table is to have."""
     part = scene.mechanism
     had = [number for effect in part.effects for number in EFFECTS[effect].names(part.topology)]
     known = [number for number in dict.fromkeys(had) if number_called(number)]
@@ -302,31 +262,19 @@ def _numbers(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
     return known if options.all else first
 
 
-def _table(scene: Scene, motion: Motion, chosen: Sequence[str], rows: int, target: str | None) -> str:
-    """The inputs that move and the numbers, angles in degrees: CSV, or text with what is positive."""
+def _table(columns: Sequence[Number], motion: Motion, rows: int, target: str | None) -> str:
+    """Numbers over the motion, angles in degrees: CSV, or text with what is positive."""
     first, last = motion.times[0], motion.times[-1]
     samples = motion.at(np.linspace(first, last, rows)) if len(motion.times) > 1 else motion
-    units, laws = scene.mechanism.topology.input_units, scene.functions
-    columns: list[tuple[str, str, NDArray[np.float64]]] = [
-        (name, units[name], laws[name].series(samples.times, 0)[:, 0])
-        for name in [name for name, law in laws.items() if not law.still] or list(scene.inputs)
-    ]
-    for number in chosen:
-        quantity = _called(number).quantity
-        columns.append((number, quantity.unit, samples.numbers[quantity.name][number]))
-    columns = [
-        (name, unit.replace("rad", "deg", 1), np.degrees(values) if unit.startswith("rad") else values)
-        for name, unit, values in columns
-    ]
-    head = tuple(f"{name} [{unit}]" for name, unit, _ in columns)
-    lines = zip(*(values.tolist() for *_, values in columns), strict=True)
+    head = tuple(f"{one.path[-1]} [{one.unit_shown()}]" for one in columns)
+    lines = zip(*(one.shown(motion, samples).tolist() for one in columns), strict=True)
     if target is not None and Path(target).suffix == ".csv":
         return csv_of(head, lines)
-    digits = [DIGITS[unit] for _, unit, _ in columns]
+    digits = [DIGITS[one.unit_shown()] for one in columns]
     table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
     # The wheels of an axle share a line.
-    told = {number.rpartition(".")[2]: _called(number).sign for number in chosen}.items()
-    signs = [f"{number}: positive {sign}" for number, sign in told if sign]
+    told = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
+    signs = [f"{number}: positive {sign}" for number, sign in told.items()]
     if target is not None:
         return "\n".join([table.markdown, "", *(f"- {sign}" for sign in signs), ""])
     return "\n".join([table.text, "", *signs, ""])
@@ -341,3 +289,24 @@ def _called(number: str) -> CarNumber:
 def _rounded(value: float, digits: int) -> str:
     # Adding 0 turns a rounded -0 into 0.
     return f"{round(value, digits) + 0.0:.{digits}f}" if np.isfinite(value) else "-"
+
+
+COMMANDS = {
+    "simulate": Command(
+        SIMULATE,
+        SIMULATE_OPTIONS,
+        run_simulate,
+        {"--method": {"choices": tuple(BY_NAME), "default": "auto", "metavar": None}},
+    ),
+    "plot": Command(
+        PLOT,
+        PLOT_OPTIONS,
+        run_plot,
+        {
+            "--y": AGAIN,
+            "--x": AGAIN,
+            "--degrees": {"action": argparse.BooleanOptionalAction, "default": True},
+        },
+    ),
+    "table": Command(TABLE, TABLE_OPTIONS, run_table, {"--number": AGAIN}),
+}

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import Commands, add_json, given, require_results, share
+from validate.commands.usage import JSON, QUIET, Command, given, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -49,17 +49,17 @@ class Named:
 
     Attributes:
         module, function: of `validate.studies`, that make it.
-        help, description: what it does.
-        options: those of its own, as `argparse` takes them.
-        counts: those of them that say which tasks; they may change from run to run.
+        description: what it does. options: those of its own. choices: the names that one of them takes.
+        settings: what it is made of; the counts among them say which tasks, and may change from run to run.
     """
 
     module: str
     function: str
-    help: str
     description: str
-    options: Mapping[str, Mapping[str, Any]]
+    options: str
+    settings: tuple[str, ...]
     counts: tuple[str, ...]
+    choices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     def made(self, settings: Mapping[str, Any]) -> Study:
         """The study of these options, or of settings that were recorded.
@@ -72,103 +72,57 @@ class Named:
         return study
 
 
-def _number(what: str) -> dict[str, Any]:
-    return {"metavar": "N", "type": int, "help": what}
-
-
 STUDIES: Mapping[str, Named] = {
     "random": Named(
         "random_cars",
         "random_cars",
-        "random cars through both models",
         "Random cars and motions, solved by both models. What they do not agree in, what only one of them\n"
         "answers and one in twenty of the others is compared with the reference.",
-        {
-            "--count": _number("scenes; 20000 if not given"),
-            "--first": {
-                "metavar": "NAME",
-                "choices": METHODS,
-                "help": f"by which of pointcoord's methods: {', '.join(METHODS)}; {METHODS[0]} if not given",
-            },
-        },
+        "--count K  scenes; 20000 if not given\n"
+        f"--first NAME  by which of pointcoord's methods: {', '.join(METHODS)}; {METHODS[0]} if not given\n",
+        ("count", "first"),
         ("--count",),
+        {"--first": {"choices": METHODS}},
     ),
     "bounds": Named(
         "bounds",
         "bounds",
-        "whether proven bounds hold up to where cars lock",
         "Random poses close to the end of an input, and motions towards one: no error may be above its\n"
         "proven bound.",
-        {
-            "--poses": _number("poses held close to an end; 2000 if not given"),
-            "--motions": _number("towards one; one for 20 poses if not given"),
-            "--seed": _number("of both; 0 if not given"),
-        },
+        "--poses K  poses held close to an end; 2000 if not given\n"
+        "--motions K  towards one; one for 20 poses if not given\n"
+        "--seed K  of both; 0 if not given\n",
+        ("poses", "motions", "seed"),
         ("--poses", "--motions"),
     ),
     "claims": Named(
         "claims",
         "claims",
-        "whether the error bounds that a model states hold",
         "Random cars and motions, solved by one model: every number of every instant is compared with\n"
         "the reference, and its error with its bound.",
-        {
-            "--count": _number("scenes; 300 if not given"),
-            "--first": _number("of them; 0 if not given"),
-            "--formulation": {
-                "metavar": "NAME",
-                "choices": NAMES,
-                "help": f"the model: {', '.join(NAMES)}; {NAMES[0]} if not given",
-            },
-        },
+        "--count K  scenes; 300 if not given\n"
+        "--first K  of them; 0 if not given\n"
+        f"--formulation NAME  the model: {', '.join(NAMES)}; {NAMES[0]} if not given\n",
+        ("count", "first", "formulation"),
         ("--count", "--first"),
+        {"--formulation": {"choices": NAMES}},
     ),
     "hard": Named(
         "hard_cases",
         "hard",
-        "the hard cases",
         "What `pointcoord hard` does, by several processes, and recorded.",
-        {"cases": {"nargs": "*", "metavar": "CASE", "help": "a hard case's name; none: all cases"}},
+        "cases=[CASE ...]  a hard case's name; none: all cases\n",
+        ("cases",),
         ("cases",),
     ),
 }
-
-
-def add(commands: Commands) -> None:
-    """Add the command, with a command of its own for each study."""
-    parser = commands.add_parser(
-        "study", help="long studies, by several processes or a cluster", description=DESCRIPTION
-    )
-    studies = parser.add_subparsers(required=True, metavar="STUDY", dest="study")
-    for name, named in STUDIES.items():
-        one = studies.add_parser(
-            name,
-            help=named.help,
-            description=f"{named.description}\n\n{DESCRIPTION}\n\n{ADDRESSES}",
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-        )
-        for option, how in named.options.items():
-            one.add_argument(option, **how)
-        one.add_argument(
-            "--scheduler",
-            metavar="local|ADDRESS",
-            default=LOCAL,
-            help="processes of this machine, which is what is done if not given, or a Dask cluster's "
-            "scheduler such as tcp://HOST:8786; its network is trusted, see above",
-        )
-        workers = "processes of this machine; one a processor if not given"
-        one.add_argument("--workers", **_number(workers))
-        one.add_argument(
-            "--records", metavar="FOLDER", help=f"keeps what is worked out; pointcoord-{name} if not given"
-        )
-        one.add_argument(
-            "--from-records",
-            action="store_true",
-            help="say what all records in the folder come to, and work out nothing",
-        )
-        add_json(one, "the findings")
-        share(one, "--quiet")
-    parser.set_defaults(run=run)
+OPTIONS = f"""\
+--scheduler local|ADDRESS  processes of this machine, which is what is done if not given, or a Dask cluster's
+    scheduler such as tcp://HOST:8786; its network is trusted, see above
+--workers N  processes of this machine; one a processor if not given
+--records FOLDER  keeps what is worked out; pointcoord- and the study's name if not given
+--from-records  say what all records in the folder come to, and work out nothing
+{JSON}{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -178,10 +132,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         raise UsageError(f"--records {options.records!r} names no folder")
     if not options.scheduler.strip():
         raise UsageError(f"--scheduler {options.scheduler!r}: allowed: local, or an address")
-    for name, least in (("--workers", 1), *((name, 0) for name in named.options)):
-        value = getattr(options, name.lstrip("-"))
-        if isinstance(value, int) and value < least:
-            raise UsageError(f"{name} {value}: allowed: {least} or more")
     if options.workers is not None and options.scheduler != LOCAL:
         raise UsageError(
             f"--workers {options.workers} counts processes of this machine, a cluster at an address has its "
@@ -191,19 +141,21 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         what = "CASE" if counts[0] == "cases" else counts[0]
         raise UsageError(f"--from-records is about all that is recorded; leave {what} out")
     require_results({"--json": options.json}, (), options, console)
-    journal = Journal(options.json, Head.of(options.study, options.command, timed=True), console)
+    head = Head.of(options.study, options.command, timed=True)
     for package in ("mpmath", "flint", "pinocchio"):
         needed("study", package)
     if options.from_records:
         findings = _recorded(named, folder, options.study)
-        console.show(findings.parts)
-        journal.close(lambda: findings.data, findings.status, True, "the findings")
+        journal = Journal(options.json, head, console, lambda: findings.data, lambda: "the findings")
+        with journal.closing() as ending:
+            console.show(findings.parts)
+            ending.status = findings.status
         return findings.status
-    values = {name.lstrip("-"): getattr(options, name.lstrip("-")) for name in named.options}
+    values = {name: getattr(options, name) for name in named.settings}
     study = named.made({name: value for name, value in values.items() if value is not None})
     if not study.tasks:
         raise UsageError(f"no {study.noun} is asked for; allowed: 1 or more")
-    return _worked_out(study, folder, options, journal, console)
+    return _worked_out(study, folder, options, head, console)
 
 
 def _recorded(named: Named, folder: Path, name: str) -> Findings:
@@ -220,7 +172,7 @@ def _recorded(named: Named, folder: Path, name: str) -> Findings:
 
 
 def _worked_out(
-    study: Study, folder: Path, options: argparse.Namespace, journal: Journal, console: Console
+    study: Study, folder: Path, options: argparse.Namespace, head: Head, console: Console
 ) -> ExitStatus:
     """Work out what is missing, and say what the tasks that are asked for come to."""
     cluster, where = needed("study", "validate.studies.cluster"), shown(str(folder))
@@ -235,7 +187,7 @@ def _worked_out(
         before = there = len(study.tasks) - len(missing)
 
         def held() -> str:
-            return f"{where} holds {there:,} of {counted_as(len(study.tasks), study.noun)}"
+            return f"{there:,} of {counted_as(len(study.tasks), study.noun)}"
 
         def found() -> Findings:
             return study.summary(store.rows(study.tasks))
@@ -243,7 +195,8 @@ def _worked_out(
         def tell(done: int) -> None:
             nonlocal there
             there = before + done
-            console.written = [f"{held()}; the same command goes on"] if there else []
+            if there:
+                console.written[where] = f"{held()}; the same command goes on"
             told(f"{study.noun}s, {who}", there, len(study.tasks))
 
         if missing:
@@ -251,8 +204,9 @@ def _worked_out(
                 progress(console, f"{who} start" if local else f"{who} is asked", SOON)
             )
             client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
-        console.note(f"{held()}; a study that is stopped goes on with the same command")
-        with journal.closing(lambda: found().data, lambda: there, held) as ending:
+        console.note(f"{where} holds {held()}; a study that is stopped goes on with the same command")
+        journal = Journal(options.json, head, console, lambda: found().data, held, lambda: there)
+        with journal.closing() as ending:
             if missing:
                 tell(0)
                 cluster.run(study, missing, store, client, tell)
@@ -260,3 +214,21 @@ def _worked_out(
             ending.status = findings.status
     console.show(findings.parts)
     return ending.status
+
+
+COMMANDS = {
+    "study": Command(
+        DESCRIPTION,
+        "",
+        run,
+        inner={
+            name: Command(
+                f"{named.description}\n\n{DESCRIPTION}\n\n{ADDRESSES}",
+                named.options + OPTIONS,
+                run,
+                {**named.choices, "--scheduler": {"default": LOCAL}},
+            )
+            for name, named in STUDIES.items()
+        },
+    )
+}

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,15 +24,16 @@ from pointcoord import (
 )
 from pointcoord.toml_text import read_file
 from validate.commands.usage import (
-    Commands,
-    add_json,
-    add_output,
+    INSTANTS,
+    JSON,
+    QUIET,
+    SCENE,
+    TIMINGS,
+    Command,
     load_scene,
     name_of,
     require_results,
-    share,
     told_as,
-    whole,
 )
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
@@ -43,6 +43,7 @@ from validate.output.document import Head, Journal
 from validate.output.progress import Told, progress
 from validate.output.sweep_summary import Summary
 from validate.plain_text import shown
+from validate.tables.cells import joined, lines_of, text_of
 
 Array = NDArray[np.float64]
 
@@ -61,51 +62,28 @@ the results range; -o writes every number.
 A rack_centre that is drawn where tie_rod_inner is goes along with it, unless it is varied
 itself. Designs are numbered from 0. Ends with 3 if a design could not be solved."""
 
+OPTIONS = f"""\
+{SCENE}
+--vary POINT.AXIS=VALUES  vary a coordinate; several make a grid, the last one changing from design to design
+--designs FILE.csv  a design for each row instead, with columns such as lower_ball_joint.z: where it is
+    drawn, mm
+--count N  how many designs at random
+--seed K  of what is random; 0 if not given: the same designs each time
+-o --output FILE  every number, by the ending {" or ".join(ENDINGS)}; CSV for -
+{INSTANTS}
+--memory MB  what designs that are solved in one block may take; 256 if not given, whatever their number
+{JSON}{TIMINGS}{QUIET}"""
+MORE: Mapping[str, Mapping[str, Any]] = {
+    "--vary": {"action": "append", "default": []},
+    "--memory": {"default": 256.0},
+}
+
 EXAMPLES = (
     "POINT.AXIS=START:STOP:COUNT, =A,B,C, =normal:SIGMA or =uniform:HALF, in finite mm; == for places, not "
     "offsets"
 )
 KINDS = ("normal", "uniform")
 MOST_VALUES = 10_000_000
-
-
-def add(commands: Commands) -> None:
-    """Add the command with its options."""
-    parser = commands.add_parser(
-        "sweep", help="solve many designs of a suspension together", description=DESCRIPTION
-    )
-    share(parser, "scene")
-    parser.add_argument(
-        "--vary",
-        metavar="POINT.AXIS=VALUES",
-        action="append",
-        default=[],
-        help="vary a coordinate; several make a grid, the last one changing from design to design",
-    )
-    parser.add_argument(
-        "--designs",
-        metavar="FILE.csv",
-        help="a design for each row instead, with columns such as lower_ball_joint.z: where it is drawn, mm",
-    )
-    parser.add_argument("--count", metavar="N", type=whole(1), help="how many designs at random")
-    parser.add_argument(
-        "--seed",
-        metavar="K",
-        type=whole(0),
-        help="of what is random; 0 if not given: the same designs each time",
-    )
-    add_output(parser, "FILE", f"every number, by the ending {' or '.join(ENDINGS)}; CSV for -")
-    share(parser, "--instants")
-    parser.add_argument(
-        "--memory",
-        metavar="MB",
-        type=float,
-        default=256.0,
-        help="what designs that are solved in one block may take; 256 if not given, whatever their number",
-    )
-    add_json(parser, "the summary")
-    share(parser, "--timings", "--quiet")
-    parser.set_defaults(run=run)
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -124,15 +102,15 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if not options.memory > 0.0:
         raise UsageError(f"--memory is {options.memory:g} MB; allowed: more than 0")
     summary = Summary(designs.count, scene.mechanism.topology.wheel_centre)
-    journal = Journal(options.json, Head.of("sweep", options.command, options.timings), console)
-
-    def data() -> dict[str, object]:
-        return {"scene": name, **summary.data()}
-
-    def finished() -> str:
-        return f"{summary.tried} of {designs.count} designs"
-
-    with journal.closing(data, lambda: summary.tried, finished) as ending:
+    journal = Journal(
+        options.json,
+        Head.of("sweep", options.command, options.timings),
+        console,
+        lambda: {"scene": name, **summary.data()},
+        lambda: f"{summary.tried} of {designs.count} designs",
+        lambda: summary.tried,
+    )
+    with journal.closing() as ending:
         try:
             with progress(console, "designs", total=designs.count, lines=False) as told:
                 blocks = _seen(sweep_blocks(designs, memory=1e6 * options.memory), summary, told)
@@ -140,6 +118,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
                     write_sweep_csv(console, blocks)
                 elif target is not None:
                     write_sweep(target, blocks)
+                    console.written[target] = "the designs"
                 else:
                     for _ in blocks:
                         pass
@@ -149,8 +128,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             console.complain(f"{name}: {error}")
             ending.status = ExitStatus.NO_VERDICT
             return ending.status
-        if target not in (None, "-"):
-            console.written = [f"{target} holds the designs"]
         console.show(summary.parts())
         for note in summary.notes:
             (console.warn if note.warns else console.note)(f"{name}: {note.told(summary.tried)}")
@@ -192,9 +169,8 @@ def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
     if options.designs:
         return _designs_of_file(scene, options.designs)
     names = [one.coordinate for one in varied]
-    for name in names:
-        if names.count(name) > 1:
-            raise SweepError(f"--vary {shown(name)}", "is given twice", "once")
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise SweepError(f"--vary {shown(twice[0])}", "is given twice", "once")
     if not random:
         places, offsets = (
             {one.coordinate: one.values for one in varied if one.offsets is relative}
@@ -210,10 +186,9 @@ def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
     generator, drawn = np.random.default_rng(options.seed or 0), {}
     for one in varied:
         size, count = float(one.values[0]), options.count
+        normal = one.kind == "normal"
         drawn[one.coordinate] = (
-            generator.normal(0.0, size, count)
-            if one.kind == "normal"
-            else generator.uniform(-size, size, count)
+            generator.normal(0.0, size, count) if normal else generator.uniform(-size, size, count)
         )
     return designs_of(scene, offsets=drawn)
 
@@ -261,23 +236,21 @@ def _numbers(what: str, texts: list[str]) -> Array:
 
 def _designs_of_file(scene: Scene, path: str) -> Designs:
     """A design for each row of a table."""
-    name = shown(path)
-    try:
-        text = read_file(path, "a CSV file").decode("utf-8-sig")
-        lines = [(line, row) for line, row in enumerate(csv.reader(io.StringIO(text)), 1) if any(row)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise SweepError(name, f"is no table ({error})", "CSV in UTF-8 with a line of names") from None
-    if len(lines) < 2:
+    name, text = shown(path), text_of(read_file(path, "a CSV file"))
+    rows = lines_of(text or "").rows
+    if len(rows) < 2:
         raise SweepError(name, "has no designs", "a line of names, then a line of numbers for each design")
-    (first, head), *rows = lines
-    header = [cell.strip().removesuffix(" [mm]") for cell in head]
+    (first, head), *lines = rows
+    header = [cell.removesuffix(" [mm]") for cell in joined(head)]
     for column in header:
         if "." not in column or header.count(column) > 1:
             problem = f"has the column {shown(column)!r}{' twice' if '.' in column else ''}"
             raise SweepError(f"{name}: line {first}", problem, "columns such as strut_top.z, each once")
-    values = np.empty((len(rows), len(header)))
-    for place, (line, row) in enumerate(rows):
+    for line, row in lines:
         if len(row) != len(header):
             raise SweepError(f"{name}: line {line}", f"has {len(row)} numbers", f"{len(header)}, as names")
-        values[place] = _numbers(f"{name}: line {line}", row)
+    values = np.array([_numbers(f"{name}: line {line}", row) for line, row in lines])
     return designs_of(scene, {column: values[:, i] for i, column in enumerate(header)})
+
+
+COMMANDS = {"sweep": Command(DESCRIPTION, OPTIONS, run, MORE)}

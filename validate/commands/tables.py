@@ -6,34 +6,21 @@ import argparse
 from collections.abc import Iterator, Sequence
 
 from validate.ci.record import Record
-from validate.commands.comparing import comparing, results_of
-from validate.commands.usage import given, require_results
+from validate.commands.comparing import Page, comparing, results_of
+from validate.commands.usage import require_results
 from validate.comparison.examined import Examined
-from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.report import counted_as, with_unit
 from validate.output.table import Cell, Part, Table
 from validate.published.tables import MODELS, NOT_HELD, Column, Published, compare_published, tables
 
-# Options that are about scenes or files.
-NOT_WITH = (
-    *("--first", "--second", "--data", "--map", "--solver", "--accuracy", "--traceback", "--solver-timeout"),
-    *("--in-process", "--scenes-dir", "--fail-fast", "--save-baseline", "--baseline", "--report"),
-)
 
-
-def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+def run(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
     """Compare every printed table."""
-    others = [*options.scenes, *given(options, *NOT_WITH)]
-    others += ["--tolerance-factor"] if options.tolerance_factor != 1.0 else []
-    if others:
-        raise UsageError(
-            f"--tables is about printed tables and their own cars; leave out {', '.join(others)}"
-        )
     require_results(results_of(options), (), options, console)
     record = Record([table.name for table in tables()])
-    with comparing(options, console, record, None, "table") as compared:
+    with comparing(options, console, record, page, "table") as compared:
         found = compare_published()
         for one in found:
             compared.add(Examined(one.table.name, one.table.title, one.outcomes, solved=MODELS))

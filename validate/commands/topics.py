@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pointcoord
 import validate
-from validate.commands.usage import Commands
+from validate.commands.usage import Command
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
@@ -34,17 +34,6 @@ TOPICS = {
 """Every topic: the package and the folder in it whose page it is."""
 
 
-def add(commands: Commands) -> None:
-    """Add the command."""
-    topics = commands.add_parser(
-        "help",
-        help="print a page on a topic",
-        description=f"Print a page on a topic, or the list of topics: {', '.join(TOPICS)}.",
-    )
-    topics.add_argument("topic", nargs="?", metavar="TOPIC")
-    topics.set_defaults(run=run)
-
-
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a page, or which there are."""
     console.require("it is where the page goes")
@@ -61,3 +50,12 @@ def page(topic: str) -> str:
     """The page of a topic, Markdown."""
     package, folder = TOPICS[topic]
     return (Path(str(package.__file__)).parent / folder / PAGE).read_text(encoding="utf-8")
+
+
+COMMANDS = {
+    "help": Command(
+        f"Print a page on a topic, or the list of topics: {', '.join(TOPICS)}.",
+        "topic=[TOPIC]  one of them",
+        run,
+    )
+}

@@ -5,21 +5,20 @@ from __future__ import annotations
 import argparse
 import math
 import os
-import stat
+import re
 import sys
+from argparse import ArgumentParser
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from typing import Any
 
 from pointcoord import Scene, SceneError
 from validate.errors import UsageError
-from validate.exit_status import ExitStatus
+from validate.exit_status import HELP, ExitStatus
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_content
 from validate.plain_text import shown
-
-Commands = Any
-"""What `argparse` adds commands to; it has no public name for it."""
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
@@ -38,79 +37,93 @@ def whole(least: int) -> Callable[[str], int]:
     return read
 
 
-def positive(what: str) -> Callable[[str], float]:
-    """Reads a positive, finite number of what it is."""
-
-    def read(word: str) -> float:
-        with suppress(ValueError):
-            if 0.0 < (value := float(word)) < math.inf:
-                return value
-        raise argparse.ArgumentTypeError(f"{shown(word)!r} is no {what}; allowed: a positive, finite number")
-
-    return read
+def positive(word: str) -> float:
+    """Reads a positive, finite number."""
+    with suppress(ValueError):
+        if 0.0 < (value := float(word)) < math.inf:
+            return value
+    raise argparse.ArgumentTypeError(f"{shown(word)!r} is none; allowed: a positive, finite number")
 
 
-SHARED: Mapping[str, Mapping[str, Any]] = {
-    "scene": {"metavar": "SCENE", "help": SCENE_HELP},
-    "--data": {
-        "metavar": "FILE",
-        "help": "compare a file of results (CSV, whitespace table, Parquet) with the one SCENE's car, at the "
-        "file's own times, inputs or travels, to the digits that it is written with",
-    },
-    "--map": {
-        "metavar": "FILE.toml",
-        "help": "what the columns of --data are; not needed for files that pointcoord simulate -o writes; "
-        "one that is not there yet is written, to be filled in",
-    },
-    "--instants": {
-        "metavar": "N",
-        "type": whole(1),
-        "help": "so many, evenly over the scene's time, instead of its own samples; they take no more memory",
-    },
-    "--report": {
-        "metavar": "DIR",
-        "help": "write a page of HTML that needs no network, with its data, into a folder",
-    },
-    "--timings": {
-        "action": "store_true",
-        "help": "write into the JSON when the run began and when it was written",
-    },
-    "--quiet": {"action": "store_true", "help": "print nothing but errors"},
+TYPES: Mapping[str, Callable[[str], Any]] = {
+    "N": whole(1),
+    "K": whole(0),
+    "S": positive,
+    "F": positive,
+    **dict.fromkeys(("A", "MM", "MB", "DEG"), float),
 }
-"""Options and arguments of several commands, as `argparse` takes them."""
+"""What stands for a number in the options of a command: counts, seconds, factors, accuracies, sizes."""
 
 
-def share(parser: argparse.ArgumentParser, *names: str, **more: Any) -> None:
-    """Add what commands share, by name; `more` is another word about it than in the others."""
-    for name in names:
-        short = ("-q",) if name == "--quiet" else ()
-        parser.add_argument(*short, name, **{**SHARED[name], **more})
+@dataclass(frozen=True)
+class Command:
+    """A command of the program.
+
+    Attributes:
+        options: as its help lists them. An entry begins at the beginning of a line: names and what stands for
+            the value, as `TYPES` reads it, then two blanks and what it does. An argument is `name=WORD`, one
+            that may be left out `name=[WORD]`, any number of them `name=[WORD ...]`.
+        run: does it.
+        more: what such a text cannot say of an option, as `argparse` takes it.
+        inner: commands of the command; it has no options itself then.
+    """
+
+    description: str
+    options: str
+    run: Callable[[argparse.Namespace, Console], ExitStatus]
+    more: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    inner: Mapping[str, Command] = field(default_factory=dict)
+
+    def declare(self, parser: ArgumentParser, name: str) -> None:
+        """Declare what it takes."""
+        parser.description, parser.epilog = self.description, HELP
+        parser.formatter_class = argparse.RawDescriptionHelpFormatter
+        for entry in re.split(r"\n(?=\S)", self.options.strip()) if self.options else ():
+            head, words = re.split(r"\s{2,}", entry, maxsplit=1)
+            names = [word for word in head.split() if word.startswith("-")]
+            about: dict[str, Any] = {"help": " ".join(words.split())}
+            if not names:
+                argument, _, value = head.partition("=")
+                names = [argument]
+                if value.startswith("["):
+                    about["nargs"] = "*" if value.endswith("...]") else "?"
+                about["metavar"] = value.strip("[].").strip()
+            elif value := " ".join(word for word in head.split() if word not in names):
+                about |= {"metavar": value, "type": TYPES.get(value)}
+            else:
+                about["action"] = "store_true"
+            parser.add_argument(*names, **{**about, **self.more.get(names[-1], {})})
+        if self.inner:
+            inner = parser.add_subparsers(required=True, metavar=name.upper(), dest=name)
+            for one, command in self.inner.items():
+                summary = " ".join(command.description.partition("\n\n")[0].split())
+                command.declare(inner.add_parser(one, help=summary), one)
+        parser.set_defaults(run=self.run)
 
 
-def add_json(parser: argparse.ArgumentParser, what: str) -> None:
-    """Results for other programs."""
-    parser.add_argument("--json", metavar="FILE", help=f"write {what} as JSON; - for standard output")
-
-
-def add_output(parser: argparse.ArgumentParser, metavar: str, help: str) -> None:
-    """Where the one result of a command goes."""
-    parser.add_argument("-o", "--output", metavar=metavar, help=help)
+SCENE = f"scene=SCENE  {SCENE_HELP}\n"
+DATA = """\
+--data FILE  compare a file of results (CSV, whitespace table, Parquet) with the one SCENE's car, at the
+    file's own times, inputs or travels, to the digits that it is written with
+"""
+MAP = """\
+--map FILE.toml  what the columns of --data are; not needed for files that pointcoord simulate -o writes;
+    one that is not there yet is written, to be filled in
+"""
+INSTANTS = """\
+--instants N  so many, evenly over the scene's time, instead of its own samples; they take no more memory
+"""
+REPORT = "--report DIR  write a page of HTML that needs no network, with its data, into a folder\n"
+JSON = "--json FILE  write the results as JSON; - for standard output\n"
+TIMINGS = "--timings  write into the JSON when the run began and when it was written\n"
+QUIET = "-q --quiet  print nothing but errors\n"
+# Options of several commands.
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:
-    """Those of some options that the command line gives."""
-    values = ((name, getattr(options, name.lstrip("-").replace("-", "_"))) for name in names)
+    """Those of some options that the command line gives; one that the command does not have is not given."""
+    values = ((name, getattr(options, name.lstrip("-").replace("-", "_"), None)) for name in names)
     return [name for name, value in values if value not in (None, False, [])]
-
-
-def refuse(options: argparse.Namespace, names: Sequence[str], why: str) -> None:
-    """Refuse options that a run has no use for.
-
-    Raises:
-        UsageError: one of them is given.
-    """
-    for name in given(options, *names):
-        raise UsageError(f"{name} {why}")
 
 
 def require_results(
@@ -141,8 +154,6 @@ def require_results(
             raise UsageError(
                 f"{option} {target!r} names no file; allowed: the path of a file, or - for standard output"
             )
-        if target != "-" and _is_standard_output(target):
-            raise UsageError(f"{option} {target} is standard output; use {option} - for that")
         for file in read:
             if file and os.path.isfile(target) and os.path.isfile(file) and os.path.samefile(target, file):
                 raise UsageError(
@@ -172,19 +183,6 @@ def place_of_result(options: argparse.Namespace, endings: Collection[str], conso
     target: str = "-" if options.output is None else options.output
     require_results({"-o": target}, (options.scene,), options, console, {"-o": endings}, says=False)
     return None if target == "-" else target
-
-
-def write_result(target: str | None, content: str | bytes, holds: str, console: Console) -> None:
-    """Write a result whole to its file, or to standard output for None or -.
-
-    Args:
-        holds: what it is, for the one who interrupts the program.
-    Raises:
-        OutputError: it cannot be written.
-    """
-    console.put(target or "-", content)
-    if target not in (None, "-"):
-        console.written.append(f"{target} holds {holds}")
 
 
 def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
@@ -240,12 +238,3 @@ def load_scene(name: str) -> Scene:
     if sys.stdin is None:
         raise SceneError(STANDARD_INPUT_NAME, "", "cannot be read (it is closed)", SCENE_HELP)
     return Scene.read(sys.stdin.buffer, STANDARD_INPUT_NAME)
-
-
-def _is_standard_output(target: str) -> bool:
-    """Whether a file or pipe is standard output by another name; a terminal or /dev/null may be both."""
-    try:
-        out, place = os.fstat(1), os.stat(target)
-    except (OSError, ValueError):
-        return False
-    return os.path.samestat(out, place) and not stat.S_ISCHR(out.st_mode)

@@ -39,6 +39,7 @@ Read = Callable[[Motion, Sampled], Array]
 
 TIME, TRAVEL = "time", "travel"
 COMPONENTS = "xyz"
+PLACE = ALWAYS[0].quantities[0]
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,6 @@ class Number:
         words: for people.
         unit: of what `read` gives.
         sign: where it is positive, in words; empty if that goes without saying.
-        panel: numbers of the same are drawn over the same axis.
         read: its values at the instants of samples of a motion, (N,); KeyError where they do not have it.
         missing: why it is not there; None if the scene asks for it.
     """
@@ -59,7 +59,6 @@ class Number:
     words: str
     unit: str
     sign: str
-    panel: tuple[str, ...]
     read: Read
     missing: NotComputed | None = None
 
@@ -69,11 +68,18 @@ class Number:
         return len(self.path) == 2
 
     @property
+    def panel(self) -> tuple[str, ...]:
+        """Numbers of the same are drawn over the same axis."""
+        if len(self.path) < 3:
+            # The wheels of an axle share an axis.
+            return (*self.path[:-1], self.path[-1].rpartition(".")[2])
+        # Places lie far apart: on one axis nothing would be seen of how they change.
+        return (PLACE.name, self.path[2]) if self.path[0] == PLACE.name else self.path[:1]
+
+    @property
     def short(self) -> str:
         """As few words as name it."""
-        if self.of_the_car:
-            return self.path[1]
-        return ".".join(self.path[1:] if self.path[0] == ALWAYS[0].quantities[0].name else self.path)
+        return ".".join(self.path[1:] if self.of_the_car or self.path[0] == PLACE.name else self.path)
 
     def shown(self, motion: Motion, samples: Sampled, degrees: bool = True) -> Array:
         """Its values as a picture has them, (N,): an angle in degrees, or in radians."""
@@ -87,11 +93,10 @@ class Number:
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:
     """Time, travel of the wheel and inputs of a scene, and every number that it can ask for."""
-    time = Number((TIME,), TIME, "s", "", (TIME,), lambda _, samples: samples.times)
-    effects = (*ALWAYS, *EFFECTS.values())
+    time = Number((TIME,), TIME, "s", "", lambda _, samples: samples.times)
     travel = [_travel(scene)] if scene.mechanism.topology.wheel_centre else []
     found: dict[tuple[str, ...], Number] = {}
-    for number in (n for effect in effects for n in _of_effect(effect, scene)):
+    for number in (n for effect in (*ALWAYS, *EFFECTS.values()) for n in _of_effect(effect, scene)):
         # Two effects may give a number: it is there where one of them is asked for.
         if number.path not in found or found[number.path].missing:
             found[number.path] = number
@@ -100,21 +105,20 @@ def numbers_of(scene: Scene) -> tuple[Number, ...]:
 
 def _travel(scene: Scene) -> Number:
     """How far the wheel centre is above its place in the drawing as closed, against the chassis; mm."""
-    centre, place = scene.mechanism.topology.wheel_centre, ALWAYS[0].quantities[0]
     up = np.array(scene.mechanism.up)
 
     def read(motion: Motion, samples: Sampled) -> Array:
         return np.asarray(movement(scene, motion, samples) @ up)
 
-    missing = _unreported(scene, place, centre)
-    return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", (TRAVEL,), read, missing)
+    missing = _missing(ALWAYS[0], PLACE, scene.mechanism.topology.wheel_centre, scene)
+    return Number((TRAVEL,), "wheel travel", "mm", "up from the drawing", read, missing)
 
 
 def movement(scene: Scene, motion: Motion, samples: Sampled) -> Array:
     """Of the wheel centre from its place in the drawing as closed, against the chassis, (N, 3), mm."""
     centre = scene.mechanism.topology.wheel_centre
     readout, drawn = motion.solved.readout, closed_drawing(scene).places[centre]
-    local = samples.numbers[ALWAYS[0].quantities[0].name][centre] - readout.mechanism.origin
+    local = samples.numbers[PLACE.name][centre] - readout.mechanism.origin
     return readout.chassis.taken_back(samples.times, local) - (drawn - readout.mechanism.origin)
 
 
@@ -129,7 +133,7 @@ def _inputs(scene: Scene) -> list[Number]:
         return lambda _, samples: scene.functions[name].series(samples.times, 0)[:, 0]
 
     return [
-        Number((name,), name.replace("_", " "), unit, signs.get(name, ""), (name,), reader(name))
+        Number((name,), name.replace("_", " "), unit, signs.get(name, ""), reader(name))
         for name, unit in topology.input_units.items()
         if name in scene.functions
     ]
@@ -137,29 +141,32 @@ def _inputs(scene: Scene) -> list[Number]:
 
 def _of_effect(effect: Effect, scene: Scene) -> Iterator[Number]:
     topology = scene.mechanism.topology
-    asked, gives = effect in ALWAYS or effect.name in scene.effects, effect.gives_numbers(topology)
+    gives = effect.gives_numbers(topology)
     for quantity in effect.quantities:
-        names = gives[quantity.name]
         every = topology.bodies if quantity.of == "body" else topology.points
+        names = gives[quantity.name]
         for name in every if names is None else names:
-            missing = None
-            if not asked:
-                missing = NotComputed(f"{quantity.words} of {name}", effect.name)
-            elif effect.reports_states:
-                missing = _unreported(scene, quantity, name)
+            path, missing = (quantity.name, name), _missing(effect, quantity, name, scene)
             if quantity.of == "car":
                 known = number_called(name)
-                path, panel = (quantity.name, name), (quantity.name, name.rpartition(".")[2])
-                read, sign = _reader(quantity, name), known.sign if known else ""
-                yield Number(path, words_of(name), quantity.unit, sign, panel, read, missing)
-            else:
-                yield from (_component(scene, quantity, name, i, missing) for i in range(3))
+                sign = known.sign if known else ""
+                yield Number(path, words_of(name), quantity.unit, sign, _reader(quantity, name), missing)
+                continue
+            for i, axis in enumerate(COMPONENTS):
+                along = _along(scene, i)
+                sign = f"about {along}" if along and quantity.of == "body" else along
+                words = f"{quantity.words} of {name.replace('_', ' ')}, {axis}"
+                yield Number((*path, axis), words, quantity.unit, sign, _reader(quantity, name, i), missing)
 
 
-def _unreported(scene: Scene, quantity: Quantity, name: str) -> NotComputed | None:
-    if name not in scene.unreported_points:
-        return None
-    return NotComputed(f"{quantity.words} of {name}", "", f"add {name!r} to the scene's points")
+def _missing(effect: Effect, quantity: Quantity, name: str, scene: Scene) -> NotComputed | None:
+    """Why a number of an effect is not there; None if it is."""
+    what = f"{quantity.words} of {name}"
+    if effect not in ALWAYS and effect.name not in scene.effects:
+        return NotComputed(what, effect.name)
+    if effect.reports_states and name in scene.unreported_points:
+        return NotComputed(what, "", f"add {name!r} to the scene's points")
+    return None
 
 
 def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read:
@@ -168,16 +175,6 @@ def _reader(quantity: Quantity, name: str, component: int | None = None) -> Read
         return values if component is None else values[..., component]
 
     return read
-
-
-def _component(scene: Scene, quantity: Quantity, name: str, i: int, missing: NotComputed | None) -> Number:
-    along = _along(scene, i)
-    sign = f"about {along}" if along and quantity.of == "body" else along
-    # Places lie far apart: on one axis nothing would be seen of how they change.
-    panel = (quantity.name, COMPONENTS[i]) if quantity in ALWAYS[0].quantities else (quantity.name,)
-    words = f"{quantity.words} of {name.replace('_', ' ')}, {COMPONENTS[i]}"
-    path, read = (quantity.name, name, COMPONENTS[i]), _reader(quantity, name, i)
-    return Number(path, words, quantity.unit, sign, panel, read, missing)
 
 
 def _along(scene: Scene, i: int) -> str:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
 from pathlib import Path
 
 from validate.errors import UsageError
 from validate.html.data import OF_COST, WORDS, data_files
 from validate.html.page import GENERATOR, page
 from validate.html.run import Run
-from validate.output.files import require_writable, unwritable, write_content
+from validate.output.files import OutputError, require_writable, unwritable, write_content
 
 PAGE = "index.html"
 # The mark of our pages is near their beginning.
@@ -18,40 +17,26 @@ BEGINNING = 4096
 
 
 def require_folder(folder: str) -> None:
-    """Refuse a folder that cannot take a report, before anything is solved.
-
-    One that is not there is made and taken away again: a run that is stopped leaves nothing.
+    """Refuse a folder that cannot take a report, before anything is solved; nothing is made.
 
     Raises:
         UsageError: it is a file, or holds a page that this program did not make.
         OutputError: it cannot be made or written.
     """
     place = Path(folder)
-    made: list[Path] = []
-    try:
-        if place.exists() and not place.is_dir():
-            raise UsageError(f"{folder}: is a file; allowed: a folder, which is made if it is not there")
-        made = [one for one in (place, *place.parents) if not one.exists()]
-        place.mkdir(parents=True, exist_ok=True)
-        old = place / PAGE
-        if old.is_file():
-            with old.open("rb") as stream:
-                ours = f'content="{GENERATOR}"'.encode() in stream.read(BEGINNING)
-            if not ours:
-                raise UsageError(f"{old}: is no report of this program; give another folder, or move it away")
-    except OSError as error:
-        raise unwritable(folder, error) from None
-    except ValueError as error:
-        # A path with a zero byte in it.
-        raise UsageError(f"{folder}: names no folder ({error})") from None
-    try:
+    if "\0" in folder:
+        raise UsageError(f"{folder}: names no folder")
+    if place.exists() and not place.is_dir():
+        raise UsageError(f"{folder}: is a file; allowed: a folder, which is made if it is not there")
+    there = next(one for one in (place, *place.absolute().parents) if one.exists())
+    if not (there.is_dir() and os.access(there, os.W_OK)):
+        raise OutputError(folder, f"cannot be written (there is no folder that takes it in {str(there)!r})")
+    old = place / PAGE
+    if old.is_file() and f'content="{GENERATOR}"'.encode() not in old.read_bytes()[:BEGINNING]:
+        raise UsageError(f"{old}: is no report of this program; give another folder, or move it away")
+    if place.is_dir():
         for name in (*WORDS, PAGE):
             require_writable(os.path.join(folder, name))
-    finally:
-        for one in made:
-            # Somebody may have put something there meanwhile, or have taken it away.
-            with suppress(OSError):
-                one.rmdir()
 
 
 def make_folder(folder: str) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 from validate.output.files import OutputError, unwritable, write_content
-from validate.output.progress import Line, Lines
+from validate.output.progress import Progress
 from validate.output.table import Part, is_terminal, laid_out, text_of
 from validate.plain_text import one_line
 
@@ -24,16 +24,21 @@ class Console:
         quiet: whether only results that were asked for and errors are said.
         mute: whether standard output belongs to a result, so that nothing else is said there.
         progress: what says how far the run is, while something does.
-        written: the files that the run has written, in words, for the one who interrupts it.
+        written: the files that the run has written, and what they hold, for the one who interrupts it.
     """
 
     def __init__(self, program: str = "pointcoord") -> None:
         self.program = program
         self.quiet = False
         self.mute = False
-        self.written: list[str] = []
+        self.written: dict[str, str] = {}
+        self.progress: Progress | None = None
         self._reader_gone = False
-        self.progress: Line | Lines | None = None
+
+    @property
+    def left(self) -> str:
+        """The files that the run has written, in words."""
+        return "; ".join(f"{target} holds {what}" for target, what in self.written.items())
 
     def require(self, what_else: str) -> None:
         """Refuse a closed standard output, before anything is solved.
@@ -55,8 +60,22 @@ class Console:
         if self.quiet or self.mute or not is_terminal(sys.stdout):
             self.say(text_of(parts))
         else:
-            self.write(laid_out(parts, sys.stdout))
+            self.write(laid_out(parts))
             self.flush()
+
+    def put(self, target: str | None, content: str | bytes, what: str) -> None:
+        """Write a result whole to its file, or to standard output for `-` or None.
+
+        Args:
+            what: it is, in words.
+        """
+        if target is None or target == "-":
+            target = STANDARD_OUTPUT
+            self.write(content if isinstance(content, str) else content.decode())
+            self.flush()
+        else:
+            write_content(target, content)
+        self.written[target] = what
 
     def write(self, text: str) -> int:
         """Text on standard output, as it is; characters that it has no code for are shown as escapes.
@@ -65,24 +84,14 @@ class Console:
         are wanted all the same.
         """
         if self.progress is not None:
-            self.progress.pause()
+            self.progress.stand_aside()
         if not self._reader_gone:
             try:
                 code = getattr(sys.stdout, "encoding", None) or "utf-8"
                 sys.stdout.write(text.encode(code, "backslashreplace").decode(code))
-            except BrokenPipeError:
-                self._leave_standard_output()
             except (OSError, ValueError, AttributeError) as error:
-                raise self._lost(error) from None
+                self._lose(error)
         return len(text)
-
-    def put(self, target: str, content: str | bytes) -> None:
-        """Write a result whole to its file, or to standard output for `-`."""
-        if target == "-":
-            self.write(content if isinstance(content, str) else content.decode())
-            self.flush()
-        else:
-            write_content(target, content)
 
     def flush(self) -> None:
         """Bring what was written to its reader."""
@@ -90,37 +99,34 @@ class Console:
             return
         try:
             sys.stdout.flush()
-            if self.progress is not None:
-                self.progress.resume()
-        except BrokenPipeError:
-            self._leave_standard_output()
         except (OSError, ValueError) as error:
-            raise self._lost(error) from None
+            self._lose(error)
 
-    def _lost(self, error: Exception) -> OutputError:
-        self._leave_standard_output()
-        if isinstance(error, OSError):
-            return unwritable(STANDARD_OUTPUT, error)
-        return OutputError(STANDARD_OUTPUT, "is closed")
+    def _lose(self, error: Exception) -> None:
+        """Point standard output to nowhere, so that what is left in its buffer cannot fail again at the end.
 
-    def _leave_standard_output(self) -> None:
-        """Point it to nowhere, so that what is left in its buffer cannot fail again at the end."""
+        Raises:
+            OutputError: it is not only that its reader has gone.
+        """
         self._reader_gone = True
         with suppress(OSError, ValueError, AttributeError):
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, sys.stdout.fileno())
             os.close(nowhere)
+        if isinstance(error, BrokenPipeError):
+            return
+        if isinstance(error, OSError):
+            raise unwritable(STANDARD_OUTPUT, error) from None
+        raise OutputError(STANDARD_OUTPUT, "is closed") from None
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
         if self.progress is not None:
-            self.progress.pause()
+            self.progress.stand_aside()
         # Without a standard error `print` would take standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
                 print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
-        if self.progress is not None:
-            self.progress.resume()
 
     def note(self, message: str) -> None:
         """One line on standard error of what was taken for granted; nothing if the run is quiet."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import shlex
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
@@ -18,8 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from validate.exit_status import ExitStatus, of_interruption
-from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.files import require_writable
+from validate.output.console import Console
 
 # Raised by one whenever a key changes its meaning or goes; a new key changes nothing for its readers.
 SCHEMA_VERSION = 2
@@ -114,8 +114,6 @@ class Head:
         self, results: Mapping[str, Any], status: ExitStatus | None, complete: bool
     ) -> dict[str, Any]:
         """Everything as plain data; a run that goes on has no status yet."""
-        import shlex
-
         return {
             "schema_version": SCHEMA_VERSION,
             "kind": self.kind,
@@ -184,70 +182,51 @@ def at_the_end(write: Callable[[Ending], None]) -> Iterator[Ending]:
         write(ending)
 
 
+@dataclass
 class Journal:
     """The JSON of a run, written again as its parts are finished, so that a kill loses next to nothing.
 
     Standard output takes one document only: it is written at the end.
+
+    Attributes:
+        target: the file, - for standard output, None where no JSON is asked for.
+        results: all that there is so far, as plain data. what: it is, in words.
+        begun: whether that is worth writing of a run that does not come to its end.
     """
 
-    def __init__(self, target: str | None, head: Head, console: Console) -> None:
-        """Refuse a target that cannot be written, before the run begins.
+    target: str | None
+    head: Head
+    console: Console
+    results: Callable[[], Mapping[str, Any]]
+    what: Callable[[], str]
+    begun: Callable[[], object] = lambda: True
+    _next: float = 0.0
 
-        Raises:
-            OutputError: it cannot be.
-        """
-        self.target = target
-        self._head = head
-        self._console = console
-        self._next = 0.0
-        if target is not None and target != "-":
-            require_writable(target)
-
-    def keep(self, results: Callable[[], Mapping[str, Any]], what: str) -> None:
-        """Write what is finished; `what` it is, in words, for the one who interrupts the run.
+    def keep(self) -> None:
+        """Write what is finished.
 
         Raises:
             OutputError: it cannot be written.
         """
-        if self.target is not None and self.target != "-" and time.monotonic() >= self._next:
-            began = time.monotonic()
-            self._write(self.target, results(), None, False, what)
+        if self.target not in (None, "-") and (began := time.monotonic()) >= self._next:
+            self._write(None, False)
             # Writing costs more the more there is: with such pauses it takes at most a tenth of the time.
             self._next = time.monotonic() + PAUSE * (time.monotonic() - began)
 
-    def close(
-        self, results: Callable[[], Mapping[str, Any]], status: ExitStatus, complete: bool, what: str
-    ) -> None:
-        """Write what there is, with the status that the run ends with.
+    def closing(self) -> AbstractContextManager[Ending]:
+        """Write it when a block ends, however it ends, with the status that the block sets.
 
-        Raises:
-            OutputError: it cannot be written.
-        """
-        if self.target is not None:
-            self._write(self.target, results(), status, complete, what)
-
-    def closing(
-        self, results: Callable[[], Mapping[str, Any]], begun: Callable[[], object], what: Callable[[], str]
-    ) -> AbstractContextManager[Ending]:
-        """Close the journal when a block ends, however it ends.
-
-        Args:
-            begun: whether there is anything worth writing of a run that does not come to its end.
-            what: is there, in words.
         Raises:
             OutputError: it cannot be written; and whatever ends the block.
         """
 
         def write(ending: Ending) -> None:
-            if ending.complete or begun():
-                self.close(results, ending.status, ending.complete, what())
+            if ending.complete or self.begun():
+                self._write(ending.status, ending.complete)
 
         return at_the_end(write)
 
-    def _write(
-        self, target: str, results: Mapping[str, Any], status: ExitStatus | None, complete: bool, what: str
-    ) -> None:
-        self._console.put(target, json_text(self._head.document(results, status, complete)))
-        where = STANDARD_OUTPUT if target == "-" else target
-        before = (line for line in self._console.written if not line.startswith(f"{where} holds "))
-        self._console.written = [*before, f"{where} holds {what}"]
+    def _write(self, status: ExitStatus | None, complete: bool) -> None:
+        if self.target is not None:
+            document = self.head.document(self.results(), status, complete)
+            self.console.put(self.target, json_text(document), self.what())

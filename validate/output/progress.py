@@ -7,28 +7,24 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import Protocol, TextIO
+from contextlib import contextmanager, suppress
+from typing import Protocol
 
 from validate.output.table import is_terminal
 from validate.plain_text import shown
 
-# Seconds that a run is given before a terminal is told how far it is; and between two lines in a pipe, and
-# before the first one.
-PATIENCE, PAUSE = 2.0, 10.0
+# Seconds that a run is given before a terminal is told how far it is, and how often; the same of a pipe.
+PATIENCE, OFTEN, PAUSE = 2.0, 0.5, 10.0
+WIPE = "\r\x1b[2K"  # back to the beginning of a line of a terminal, and nothing on it
 Told = Callable[..., None]
 """Takes what is done now, how much has been done, and of how much where that is another total than before."""
 
 
 class Says(Protocol):
-    """What a run says on standard error: the console, or whoever stands in for it.
-
-    Attributes:
-        progress: what says how far the run is, while something does.
-    """
+    """What a run says on standard error: the console, or whoever stands in for it."""
 
     quiet: bool
-    progress: Line | Lines | None
+    progress: Progress | None
 
     def note(self, message: str) -> None:
         """One line."""
@@ -43,51 +39,41 @@ def progress(
 
     Args:
         message: what is done, until something else is told. first: seconds before the first line in a pipe.
-        total: of how much, 0 until it is told; None of what cannot be counted.
-        lines: whether a pipe has lines too.
+        total: of how much, 0 or None until it is told. lines: whether a pipe has lines too.
     """
-    if console.progress is not None:
-        console.progress.told(message, 0, total)
-        yield console.progress.told
+    outer, terminal = console.progress, is_terminal(sys.stderr)
+    if outer is not None:
+        outer.told(message, 0, total)
+        yield outer.told
         return
-    told: Line | Lines | None = None
-    if not console.quiet and sys.stderr is not None:
-        if is_terminal(sys.stderr):
-            told = Line(message, total, sys.stderr)
-        elif lines:
-            told = Lines(console.note, message, total, first)
-    console.progress = told
+    if console.quiet or sys.stderr is None or not (terminal or lines):
+        yield lambda message, done, total=None: None
+        return
+    said = (
+        Progress(_rewrite, message, total, PATIENCE, OFTEN, lambda: _rewrite(""))
+        if terminal
+        else Progress(console.note, message, total, first)
+    )
+    console.progress = said
     try:
-        yield (lambda message, done, total=None: None) if told is None else told.told
+        yield said.told
     finally:
         console.progress = None
-        if told is not None:
-            told.end()
+        said.end()
 
 
-class Pace:
-    """About how long the rest takes, at the pace since this run began: what was there before took no time."""
-
-    def __init__(self) -> None:
-        self._began, self._first = time.monotonic(), 0
-        self._told = False
-
-    def rest(self, done: int, of: int | None) -> str:
-        """In words; empty where nothing is known of it."""
-        now = time.monotonic()
-        if not self._told or done < self._first or not done:
-            self._told, self._began, self._first = True, now, done
-        if not of or done <= self._first or of <= done:
-            return ""
-        seconds = (now - self._began) / (done - self._first) * (of - done)
-        return f", {seconds / 60.0:.0f} min left" if seconds > 90.0 else f", {seconds:.0f} s left"
+def _rewrite(line: str) -> None:
+    """Put a line in the place of the one before; the terminal may be gone."""
+    with suppress(OSError, ValueError):
+        print(end=WIPE + shown(line)[: shutil.get_terminal_size().columns - 1], file=sys.stderr, flush=True)
 
 
-class Lines:
+class Progress:
     """Says now and then what a run is doing, from a thread of its own: also while it only waits.
 
     Args:
-        say: takes a line. message, total: what is done, and of how much, until something else is told.
+        say: takes a line. wipe: takes it away, where it is in the way of something else.
+        message, total: what is done, and of how much, until something else is told.
         first, pause: seconds before the first line, and between two.
     """
 
@@ -98,98 +84,54 @@ class Lines:
         total: int | None = None,
         first: float = PAUSE,
         pause: float = PAUSE,
+        wipe: Callable[[], None] | None = None,
     ) -> None:
-        self._say, self._pauses, self._pace = say, (first, pause), Pace()
-        self._now = (message, 0, total)
+        self._say, self._wipe, self._waits = say, wipe, (first, pause)
+        self._message, self._done, self._total = message, 0, total
         self._began, self._over = time.monotonic(), threading.Event()
+        # What was there when this run began took it no time.
+        self._before, self._since = 0, self._began
+        self._lock, self._seen = threading.RLock(), False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
     def told(self, message: str, done: int, total: int | None = None) -> None:
         """What is done now, how much has been, and of how much where that is another total than before."""
-        total = self._now[2] if total is None else total
-        self._pace.rest(done, total)
-        self._now = (message, done, total)
+        if not self._done or done < self._done:
+            self._before, self._since = done, time.monotonic()
+        self._message, self._done, self._total = message, done, total or self._total
 
-    def pause(self) -> None:
-        """Lines stand in nobody's way."""
-
-    resume = pause
+    def stand_aside(self) -> None:
+        """Take a line of a terminal away before something else is said; it comes back by itself."""
+        with self._lock:
+            if self._wipe is not None and self._seen:
+                self._wipe()
+                self._seen = False
 
     def end(self) -> None:
         """Say nothing more."""
         self._over.set()
         self._thread.join()
+        self.stand_aside()
+
+    def line(self) -> str:
+        """What is said: also about how long the rest takes, at the pace since this run began."""
+        now, share, rest = time.monotonic(), "", ""
+        new, left = self._done - self._before, (self._total or 0) - self._done
+        if self._total:
+            share = f", {self._done:,} of {self._total:,} done"
+            if new > 0 < left:
+                rest = f", {(now - self._since) / new * left:,.0f} s left"
+        return f"after {now - self._began:.0f} s: {self._message}{share}{rest}"
 
     def _run(self) -> None:
-        wait, pause = self._pauses
+        wait, pause = self._waits
         while not self._over.wait(wait):
-            message, done, total = self._now
-            share = f", {done:,} of {total:,} done" if total else ""
-            rest = self._pace.rest(done, total) if done else ""
-            self._say(f"after {time.monotonic() - self._began:.0f} s: {message}{share}{rest}")
+            # Not while something else is half written: a note to a pipe takes the same way.
+            if self._wipe is None:
+                self._say(self.line())
+            else:
+                with self._lock:
+                    self._say(self.line())
+                    self._seen = True
             wait = pause
-
-
-class Line:
-    """A line on a terminal that says how far a run is, once it takes over two seconds, and goes away."""
-
-    def __init__(self, message: str, total: int | None, stream: TextIO) -> None:
-        from rich.console import Console as Screen
-        from rich.progress import (
-            BarColumn,
-            MofNCompleteColumn,
-            Progress,
-            SpinnerColumn,
-            TextColumn,
-            TimeElapsedColumn,
-        )
-
-        bar = [] if total is None else [BarColumn(bar_width=20), MofNCompleteColumn()]
-        self._progress = Progress(
-            SpinnerColumn("line"),
-            TextColumn("{task.description}", markup=False),
-            *bar,
-            TimeElapsedColumn(),
-            console=Screen(file=stream, width=shutil.get_terminal_size().columns),
-            transient=True,
-            redirect_stdout=False,
-            redirect_stderr=False,
-            refresh_per_second=4,
-        )
-        self._task = self._progress.add_task(shown(message), total=total)
-        self._lock, self._pace = threading.RLock(), Pace()
-        self._ready = self._over = False
-        self._timer = threading.Timer(PATIENCE, self._begin)
-        self._timer.daemon = True
-        self._timer.start()
-
-    def _begin(self) -> None:
-        with self._lock:
-            self._ready = True
-            self.resume()
-
-    def told(self, message: str, done: int, total: int | None = None) -> None:
-        """What is done now, how much has been, and of how much where that is another total than before."""
-        with self._lock:
-            of = self._progress.tasks[0].total if total is None else total
-            words = shown(f"{message}{self._pace.rest(done, None if of is None else int(of))}")
-            self._progress.update(self._task, description=words, completed=done, total=total)
-
-    def pause(self) -> None:
-        """Take the line away, so that something else can be said."""
-        with self._lock:
-            self._progress.stop()
-
-    def resume(self) -> None:
-        """Bring it back."""
-        with self._lock:
-            if self._ready and not self._over:
-                self._progress.start()
-
-    def end(self) -> None:
-        """Take the line away for good."""
-        with self._lock:
-            self._over = True
-            self._timer.cancel()
-            self._progress.stop()

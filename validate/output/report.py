@@ -22,7 +22,6 @@ MOST_EXPLANATIONS = 3  # that are printed
 
 # "share": of the tolerance, the largest of any number of the quantity; above 1 it disagrees.
 HEAD = ("quantity", "where", "largest difference", "tolerance", "at", "share", "limited by", "verdict")
-FILE_HEAD = ("quantity", "worst at", "difference", "tolerance", "at", "verdict")
 
 # Verdicts from the one that tells least of a quantity to the one that tells most.
 OF_EVERYTHING = ("agrees", "not tested", "not given", "disagrees")
@@ -155,18 +154,23 @@ def outcome_text(outcome: Outcome) -> str:
     return text_of(outcome_parts(outcome))
 
 
-def outcome_parts(outcome: Outcome) -> tuple[Part, ...]:
-    """The same with its table apart."""
+def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:
+    """The same with its table apart; angles are in degrees.
+
+    Args:
+        over: what the rows of a file of results go over, if it is of one. absent: what such a file lacks.
+    """
     of_one: dict[str, list[Comparison]] = {}
     for row in outcome.rows:
         of_one.setdefault(heading(row.quantity, row.name), []).append(row)
     worst = {heading(row.quantity, row.name): row for row in worst_rows(outcome)}
-    rows = tuple((words, *_told(mine, worst[words])) for words, mine in of_one.items())
+    rows = [(words, *_told(mine, worst[words])) for words, mine in of_one.items()]
+    rows += [(words, "", "-", "-", "-", "-", "-", "not given") for words in absent]
     factor = f"; {held_to(outcome.factor)}" if outcome.factor != 1.0 else ""
-    instants = counted_as(len(outcome.solutions[0].times), "instant")
+    count = counted_as(len(outcome.solutions[0].times), "row" if over else "instant")
     return (
-        f"{outcome.scene}: {pair_of(outcome)}, {instants}{factor}",
-        Table(HEAD, rows),
+        f"{outcome.scene}: {pair_of(outcome)}, {count}{f' over {shown(over)}' if over else ''}{factor}",
+        Table(HEAD, tuple(rows)),
         *lines_below(outcome),
     )
 
@@ -186,35 +190,21 @@ def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
         verdict += f": {worst.name}"
     if not given:
         return name, "-", "-", "-", "-", "-", verdict
+    difference, tolerance = (in_degrees(n, largest.unit) for n in (largest.difference, largest.tolerance))
+    share = share_of(max(row.share for row in given))
     # The unit is that of the difference beside it.
-    tolerance, share = with_unit(largest.tolerance, ""), share_of(max(row.share for row in given))
-    difference = with_unit(largest.difference, largest.unit)
-    return name, difference, tolerance, when(largest, 4), share, largest.rests_on, verdict
+    held = tolerance.partition(" ")[0]
+    return name, difference, held, when(largest, 4), share, largest.rests_on, verdict
 
 
 def file_parts(found: DataOutcome) -> tuple[Part, ...]:
-    """The table of a file of results: of each quantity the worst, and a row for what it does not give."""
-    outcome = found.outcome
-    rows = []
-    for row in worst_rows(outcome):
-        quantity = QUANTITIES[row.quantity]
-        name = (row.name, "") if quantity.of == "car" else (quantity.words, row.name)
-        numbers = in_degrees(row.difference, row.unit), in_degrees(row.tolerance, row.unit)
-        rows.append((*name, *numbers, row.place, verdict_of(row)))
-    rows += [(words, "", "-", "-", "", "not given") for words in found.absent]
-    verdicts = [row.verdict for row in outcome.rows]
+    """The table of a file of results, and how much was compared."""
+    verdicts = [row.verdict for row in found.outcome.rows]
     counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts))
     # What is not tested was compared with nothing, or with what could not have told it from a wrong one.
-    tested = len(verdicts) - verdicts.count("not tested")
-    instants = counted_as(len(outcome.solutions[0].times), "row")
-    return (
-        f"{outcome.scene}: {pair_of(outcome)}, {instants} over {shown(found.over)}",
-        Table(FILE_HEAD, tuple(rows)),
-        *lines_below(outcome),
-        f"{counted_as(tested, 'number')} compared: {counts}."
-        if tested
-        else f"Nothing was compared: {counts}.",
-    )
+    tested = counted_as(len(verdicts) - verdicts.count("not tested"), "number")
+    said = f"{tested} compared" if {*verdicts} - {"not tested"} else "Nothing was compared"
+    return *outcome_parts(found.outcome, found.over, found.absent), f"{said}: {counts}."
 
 
 def agreement_line(outcome: Outcome) -> str:

@@ -13,17 +13,16 @@ import shutil
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, TextIO
+from itertools import zip_longest
+from textwrap import wrap
+from typing import ClassVar, TextIO
 
 from validate.plain_text import shown
 
-if TYPE_CHECKING:
-    from rich.console import Console as Screen
-
 # What a column of numbers may hold: its cells are read from the right.
 NUMBER = re.compile(r"[-+]?\d|-?$|not a number$")
-# The colour of a verdict by the word that it begins with; the word says it too.
-COLOURS = {"agrees": "green", "as": "green", "DISAGREES": "bold red", "NOT": "bold red", "not": "yellow"}
+# Green, red and yellow of a terminal, by the words of verdicts; the words say it too.
+COLOURS = {"agrees|as expected": "32", "DISAGREES|NOT": "1;31", "not tested|not given": "33"}
 SAFE = frozenset(" ,.;:/()=-'?")
 """Characters beside letters and digits that begin nothing inside of a line of Markdown."""
 
@@ -72,17 +71,38 @@ class Table:
     @property
     def text(self) -> str:
         """Columns of text: words to the left, numbers to the right."""
-        lines = [self.head, *self.texts]
-        widths = [max(len(line[i]) for line in lines) for i in range(len(self.head))]
-        lines.insert(1, tuple("-" * width for width in widths))
-        return "\n".join(
-            " " * self.indent
-            + "  ".join(
-                cell.ljust(width) if self.to_left(i) else cell.rjust(width)
-                for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-            ).rstrip()
-            for line in lines
-        )
+        return "\n".join(self.lines())
+
+    def lines(self, room: int | None = None) -> list[str]:
+        """The same in lines that are no longer than there is room for, if that is given.
+
+        Where there is too little, cells are folded between words; where a word would be cut for it, each row
+        is a list instead.
+        """
+        columns = [[name, *(row[i] for row in self.texts)] for i, name in enumerate(self.head)]
+        whole, gap, gaps = [max(map(len, column)) for column in columns], "  ", len(columns) - 1
+        widths: list[int] | None = whole
+        if room is not None and self.indent + sum(whole) + 2 * gaps > room:
+            gap, widths = " ", _fitting(columns, room - self.indent - gaps)
+        if widths is None:
+            return [
+                f"    {name}: {cell}" if i else f"  {cell}"
+                for row in self.texts
+                for i, (name, cell) in enumerate(zip(self.head, row, strict=True))
+            ]
+        found = []
+        for row in (self.head, ["-" * width for width in widths], *self.texts):
+            cells = [
+                [c] if len(c) <= w else wrap(c, w, break_on_hyphens=False)
+                for c, w in zip(row, widths, strict=True)
+            ]
+            for line in zip_longest(*cells, fillvalue=""):
+                pads = (
+                    cell.ljust(width) if self.to_left(i) else cell.rjust(width)
+                    for i, (cell, width) in enumerate(zip(line, widths, strict=True))
+                )
+                found.append((" " * self.indent + gap.join(pads)).rstrip())
+        return found
 
     @property
     def markdown(self) -> str:
@@ -142,64 +162,21 @@ def is_terminal(stream: TextIO | None) -> bool:
     return stream is not None and stream.isatty() and not dumb
 
 
-def laid_out(parts: Sequence[Part], stream: TextIO) -> str:
-    """Parts as a terminal shows them, as wide as it is."""
-    # Imported where there is a terminal: it takes as long as to solve a scene.
-    from rich.console import Console as Screen
-    from rich.text import Text
-
-    code = stream.encoding or "utf-8"
-    page = io.TextIOWrapper(io.BytesIO(), encoding=code, errors="backslashreplace", newline="")
-    width = max(shutil.get_terminal_size().columns, 20)
-    screen = Screen(file=page, force_terminal=True, width=width, highlight=False, markup=False, emoji=False)
-    for part in parts:
-        if isinstance(part, Table):
-            _show(part, screen)
-        else:
-            text = Text(part)
-            text.highlight_regex(r"\bagrees  ", COLOURS["agrees"])
-            text.highlight_regex(r"\bDISAGREES  ", COLOURS["DISAGREES"])
-            screen.print(text, soft_wrap=True)
-    page.flush()
-    page.buffer.seek(0)
-    return page.buffer.read().decode(code)
+def laid_out(parts: Sequence[Part]) -> str:
+    """Parts as a terminal shows them: tables as wide as it is, verdicts in colours."""
+    room = max(shutil.get_terminal_size().columns, 20)
+    lines = [line for part in parts for line in ([part] if isinstance(part, str) else part.lines(room))]
+    text = "\n".join(lines) + "\n"
+    if not os.environ.get("NO_COLOR"):
+        for words, colour in COLOURS.items():
+            text = re.sub(rf"\b({words})\b", f"\x1b[{colour}m\\1\x1b[0m", text)
+    return text
 
 
-def _show(table: Table, screen: Screen) -> None:
-    """A table; one that is wider than the terminal with its cells folded, or as a list for each row."""
-    from rich.box import SIMPLE_HEAD
-    from rich.padding import Padding
-    from rich.table import Table as Grid
-    from rich.text import Text
-
-    wide = max(map(len, table.text.splitlines())) + len(table.head)
-    widths = None if wide <= screen.width else _folded(table, screen.width)
-    if wide > screen.width and widths is None:
-        for row in table.texts:
-            for i, (name, cell) in enumerate(zip(table.head, row, strict=True)):
-                style = _style(name, cell, i)
-                text = Text.assemble(f"    {name}: " if i else "  ", (cell, style))
-                screen.print(text, soft_wrap=True)
-        return
-    grid = Grid(box=SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 0 if widths else 1))
-    for i, name in enumerate(table.head):
-        grid.add_column(
-            Text(name),
-            justify="left" if table.to_left(i) else "right",
-            no_wrap=widths is None,
-            width=None if widths is None else widths[i],
-        )
-    for row in table.texts:
-        cells = zip(table.head, row, strict=True)
-        grid.add_row(*(Text(cell, _style(name, cell, i)) for i, (name, cell) in enumerate(cells)))
-    screen.print(Padding(grid, (0, 0, 0, table.indent)))
-
-
-def _folded(table: Table, room: int) -> list[int] | None:
-    """Widths of columns whose cells are folded between words; None where no word may be cut for it."""
-    columns = [[name, *(row[i] for row in table.texts)] for i, name in enumerate(table.head)]
+def _fitting(columns: Sequence[Sequence[str]], room: int) -> list[int] | None:
+    """Widths of columns that have room together; None where a word would be cut for it."""
     widths = [max(len(word) for cell in column for word in cell.split() or [""]) for column in columns]
-    rest = room - table.indent - sum(widths) - (len(widths) - 1)
+    rest = room - sum(widths)
     if rest < 0:
         return None
     # Whole cells in as many columns as there is room for, and what is left over to the next one.
@@ -209,9 +186,3 @@ def _folded(table: Table, room: int) -> list[int] | None:
         widths[i] += more
         rest -= more
     return widths
-
-
-def _style(name: str, cell: str, column: int) -> str:
-    if name == "verdict":
-        return COLOURS.get(cell.partition(" ")[0].rstrip(",;"), "")
-    return "" if column else "bold"

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from validate.errors import UsageError
 from validate.extras import needed
-from validate.output.files import remove_left_over, unwritable, write_content, write_whole
+from validate.output.files import unwritable, write_content, write_whole
 from validate.plain_text import shown
 from validate.studies.study import Row, Study, Task, differences, made_by
 
@@ -134,8 +134,6 @@ def adding_to(folder: Path, study: Study) -> Store:
     )
     if folder.exists() and not folder.is_dir():
         raise _unusable(folder, "is a file, and records take a folder; give another name")
-    if folder.is_dir():
-        remove_left_over(folder)
     # A run that ended before anything was recorded left nothing to be held to.
     if there is None or not there.files():
         if folder.is_dir() and set(os.listdir(folder)) - {HEAD}:

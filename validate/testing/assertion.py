@@ -4,14 +4,16 @@ it gives none where there is no pose.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from pointcoord import PointcoordError, Scene
+from pointcoord.wording import meant
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.comparison.compare import Outcome, compare, compare_solutions
+from validate.comparison.given import given
 from validate.diagnosis import explain_outcome
 from validate.extras import MissingPackage
 from validate.formulations.protocol import Formulation, FormulationError, Solution
@@ -19,12 +21,28 @@ from validate.output.report import about, told_row
 from validate.reference import InfeasibleError, NoReferenceError
 from validate.solvers.check import ACCURACY, AGAINST, required_accuracy
 from validate.solvers.plain import NoSolver, PlainSolver, as_function, given_to_solver
-from validate.testing.states import WrongStates, numbers_of, require_comparable, require_given
 
 WHO = "the states"
 # What is said of a test's own arguments; anything else that is raised is a defect of this package.
 TOLD = (AssertionError, PointcoordError, FormulationError, NoReferenceError, NoSolver, MissingPackage)
 MOST_ROWS, MOST_EXPLANATIONS = 8, 3  # in a message; how many more rows there are is said
+
+
+class WrongStates(AssertionError):
+    """States hold something that cannot be compared, or not what is needed.
+
+    A comparison would leave it out and judge the rest; a test must not pass for that reason.
+
+    Attributes:
+        faults: what is wrong, a line each.
+    """
+
+    def __init__(self, faults: Sequence[str]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(self.faults))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.faults,)
 
 
 class NotTested(AssertionError):
@@ -87,14 +105,13 @@ def assert_agrees(
     exact = required_accuracy(accuracy)
     taken = Scene.load(scene) if isinstance(scene, str) else scene
     name = scene if isinstance(scene, str) else taken.title or "the scene"
-    if isinstance(states, Mapping):
-        require_comparable(states, taken)
-        require_given(states, taken, needed)
     one = PlainSolver(WHO, lambda _: states, exact)
     if isinstance(against, Solution):
         outcome = compare_solutions(taken, one.solve(taken), against, name)
     else:
         outcome = compare(taken, one, against, name)
+    if faults := (*outcome.faults, *_lacking(outcome, needed)):
+        raise WrongStates(faults)
     if outcome.disagreements:
         raise AssertionError(_disagreement(taken, outcome, exact))
     untested = [about(row.quantity, row.name) for row in outcome.rows if row.verdict == "not tested"]
@@ -134,19 +151,35 @@ def assert_refuses(
         answer = function(plain)
     except raises:
         return
-    if not isinstance(answer, Mapping):
-        raise WrongStates("all of it", f"is a {type(answer).__name__}", "a mapping of what the solver has")
-    require_comparable(answer, taken)
-    times, arrays = numbers_of(answer, taken)
+    try:
+        solution = PlainSolver("the solver", lambda _: answer, ACCURACY).solve(taken)
+    except FormulationError as error:
+        raise WrongStates([str(error)]) from None
+    side = given(solution, taken.instants)
+    if side.faults:
+        raise WrongStates(side.faults)
+    arrays = [array for part in side.numbers.values() for array in part.values()]
     if not arrays:
-        raise WrongStates("all of it", f"holds nothing that {name!r} can ask for", "a mapping, or an error")
+        raise WrongStates([f"the solver gives nothing that {name!r} asks for"])
     finite = np.all([np.isfinite(a.reshape(len(a), -1)).all(axis=-1) for a in arrays], axis=0)
-    answered = [time for time in times[finite].tolist() if time in without]
+    answered = [time for time in taken.instants[side.found][finite].tolist() if time in without]
     if answered:
         raise AssertionError(
             f"the solver answers {name!r} at t = {answered[0]:.9g} s, where there is no pose: "
             f"{without[answered[0]]}; let it raise an error there, or give NaN"
         )
+
+
+def _lacking(outcome: Outcome, needed: Collection[str]) -> Iterator[str]:
+    """What is needed of states and not there, a line each."""
+    for need in needed:
+        rows = [row for row in outcome.rows if need in (row.quantity, row.name)]
+        if not rows:
+            known = dict.fromkeys(word for row in outcome.rows for word in (row.quantity, row.name))
+            yield f"{need!r} is needed, and the scene does not ask for it{meant(str(need), known)}"
+        elif names := [row.name for row in rows if row.verdict == "not given"]:
+            of = "" if names == [need] else f" of {', '.join(names)}"
+            yield f"{need} is needed and missing{of}"
 
 
 def _without_pose(scene: Scene) -> dict[float, str]:

@@ -10,32 +10,12 @@ from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.wording import meant
 from validate.hard.case import Case
 from validate.hard.catalogue import CASES
-from validate.hard.subjects import BESIDE, SUBJECTS
 
 NEAR = 1e-3
 
-# Hard cases that no solver can be asked, by the reason.
-_NO_SCENE = "it is no scene: the number cannot be part of one, and pointcoord refuses to read it"
-_NO_LENGTH = "it is no scene: a link or an axis without length is refused when it is read"
-_OTHER_LINKS = (
-    "it is a mechanism with a link too many or too few, which is refused, or solved as it is without"
-)
-_FAMILIES = (
-    (_NO_SCENE, ("not-a-number", "infinity", "minus-infinity", "whole-number-too-large", "heave-not-finite")),
-    (_NO_LENGTH, ("link-without-length",)),
-    (_OTHER_LINKS, ("link-missing", "constraint-missing", "link-twice", "link-twice-for-another")),
-    (_OTHER_LINKS, ("input-twice", "contradictory-links", "arm-held-by-a-third-link")),
-)
-_OPEN = "a solver may refuse this mechanism, or this value, and be right"
-_REASONS = {
-    f"{name}{subject.suffix}": reason
-    for reason, names in _FAMILIES
-    for name in names
-    for subject in (*SUBJECTS, BESIDE)
-}
-NOT_ASKED: Mapping[str, str] = {
-    case.name: _REASONS.get(case.name, _OPEN) for case in CASES if not (case.answered or case.without_pose)
-}
+# Hard cases that no solver can be asked: what is no scene, for it is refused when it is read; a mechanism
+# with a link too many or too few, and others that a solver may refuse as well as answer, and be right.
+NOT_ASKED = frozenset(case.name for case in CASES if not (case.answered or case.without_pose))
 
 
 def scenes_to_try(
@@ -99,7 +79,9 @@ def impossible_scenes(
 def _loaded(name: str) -> Scene:
     """A scene by its name or path; of a hard case without an answer, why."""
     if name in NOT_ASKED:
-        raise ValueError(f"the hard case {name!r} cannot be asked of a solver: {NOT_ASKED[name]}")
+        raise ValueError(
+            f"the hard case {name!r} cannot be asked of a solver: it is no scene, or one that may be refused"
+        )
     cases = {case.name: case for case in CASES}
     if name in cases:
         raise ValueError(f"the hard case {name!r} has instants without a pose; mark with impossible_scenes")

@@ -4,13 +4,12 @@ import html
 import json
 import os
 import re
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from junit_schema import checked
-from program import BOUNCE, PAST_ITS_END, complaints, in_shell, run, short_scene
+from program import BOUNCE, PAST_ITS_END, complaints, run, short_scene
 
 from pointcoord import Scene
 from validate import Solution, compare
@@ -180,22 +179,6 @@ def test_a_baseline_may_take_the_place_of_the_one_it_was_compared_with(tmp_path:
     before = kept.read_bytes()
     assert main([*words, "--baseline", str(kept)]) == 0
     assert kept.read_bytes() == before
-
-
-def test_what_was_there_stays_whole_when_the_disk_is_full(tmp_path: Path) -> None:
-    scenes = [short_scene(tmp_path, name) for name in ("a.toml", "b.toml")]
-    for option, name in (("--junit", "x.xml"), ("--summary", "x.md"), ("--save-baseline", "x.npz")):
-        target = tmp_path / name
-        target.write_text("before")
-        script = 'ulimit -f 1; trap "" XFSZ; exec "$@"'
-        done: subprocess.CompletedProcess[str] = in_shell(
-            script, "validate", *scenes, "steer", "-q", option, str(target)
-        )
-        assert done.returncode == 4, done.stderr
-        (line,) = complaints(done.stderr)
-        assert "cannot be written (File too large)" in line
-        assert target.read_text() == "before"
-        assert not list(tmp_path.glob(".pointcoord-*"))
 
 
 def test_ctrl_c_leaves_the_test_results_of_what_was_done_and_no_baseline(

@@ -53,7 +53,7 @@ def test_every_option_of_the_workflow_is_one_of_the_command() -> None:
     solver = words.index("--solver")
     assert words[solver + 1] == SOLVER
     del words[solver : solver + 4]
-    options = cli.parser(["validate"]).parse_args([name, *words])
+    options = cli.parser(name).parse_args(words)
     assert (options.scenes_dir, options.junit) == ("scenes", "pointcoord.xml")
     assert options.summary == "$GITHUB_STEP_SUMMARY"
     kept = step("actions/upload-artifact")

@@ -7,9 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, Scene, SceneError, built_in_scenes, simulate
+from pointcoord import AssemblyError, Scene, built_in_scenes, simulate
 from pointcoord.simulation import effort
-from pointcoord.solve.taylor import COARSEST, FINEST
 from validate.cli import main
 
 TAKES = re.compile(
@@ -73,15 +72,6 @@ def test_a_long_table_is_planned_by_a_map_and_says_why(
     assert "in the inputs, each proven on a patch of their way, of order" in told
 
 
-@pytest.mark.parametrize(("tolerance", "kept"), [(1e-30, FINEST), (1e30, COARSEST)])
-def test_a_tolerance_that_no_series_holds_is_planned_as_the_one_it_does(
-    tolerance: float, kept: float
-) -> None:
-    scene = Scene.load("steer").model_copy(update={"tolerance": tolerance})
-    planned = effort(scene)
-    assert planned.tolerance == pytest.approx(10.0 * kept * simulate(scene).unit, rel=1e-12)
-
-
 def test_a_motion_that_stops_is_planned_up_to_there() -> None:
     content = Scene.load("bounce").model_dump(mode="json", exclude_none=True)
     content["inputs"]["arm_angle"] = {"polynomial": [1.5, 1.0]}
@@ -94,11 +84,3 @@ def test_a_motion_that_stops_is_planned_up_to_there() -> None:
     # The arm turns to 152.013 degrees.
     assert planned.stop == pytest.approx(np.deg2rad(152.013) - 1.5, abs=2e-5)
     assert planned.work.factorisations == caught.value.partial.work.factorisations
-
-
-def test_a_scene_that_cannot_be_solved_has_no_effort() -> None:
-    scene = Scene.load("off-axis-strut")
-    points = {**scene.mechanism.points, "strut_rod_end": (300.0, -300.0, 300.0)}
-    other = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
-    with pytest.raises(SceneError, match="another car"):
-        effort(other)

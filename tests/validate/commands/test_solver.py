@@ -28,13 +28,10 @@ RACK += "    place = place + np.outer(x['heave']['position'], given['up'])\n"
 RACK += "    return {'position': {'tie_rod_inner': place}}\n"
 # What becomes of a strut with it; a double wishbone it answers.
 ENDS = {
-    "leaves": ("os._exit(0)", "ended with exit status 0 and without an answer"),
     "crashes": ("os.kill(os.getpid(), 11)", "was ended by SIGSEGV"),
     "interrupts": ("raise KeyboardInterrupt", "KeyboardInterrupt"),
     "exits": ("raise SystemExit(5)", "SystemExit: 5"),
-    "cuts": ("os.closerange(3, 64)", "ended with exit status"),
     "reads": ("input()", "EOFError"),
-    "writes": ("given['instants'][0] = 1.0", "ValueError: assignment destination is read-only"),
     "answers": ("return None", "it answers with None; needed: a mapping"),
 }
 HANGS = {"hangs": "while True: pass", "waits": "os.system('sleep 60')"}
@@ -150,9 +147,9 @@ def test_json_is_alone_on_standard_output(solvers: Path) -> None:
         ("math:pi", "", "is of type float, which is no solver"),
         ("own.right:solve", "--accuracy 0", "give a length above 0"),
         ("own.right:solve", "--accuracy fine", "invalid float value: 'fine'"),
-        ("own.right:solve", "--first absolute", "--first is given, and --solver"),
+        ("own.right:solve", "--first absolute", "--first does not go with --solver"),
         ("own.right:solve", "--second nobody", "no formulation is called 'nobody'"),
-        ("own.right:solve", "--solver-timeout 0", "is no time limit in s"),
+        ("own.right:solve", "--solver-timeout 0", "allowed: a positive, finite number"),
         ("own.right:solve", "--solver-timeout 5 --in-process", "leave one of them out"),
     ],
 )
@@ -252,27 +249,14 @@ def test_how_much_was_compared_is_said_and_points_of_the_chassis_are_no_agreemen
     assert error.get("message", "").startswith(why)
 
 
-@pytest.mark.parametrize(
-    ("part", "said", "where"),
-    [
-        ("'toe': a['toe'][1:]", "toe has the shape (4,); needed: (5,)", ": wheel angle of "),
-        ("'cambre': a['camber']", "'cambre', which the scene does not ask for (did you mean 'camber'?)", " "),
-        (
-            "'toe': __import__('numpy').ma.masked_less(a['toe'], 9)",
-            "toe has 5 masked entries",
-            ": wheel angle of ",
-        ),
-    ],
-)
 def test_what_is_given_and_cannot_be_used_ends_with_3_and_is_an_error_of_the_test_results(
-    solvers: Path, capfd: pytest.CaptureFixture[str], part: str, said: str, where: str
+    solvers: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    text = f"{WHEEL}{{'camber': a['camber'], {part}}}\n"
+    text = f"{WHEEL}{{'camber': a['camber'], 'toe': a['toe'][1:]}}\n"
     (solvers / "own" / "partly.py").write_text(text, encoding="utf-8")
     assert run("partly", "off-axis-strut.toml", "--junit", "t.xml") == 3
-    out = capfd.readouterr().out
-    assert f"  cannot be used: own.partly:solve{where}" in out
-    assert said in out
+    out, said = capfd.readouterr().out, "toe has the shape (4,); needed: (5,)"
+    assert f"  cannot be used: own.partly:solve: wheel angle of {said}" in out
     assert "0 of 1 scene agrees" in out
     (error,) = ElementTree.parse("t.xml").getroot().iter("error")
     assert said in error.get("message", "")

@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +15,6 @@ from validate.comparison.examined import examine
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.running import ROOT, check_what_is_run, has_job
 
 PAIRS = (("pointcoord", "absolute"), ("pointcoord-newton", "absolute"))
 
@@ -238,25 +236,3 @@ def test_a_target_that_cannot_be_written_is_told_before_anything_is_solved(
     assert out == ""
     (line,) = err.splitlines()
     assert line.startswith(f"pointcoord: {target}: ")
-
-
-MODULES = sorted(
-    ".".join(path.relative_to(ROOT.parent).with_suffix("").parts).removesuffix(".__init__")
-    for path in ROOT.rglob("*.py")
-)
-
-
-@pytest.mark.parametrize("module", MODULES)
-def test_a_module_that_is_run_does_its_job_or_is_refused(
-    module: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(sys, "argv", ["-m", "some", "words"])
-    monkeypatch.setattr(sys, "orig_argv", ["python", "-m", module, "some", "words"])
-    if has_job(module):
-        check_what_is_run()
-        return
-    with pytest.raises(SystemExit) as ended:
-        check_what_is_run()
-    assert ended.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"pointcoord: {module} has nothing to run; ")

@@ -172,7 +172,7 @@ def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.Cap
     assert main(["plan", path]) == 0
     out = capsys.readouterr().out
     assert "computed: length of the stub axle, mm (stub_axle)" in out
-    assert "left out: velocity of every point, mm/s" in out
+    assert "left out: velocity, " in out
     assert main(["simulate", path]) == 0
     head, first, *_ = capsys.readouterr().out.splitlines()
     row = dict(zip(head.split(","), map(float, first.split(",")), strict=True))

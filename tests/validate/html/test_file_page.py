@@ -82,14 +82,11 @@ def test_the_numbers_beside_the_page_are_the_files_and_those_it_was_held_to(fold
     assert np.degrees(float(off[0]["difference"])) == pytest.approx(WRONG, abs=1e-4)
 
 
-def test_names_of_a_file_show_as_text_and_what_the_page_lacks_is_named(folder: Path) -> None:
+def test_names_of_a_file_show_as_text(folder: Path) -> None:
     text = (folder / "page" / "index.html").read_text(encoding="utf-8")
     read = Read(text)
     assert not {"b"} & {tag for tag, _ in read.tags}
     assert not [script for script in read.scripts if "alert(1)" in script]
-    lacking = {row[0]: row[1] for row in read.words if row and row[-1].startswith("pointcoord ")}
-    assert lacking["scenes in motion, compared by two formulations"] == "pointcoord report DIR SCENE"
-    assert "hard cases" in lacking
     assert "Drawn are 0" not in text
 
 

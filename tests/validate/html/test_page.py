@@ -17,7 +17,6 @@ import made_rows
 import numpy as np
 import pytest
 from page_read import Read
-from page_runs import run_of
 from program import PAST_ITS_END, short_scene
 
 import validate.published
@@ -45,6 +44,14 @@ FILES = {"results.json": "the run", "comparisons.csv": "its lines"}
 
 def head(kind: str = "validate") -> Head:
     return Head.of(kind, ("pointcoord", kind))
+
+
+def run_of(*scenes: Drawn) -> Run:
+    """A run of scenes, and what they come to."""
+    record = Record([one.examined.name for one in scenes])
+    for one in scenes:
+        record.add(one.examined, scene=one.scene)
+    return Run(head(), record, scenes)
 
 
 def read(run: Run) -> Read:
@@ -100,7 +107,7 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
     there = [given["id"] for tag, given in shown.tags if tag == "section"]
     # That of a file of results has nothing to say here.
     assert there == [section.name for section in sections() if section.name != "file"]
-    details = ["scenes", "differences", "paper", "hard", "published", "left-out", "machine"]
+    details = ["scenes", "differences", "paper", "hard", "published", "machine"]
     assert there == ["verdict", "agreement", "motion", "cost", *details]
     assert [section.name for section in sections() if section.folded] == details
     links = [given["href"] or "" for tag, given in shown.tags if tag == "a"]
@@ -277,20 +284,6 @@ def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_sm
     assert "and 10 more" in run.sentence
     assert len(run.document["scenes"]) == count
     assert len(data_files(run)["comparisons.csv"].splitlines()) > count
-
-
-def test_what_a_page_does_not_hold_is_named_with_the_command_that_adds_it(bounce: Drawn) -> None:
-    rows = read(run_of(bounce)).words
-    place = next(i for i, row in enumerate(rows) if row[0] == "not in this page")
-    lacking = {row[0]: row[1] for row in rows[place + 1 : place + 5]}
-    assert lacking == {
-        "hard cases": "pointcoord hard --report DIR",
-        "accuracy against time": "pointcoord cost --report DIR",
-        "the paper's figures, tables and errata": "pointcoord report DIR",
-        "other programs' tables": "pointcoord report DIR",
-    }
-    for command in lacking.values():
-        assert main([command.split()[1], "--help"]) == 0
 
 
 # What it draws.

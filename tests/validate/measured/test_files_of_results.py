@@ -246,9 +246,9 @@ def test_a_wrong_map_or_file_is_refused_with_its_place(
         (["--data", "none.csv", "steer"], "none.csv: cannot be read"),
         (["--data", "none.csv", "steer", "--accuracy", "1e308"], "allowed: a number from 0 to 1e+12"),
         (["--data", "none.csv"], "no scene is given with --data"),
-        (["--data", "none.csv", "steer", "--first", "absolute"], "leave --first and --second out"),
-        (["--data", "none.csv", "steer", "--baseline", "x.npz"], "--baseline is about what is solved"),
-        (["--map", "none.toml", "steer"], "give it with --data FILE"),
+        (["--data", "none.csv", "steer", "--first", "absolute"], "--first does not go with --data"),
+        (["--data", "none.csv", "steer", "--baseline", "x.npz"], "--baseline does not go with --data"),
+        (["--map", "none.toml", "steer"], "--map goes with --data only"),
     ],
 )
 def test_a_wrong_command_is_one_line(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -135,20 +135,21 @@ def test_writing_on_the_way_takes_a_small_part_of_the_time(
     clock = [0.0]
     monkeypatch.setattr("validate.output.document.time.monotonic", lambda: clock[0])
     target = tmp_path / "x.json"
-    journal = Journal(str(target), Head.of("hard-list", ["pointcoord"]), Console())
     written = []
 
-    def results(number: int) -> dict[str, Any]:
-        written.append(number)
+    def results() -> dict[str, Any]:
+        written.append(clock[0])
         clock[0] += 1.0
         return {"cases": []}
 
-    for number in range(100):
-        clock[0] += 0.5
-        journal.keep(lambda number=number: results(number), "some")
-    assert written[0] == 0
-    assert len(written) <= 0.1 * clock[0] + 1
-    assert max(np.diff(written)) * 0.5 <= 10.0
-    assert document(target.read_text())["complete"] is False
-    journal.close(lambda: results(100), ExitStatus.AGREE, True, "all")
+    head = Head.of("hard-list", ["pointcoord"])
+    journal = Journal(str(target), head, Console(), results, lambda: "some")
+    with journal.closing():
+        for _ in range(100):
+            clock[0] += 0.5
+            journal.keep()
+        assert document(target.read_text())["complete"] is False
+    assert written[0] == 0.5
+    assert len(written) <= 0.1 * clock[0] + 2
+    assert max(np.diff(written)) <= 11.0
     assert document(target.read_text())["complete"] is True

@@ -7,25 +7,26 @@ import pytest
 
 from validate.output import progress
 from validate.output.console import Console
-from validate.output.progress import Lines, Pace
+from validate.output.progress import Progress
 
 
 def test_the_rest_is_told_at_the_pace_since_this_run_began(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [0.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
-    pace = Pace()
-    assert pace.rest(1000, 2000) == ""
+    lines = Progress(lambda line: None, "scenes", 2000, first=600.0)
+    lines.told("scenes", 1000)
     clock[0] = 10.0
+    lines.told("scenes", 1100)
     # Of the 1,000 that were there before none took any time.
-    assert pace.rest(1100, 2000) == ", 90 s left"
-    clock[0] = 20.0
-    assert pace.rest(1150, 2000) == ", 2 min left"
-    assert pace.rest(2000, 2000) == ""
+    assert lines.line() == "after 10 s: scenes, 1,100 of 2,000 done, 90 s left"
+    lines.told("scenes", 2000)
+    assert lines.line() == "after 10 s: scenes, 2,000 of 2,000 done"
+    lines.end()
 
 
 def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_quick_one() -> None:
     said: list[str] = []
-    lines = Lines(said.append, "processes start", first=0.05, pause=0.2)
+    lines = Progress(said.append, "processes start", first=0.05, pause=0.2)
     while len(said) < 2:
         time.sleep(0.01)
     lines.told("scenes", 1000, 2000)
@@ -37,7 +38,7 @@ def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_qu
     assert len(said) == count
     assert re.fullmatch(r"after \d+ s: processes start", said[0])
     assert re.fullmatch(r"after \d+ s: scenes, 1,000 of 2,000 done", said[-1])
-    quick = Lines(said.append, "processes start", first=60.0)
+    quick = Progress(said.append, "processes start", first=60.0)
     quick.end()
     assert len(said) == count
 
