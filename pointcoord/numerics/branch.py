@@ -20,6 +20,7 @@ of it no computed pose tells the branches apart: a motion may end there, and doe
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -121,7 +122,8 @@ def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.b
     order = series.shape[-2] - 1
     scaled = series * (s ** np.arange(order + 1.0))[:, None]
     for parts in PARTS:
-        good = regular_on(system, _about_middles(order, parts) @ scaled[..., None, :, :]).all(axis=-1)
+        local = _about_middles(order, parts) @ scaled[..., None, :, :]
+        good = _regular(system, local[..., 0, :], system.entries(local[..., 1:, :]), False).all(axis=-1)
         if good.all():
             break
     return np.asarray(good)
@@ -133,37 +135,72 @@ def regular_on(system: QuadraticMap, series: Array) -> NDArray[np.bool_]:
     Args:
         series: by power of one or several variables, shape (..., powers, size).
     """
-    entries, good = system.entries(series), np.ones(series.shape[:-2], dtype=bool)
+    batch, flat = series.shape[:-2], series.reshape(-1, *series.shape[-2:])
+    good = _regular(system, flat[:, 0], system.spread_entries(np.abs(flat[:, 1:]).sum(axis=1))[:, None], True)
+    # By |X| |D_k| it is quicker, and proves less.
+    left = np.flatnonzero(~good)
+    if left.size:
+        good[left] = _regular(system, flat[left, 0], system.entries(flat[left, 1:]), False)
+    return good.reshape(batch)
+
+
+def _regular(system: QuadraticMap, y: Array, entries: Array, magnitudes: bool) -> NDArray[np.bool_]:
+    """Whether no block is singular about poses, (..., size), by entries of C_u of each power, shape (...,).
+
+    Args:
+        entries: shape (..., powers, entries). magnitudes: whether they are sums of magnitudes.
+    """
+    here, good = system.entries(y), np.ones(y.shape[:-1], dtype=bool)
     with np.errstate(all="ignore"):
-        for count, rows, kept, places in _diagonal_entries(system):
-            blocks = np.zeros((*series.shape[:-1], count * rows * rows))
-            blocks[..., places] = entries[..., kept]
-            blocks = blocks.reshape(*series.shape[:-1], count, rows, rows)
-            inverse = factorise(blocks[..., 0, :, :, :]).preconditioner
-            change = np.abs(inverse[..., None, :, :, :] @ blocks[..., 1:, :, :, :]).sum(axis=-4)
-            # What is not finite is not below anything.
-            good &= (least_norm(change) < SURE).all(axis=-1)
+        for places in _diagonal_entries(system):
+            inverse = factorise(places.blocks(here)).preconditioner[..., None, :, :, :]
+            inverse = np.abs(inverse) if magnitudes else inverse
+            change = np.abs(inverse @ places.blocks(entries)).sum(axis=-4)
+            good &= below_one(change).all(axis=-1)
     return good
 
 
-def least_norm(matrix: Array) -> Array:
-    """A norm of matrices of no negative elements, (..., n, n), near the least that weights give it, (...,).
+def below_one(matrix: Array) -> NDArray[np.bool_]:
+    """Whether matrices of no negative elements, (..., n, n), are below 1 in some norm, (...,).
 
     |Z| = max_i (Z w)_i / w_i for any w > 0; the best w is Perron's vector, which Z w + w comes nearer to.
     """
-    weights, least = np.ones(matrix.shape[:-1]), np.full(matrix.shape[:-2], np.inf)
+    weights, below = np.ones(matrix.shape[:-1]), np.zeros(matrix.shape[:-2], dtype=bool)
     for _ in range(WEIGHINGS):
         turned = (matrix @ weights[..., None])[..., 0]
         norm = (turned / weights).max(axis=-1)
-        least = np.fmin(least, norm)
+        # What is not finite is not below anything.
+        below |= norm < SURE
+        if below.all():
+            break
         weights = weights + turned / np.maximum(norm, SMALLEST)[..., None]
         weights /= weights.max(axis=-1, keepdims=True)
-    return least
+    return below
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Diagonal blocks of one size.
+
+    Attributes:
+        count, rows: of the blocks, and of each. kept, places: which entries of C_u they have, and where.
+    """
+
+    count: int
+    rows: int
+    kept: Indices
+    places: Indices
+
+    def blocks(self, entries: Array) -> Array:
+        """The blocks, (..., count, rows, rows), from entries, (..., entries)."""
+        found = np.zeros((*entries.shape[:-1], self.count * self.rows**2))
+        found[..., self.places] = entries[..., self.kept]
+        return found.reshape(*entries.shape[:-1], self.count, self.rows, self.rows)
 
 
 @lru_cache(maxsize=64)
-def _diagonal_entries(system: QuadraticMap) -> tuple[tuple[int, int, Indices, Indices], ...]:
-    """Of the diagonal blocks of each size: how many, rows, which entries of C_u they have, and where."""
+def _diagonal_entries(system: QuadraticMap) -> tuple[_Places, ...]:
+    """The diagonal blocks of each size."""
     n, found = system.unknowns, []
     for one in system.structure.diagonal:
         count, size = one.rows.shape
@@ -171,7 +208,7 @@ def _diagonal_entries(system: QuadraticMap) -> tuple[tuple[int, int, Indices, In
         place[(one.rows[:, :, None] * n + one.unknowns[:, None, :]).ravel()] = np.arange(count * size * size)
         there = place[system.filled]
         kept = np.flatnonzero(there >= 0)
-        found.append((count, size, kept, there[kept]))
+        found.append(_Places(count, size, kept, there[kept]))
     return tuple(found)
 
 
