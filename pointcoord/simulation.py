@@ -36,7 +36,7 @@ from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.results.ways import AtInstants, ByChain
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
-from pointcoord.solve.follower import follow, stepped
+from pointcoord.solve.follower import follow
 from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import COARSEST, FINEST, MOST_SEGMENTS, SOLVED, Settings, build_chain
 from pointcoord.time_functions import TimeFunction
@@ -309,9 +309,8 @@ def why_map(stopped: MotionTooLong | MotionTooRough) -> str:
 def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
     """Why a map does not cover the way of the inputs.
 
-    The way is tried a little further from the last pose that is covered. Where a place on it is not found
-    close ahead, the straight path to it is followed by proof; where that is blocked, that is what stops the
-    motion.
+    The way is followed a little further from the last pose that is covered, from place to place on straight
+    paths; where one of these is blocked, that is what stops the motion.
     """
     mechanism, functions, way, time = task.readout.mechanism, task.functions, solved.way, task.scene.time
     until = max(way.until, time.start)
@@ -322,14 +321,10 @@ def _stop_of_map(task: Task, solved: ByMap) -> PointcoordError:
     goal = float(later[0]) if len(later) else time.stop
     for instant in np.linspace(until, goal, TRIED + 1)[1:].tolist():
         target = mechanism.known_series({name: f.series(instant, 0) for name, f in functions.items()})[0]
-        ahead = stepped(mechanism.map, y, target)
-        if ahead is not None:
-            y = ahead
-            continue
         path = follow(mechanism.map, y, target)
         if path.done < 1.0:
             problem = "the mechanism cannot be assembled"
-            return blocked(mechanism, problem, path, target, path.done < 1.0, instant)
+            return blocked(mechanism, problem, path.y, path.factors, target, path.done < 1.0, instant)
         y = path.y
     return MotionNotMapped(until, inputs, way.reason)
 

@@ -3,13 +3,14 @@ r"""Whether a step of a series, or of a path, ended on the branch that it starte
 Branches meet where a diagonal block of C_u is singular; C_u is block triangular (see `structure`). Two meet
 in a fold, where the block's determinant changes its sign. A series that is too coarse to see a fold just
 ahead runs smoothly across it; and where two branches cross, as the parallel and the crossed assembly do of
-cranks and couplers in one line, a series is smooth in any case. There the sign at its end need not tell:
-loops of one block that fold together change it twice, a motion there and back does so, and past a crossing
-the other branch has the sign that this one had before. So the determinant D(s) of every block is looked at
-all along a series. As a function of s it is as smooth as the series, whose segments are cut far inside of
-their radius of convergence: the coefficients of its interpolant of degree 6 at Chebyshev's places fall
-steeply, and where that stays clear of 0 by more than its last ones, D has no zero. Where it does not, as near
-a zero beside the real axis, shorter parts of the segment are looked at.
+cranks and couplers in one line, a series is smooth in any case. So it is proven that no block D is singular
+all along a series. C_u is linear in y, so that D(s) = sum_k D_k s^k has the series' coefficients, and with
+X = D_0^-1
+
+    |I - X D(s)| <= Z = sum_{k > 0} |X D_k|        for |s_i| <= 1,
+
+element by element. Where Z w < w for some w > 0 no such D has a null vector. A segment is looked at about its
+middle, and where that proves nothing about the middles of shorter parts.
 
 With X = C_u^-1 at the end and omega the Lipschitz constant of X C_u, no other assembly lies within 2 / omega
 of the end: what the series left out and Newton's correction together must stay far below that, and so must
@@ -19,13 +20,14 @@ of it no computed pose tells the branches apart: a motion may end there, and doe
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.chebyshev import interpolation
-from pointcoord.numerics.linear import Factors
+from pointcoord.numerics.chebyshev import binomials
+from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
@@ -35,12 +37,8 @@ Indices = NDArray[np.intp]
 
 # Share of the distance within which an assembly is alone that may lie between it and the series.
 NEAR = 0.25
-# Degree of an interpolant, places at which it is looked at, by what factor a segment is divided finer where
-# it shows nothing, and into how many parts at most.
-DEGREE, BETWEEN, FINER, MOST_PARTS = 6, 17, 4, 16
-# What must be left of a determinant: of its largest value, so that no zero is missed between the places; and
-# of the last two coefficients, which are larger than the sum of those after them.
-LEAST, BEYOND = 0.03, 4.0
+# Into how many parts a segment is divided, one after the other where that proves nothing, and norms tried.
+PARTS, WEIGHINGS, SMALLEST = (1, 4, 16), 6, 1e-300
 # Where EPS |X|^2 is smaller, rounding hides nothing: of coordinates near 1 omega |X| d is at most some
 # thousand times that.
 CLEAR = 1e-6
@@ -115,75 +113,94 @@ def hidden(system: QuadraticMap, y: Array, factors: Factors) -> NDArray[np.bool_
         return np.asarray(doubtful & ~(system.lipschitz(inverse) * noise <= 1.0))
 
 
-def surely_regular(system: QuadraticMap, factors: Factors, change: Array) -> NDArray[np.bool_]:
-    """Whether C_u is regular at every pose whose coordinates are at most `change` off those of one, (...,).
-
-    C_u is linear in y, so that |I - X C_u| is at most |X| |C_u|(change), with the magnitudes of all terms;
-    where this is below 1 in the maximum norm no such C_u has a null vector.
-
-    Args:
-        factors: of C_u at that one, X its inverse. change: shape (..., size).
-    """
-    with np.errstate(all="ignore"):
-        moved = np.abs(factors.preconditioner) @ system.jacobian_uncertainty(change)
-        return np.asarray(moved.sum(axis=-1).max(axis=-1) < SURE)
-
-
 def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.bool_]:
     """Whether no block of C_u is singular on a segment of a series, from 0 to s, shape (...,).
 
     Args:
         series: coefficients, shape (..., order + 1, size).
     """
-    order, parts = series.shape[-2] - 1, 1
+    order = series.shape[-2] - 1
     scaled = series * (s ** np.arange(order + 1.0))[:, None]
-    while True:
-        y = _powers(order, parts) @ scaled
-        good = regular_between(system, y.reshape(*y.shape[:-2], parts, DEGREE + 1, -1)).all(axis=-1)
-        if parts >= MOST_PARTS or good.all():
-            return np.asarray(good)
-        parts *= FINER
+    for parts in PARTS:
+        local = _about_middles(order, parts) @ scaled[..., None, :, :]
+        good = _regular(system, local[..., 0, :], system.entries(local[..., 1:, :]), False).all(axis=-1)
+        if good.all():
+            break
+    return np.asarray(good)
 
 
-def regular_between(system: QuadraticMap, y: Array, variables: int = 1) -> NDArray[np.bool_]:
-    """Whether no block of C_u is singular on lines of poses, shape (...,), as far as their interpolants show.
+def regular_on(system: QuadraticMap, series: Array) -> NDArray[np.bool_]:
+    """Whether no block of C_u is singular where |s_i| <= 1 in a series, shape (...,); see the formula above.
 
     Args:
-        y: at Chebyshev's places on a line, shape (..., DEGREE + 1, size), or on a grid of as many lines of
-            each of several variables, one axis for each.
+        series: by power of one or several variables, shape (..., powers, size).
     """
+    batch, flat = series.shape[:-2], series.reshape(-1, *series.shape[-2:])
+    good = _regular(system, flat[:, 0], system.spread_entries(np.abs(flat[:, 1:]).sum(axis=1))[:, None], True)
+    # By |X| |D_k| it is quicker, and proves less.
+    left = np.flatnonzero(~good)
+    if left.size:
+        good[left] = _regular(system, flat[left, 0], system.entries(flat[left, 1:]), False)
+    return good.reshape(batch)
+
+
+def _regular(system: QuadraticMap, y: Array, entries: Array, magnitudes: bool) -> NDArray[np.bool_]:
+    """Whether no block is singular about poses, (..., size), by entries of C_u of each power, shape (...,).
+
+    Args:
+        entries: shape (..., powers, entries). magnitudes: whether they are sums of magnitudes.
+    """
+    here, good = system.entries(y), np.ones(y.shape[:-1], dtype=bool)
     with np.errstate(all="ignore"):
-        sign, size = _determinants(system, y)
-        good = np.ones(y.shape[: -1 - variables], dtype=bool)
-        for axis in range(-1 - variables, -1):
-            along = np.swapaxes(sign * np.exp(size - size.max(axis=axis, keepdims=True)), axis, -2)
-            found = _finer() @ along
-            # What is not finite is not above anything.
-            clear = np.maximum(found.min(axis=-2), -found.max(axis=-2)) > LEAST
-            good &= clear.all(axis=tuple(range(-variables, 0)))
-        return good
+        for places in _diagonal_entries(system):
+            inverse = factorise(places.blocks(here)).preconditioner[..., None, :, :, :]
+            inverse = np.abs(inverse) if magnitudes else inverse
+            change = np.abs(inverse @ places.blocks(entries)).sum(axis=-4)
+            good &= below_one(change).all(axis=-1)
+    return good
 
 
-def _determinants(system: QuadraticMap, y: Array) -> tuple[Array, Array]:
-    """Signs and logarithms of the determinants of the diagonal blocks of C_u, each (..., blocks)."""
-    entries = system.entries(y)
-    count = len(system.structure.blocks)
-    sign, size = np.empty((*y.shape[:-1], count)), np.empty((*y.shape[:-1], count))
-    for numbers, rows, kept, places in _diagonal_entries(system):
-        if rows == 1:
-            blocks = entries[..., kept]
-            sign[..., numbers], size[..., numbers] = np.sign(blocks), np.log(np.abs(blocks))
-            continue
-        blocks = np.zeros((*y.shape[:-1], len(numbers) * rows * rows))
-        blocks[..., places] = entries[..., kept]
-        blocks = blocks.reshape(*y.shape[:-1], len(numbers), rows, rows)
-        sign[..., numbers], size[..., numbers] = np.linalg.slogdet(blocks)
-    return sign, size
+def below_one(matrix: Array) -> NDArray[np.bool_]:
+    """Whether matrices of no negative elements, (..., n, n), are below 1 in some norm, (...,).
+
+    |Z| = max_i (Z w)_i / w_i for any w > 0; the best w is Perron's vector, which Z w + w comes nearer to.
+    """
+    weights, below = np.ones(matrix.shape[:-1]), np.zeros(matrix.shape[:-2], dtype=bool)
+    for _ in range(WEIGHINGS):
+        turned = (matrix @ weights[..., None])[..., 0]
+        norm = (turned / weights).max(axis=-1)
+        # What is not finite is not below anything.
+        below |= norm < SURE
+        if below.all():
+            break
+        weights = weights + turned / np.maximum(norm, SMALLEST)[..., None]
+        weights /= weights.max(axis=-1, keepdims=True)
+    return below
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Diagonal blocks of one size.
+
+    Attributes:
+        count, rows: of the blocks, and of each. kept, places: which entries of C_u they have, and where.
+    """
+
+    count: int
+    rows: int
+    kept: Indices
+    places: Indices
+
+    def blocks(self, entries: Array) -> Array:
+        """The blocks, (..., count, rows, rows), from entries, (..., entries)."""
+        found = np.zeros((*entries.shape[:-1], self.count * self.rows**2))
+        found[..., self.places] = entries[..., self.kept]
+        return found.reshape(*entries.shape[:-1], self.count, self.rows, self.rows)
 
 
 @lru_cache(maxsize=64)
-def _diagonal_entries(system: QuadraticMap) -> tuple[tuple[Indices, int, Indices, Indices], ...]:
-    """Of the diagonal blocks of each size: numbers, rows, which entries of C_u they have, and where."""
+def _diagonal_entries(system: QuadraticMap) -> tuple[_Places, ...]:
+    """The diagonal blocks of each size."""
     n, found = system.unknowns, []
     for one in system.structure.diagonal:
         count, size = one.rows.shape
@@ -191,21 +208,17 @@ def _diagonal_entries(system: QuadraticMap) -> tuple[tuple[Indices, int, Indices
         place[(one.rows[:, :, None] * n + one.unknowns[:, None, :]).ravel()] = np.arange(count * size * size)
         there = place[system.filled]
         kept = np.flatnonzero(there >= 0)
-        found.append((one.numbers, size, kept, there[kept]))
+        found.append(_Places(count, size, kept, there[kept]))
     return tuple(found)
 
 
-@lru_cache(maxsize=256)
-def _powers(order: int, parts: int) -> Array:
-    """Powers of Chebyshev's places on the parts of a segment of length 1, part after part."""
-    places = (np.arange(parts)[:, None] + 0.5 + 0.5 * interpolation(DEGREE).points) / parts
-    return np.asarray(places.ravel()[:, None] ** np.arange(order + 1))
+@lru_cache(maxsize=64)
+def _about_middles(order: int, parts: int) -> Array:
+    """Matrices that give a polynomial on 0 .. 1 about the middles of parts, (parts, order + 1, order + 1).
 
-
-@cache
-def _finer() -> Array:
-    """From values at Chebyshev's places to those between, with what may be beyond the degree either way."""
-    coefficients = interpolation(DEGREE).coefficients
-    between = np.polynomial.chebyshev.chebvander(np.linspace(-1.0, 1.0, BETWEEN), DEGREE) @ coefficients
-    last, before = BEYOND * coefficients[-1], BEYOND * coefficients[-2]
-    return np.concatenate([between + a * last + b * before for a in (-1.0, 1.0) for b in (-1.0, 1.0)])
+    sum_k a_k s^k = sum_j (sum_k binomial(k, j) m^(k - j) h^j a_k) t^j for s = m + h t.
+    """
+    half, powers = 0.5 / parts, np.arange(order + 1.0)
+    middles = (2.0 * np.arange(parts) + 1.0)[:, None, None] * half
+    missing = np.maximum(powers - powers[:, None], 0.0)
+    return np.asarray(binomials(order + 1).T * middles**missing * half ** powers[:, None])

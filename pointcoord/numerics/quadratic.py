@@ -302,12 +302,16 @@ class QuadraticMap:
 
     def jacobian_uncertainty(self, data: Array) -> Array:
         """How far C_u may move when each coordinate does by `data`, shape (..., rows, unknowns)."""
-        plus, minus, coefficients, first, flat = self._jacobian_pattern
+        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
+        matrix[..., self.filled] = self.spread_entries(data)
+        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
+
+    def spread_entries(self, data: Array) -> Array:
+        """Of this the entries that C_u has, shape (..., entries)."""
+        plus, minus, coefficients, first, _ = self._jacobian_pattern
         parts = data.take(plus, axis=-1) + data.take(minus, axis=-1)
         parts *= np.abs(coefficients)
-        matrix = np.zeros((*data.shape[:-1], len(self.rows) * self.unknowns))
-        matrix[..., flat] = np.add.reduceat(parts, first, axis=-1)
-        return matrix.reshape(*data.shape[:-1], len(self.rows), self.unknowns)
+        return np.add.reduceat(parts, first, axis=-1)
 
     def uncertainty(self, y: Array, data: Array) -> Array:
         r"""How far the computed C(y) may be from the exact one, shape (..., rows).

@@ -17,9 +17,9 @@ from pointcoord.errors import AssemblyError
 from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.linear import factorise, smallest_left_singular_vector
-from pointcoord.solve.follower import follow, led
-from pointcoord.solve.place import Path, Place
+from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
+from pointcoord.solve.follower import Law, follow
+from pointcoord.solve.place import Path
 
 Array = NDArray[np.float64]
 
@@ -28,27 +28,18 @@ LONGEST = 1.0
 
 
 @dataclass(frozen=True)
-class Pose(Place):
+class Pose(Path):
     """One assembled configuration or a batch of them.
 
     Attributes:
-        mechanism: what is assembled; lengths of the place are in its units.
-        iterations: Newton steps that the last correction took, shape (...,).
+        mechanism: what is assembled; lengths of the path are in its units.
     """
 
     mechanism: Mechanism
-    iterations: NDArray[np.int64]
 
     def taken(self, members: NDArray[np.intp]) -> Pose:
-        """Some members of a batch of one dimension; what it cost is no part of them."""
-        return Pose(
-            self.y[members],
-            self.factors.taken(members),
-            self.left[members],
-            Work(),
-            self.mechanism.taken(members),
-            self.iterations[members],
-        )
+        """Some members of a batch of one dimension."""
+        return replace(super().taken(members), mechanism=self.mechanism.taken(members))
 
     @cached_property
     def residual(self) -> Array:
@@ -92,7 +83,7 @@ def closed_drawings(
     """The drawings of a batch assembled at their own inputs, and what stops those that are not, by number."""
     own = mechanism.drawn[..., mechanism.map.unknowns :]
     factors = mechanism.drawn_factors if mechanism.drawn.ndim == 1 else None
-    path = led(mechanism.map, mechanism.drawn, own, factors, tolerance)
+    path = follow(mechanism.map, mechanism.drawn, own, factors, tolerance)
     stopped = _stopped(mechanism, path, own, path.done < 1.0, "the drawing cannot be assembled", instant)
     turned, pair = turned_over(mechanism, path.y)
     if pair is not None:
@@ -136,7 +127,7 @@ def assembled(
     target, path = driven_to(mechanism, inputs, drawing, tolerance)
     stopped = _stopped(mechanism, path, target, path.done < 1.0, "the mechanism cannot be assembled", instant)
     work = drawing.work + path.work
-    return Pose(path.y, path.factors, path.left, work, mechanism, path.iterations), stopped
+    return Pose(path.y, path.factors, path.left, work, path.iterations, path.done, mechanism), stopped
 
 
 def driven_to(
@@ -153,9 +144,8 @@ def driven_to(
     begun = mechanism.input_values(drawing.y[..., n:])
     turn = sum((np.abs(wanted[name] - begun[name]) for name in mechanism.topology.turning), np.zeros(()))
     if not turn.any():
-        return target, led(mechanism.map, drawing.y, target, drawing.factors, tolerance)
+        return target, follow(mechanism.map, drawing.y, target, drawing.factors, tolerance)
     batch = np.broadcast_shapes(drawing.y.shape[:-1], target.shape[:-1])
-    cars = mechanism.drawn.ndim > 1
 
     def flat(values: Array) -> Array:
         return np.broadcast_to(values, batch).ravel()
@@ -163,17 +153,32 @@ def driven_to(
     ends = {name: (flat(begun[name]), flat(value)) for name, value in wanted.items()}
     y = np.broadcast_to(drawing.y, (*batch, drawing.y.shape[-1])).reshape(-1, drawing.y.shape[-1])
     goals = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
+    factors = drawing.factors.reshaped((1,)) if len(y) == 1 else None
+    law, longest = by_inputs(mechanism, ends, goals), LONGEST / max(float(turn.max()), LONGEST)
+    path = follow(mechanism.map, y, law, factors, tolerance, longest=longest).reshaped(batch)
+    return target, path
 
-    def law(members: NDArray[np.intp], shares: Array) -> Array:
-        values = {
-            name: (first[members] + (last[members] - first[members]) * shares)[:, None]
-            for name, (first, last) in ends.items()
-        }
-        known = (mechanism.taken(members) if cars else mechanism).known_series(values)[..., 0, :]
-        return np.where((shares == 1.0)[:, None], goals[members], known)
 
-    longest = LONGEST / max(float(turn.max()), LONGEST)
-    return target, follow(mechanism.map, y, law, None, tolerance, longest=longest).reshaped(batch)
+def by_inputs(mechanism: Mechanism, ends: Mapping[str, tuple[Array, Array]], goals: Array) -> Law:
+    """The paths along which every input goes from one value to another in proportion.
+
+    Args:
+        ends: of each input, both (members,), rad or mm. goals: known coordinates at the ends.
+    """
+    cars = mechanism.drawn.ndim > 1
+
+    def law(members: NDArray[np.intp], shares: Array, order: int) -> Array:
+        inputs = {}
+        for name, (first, last) in ends.items():
+            change = last[members] - first[members]
+            inputs[name] = np.zeros((len(members), order + 1))
+            inputs[name][:, 0] = first[members] + change * shares
+            inputs[name][:, 1:2] = change[:, None]
+        known = (mechanism.taken(members) if cars else mechanism).known_series(inputs)
+        known[:, 0] = np.where((shares == 1.0)[:, None], goals[members], known[:, 0])
+        return known
+
+    return law
 
 
 def path_of_part(path: Path, whole: Mechanism, part: Mechanism) -> Path:
@@ -197,33 +202,34 @@ def _stopped(
     found: dict[int, AssemblyError] = {}
     for number in np.flatnonzero(which).tolist():
         one = (np.arange(which.size) == number).reshape(which.shape)
-        found[number] = blocked(mechanism, problem, path, target, one, instant)
+        found[number] = blocked(mechanism, problem, path.y, path.factors, target, one, instant)
     return found
 
 
 def blocked(
     mechanism: Mechanism,
     problem: str,
-    place: Place,
+    y: Array,
+    factors: Factors,
     goal: Array,
     unfinished: NDArray[np.bool_],
     instant: float | None,
     change: Array | None = None,
 ) -> AssemblyError:
-    """What stops paths that end at a place on their way to `goal`, told for the first unfinished one.
+    """What stops paths that end at poses on their way to `goal`, told for the first unfinished one.
 
     Where a path ends, C_u loses rank, and its left null vector is a set of forces in the links that hold
     each other in balance: the rows that take part are what limits the motion.
 
     Args:
         problem: what could not be done, in words.
+        y: where they end, shape (..., size). factors: of C_u there.
         goal: known coordinates, shape (..., known coordinates).
         unfinished: shape (...).
-        change: how far each known coordinate would still go, with its sign; from the place to the
+        change: how far each known coordinate would still go, with its sign; from there to the
             goal unless given.
     """
     member = tuple(np.argwhere(unfinished)[0])
-    y, factors = place.y, place.factors
     known = y[..., mechanism.map.unknowns :]
 
     def told(coordinates: Array) -> dict[str, float]:

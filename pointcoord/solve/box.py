@@ -9,8 +9,8 @@ back,
 and the powers s(t)^k are the same for all designs. It is held to what a segment of a chain is (see `taylor`):
 its last two degrees, summed over their powers, are to it what the last two terms are to a segment of length
 1. And at every corner of the ranges Newton's method finds the assembly, from a first step of no more than the
-tolerance and rounding; and no other branch is met on the lines of a grid over the ranges, from the middle,
-which is reached from the start by proven steps (see `branch`). Designs of which that is not so are followed
+tolerance and rounding; and it is proven that no other branch is met in the ranges, of which the middle is
+reached from the start by proven steps (see `branch`). Designs of which that is not so are followed
 in time.
 """
 
@@ -26,14 +26,13 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.numerics.branch import DEGREE, regular_between, surely_regular
-from pointcoord.numerics.chebyshev import interpolation
+from pointcoord.numerics.branch import regular_on
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.newton import newton_refine
-from pointcoord.numerics.partial_map import PartialMap, stages
+from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.power_series import expand_moving
 from pointcoord.solve.assembly import Pose
 from pointcoord.solve.follower import follow
@@ -200,12 +199,6 @@ class _Boxed:
         places = self.part.order.argsort()
         return [number - system.unknowns for number in numbers], places[numbers].tolist()
 
-    @property
-    def causes(self) -> list[frozenset[int]]:
-        """By these coordinates, which input moves each."""
-        inputs = [drive.input for drive in self.mechanism.topology.drives]
-        return [frozenset({self.names.index(name)}) for name in inputs if name in self.names]
-
     def known_series(self, order: int, columns: list[int]) -> Array:
         """The series in s of some of them, powers first, shape (powers, designs, columns)."""
         every, middle = powers(self.inputs, order), self.known(np.zeros(self.inputs))[:, columns]
@@ -256,43 +249,23 @@ class _Boxed:
             ends[:, i, system.unknowns :] = self.part.known(y, self.known(sign)[..., None, :])[..., 0, :]
         reached = newton_refine(system, ends, tolerance=SOLVED * self.settings.tolerance)
         confirmation = confirmed(system, reached, rays, 1.0, self.settings.tolerance)
-        good &= confirmation.good.all(axis=-1) & self.regular(y, factors, moving, order)
+        good &= confirmation.good.all(axis=-1) & self.regular(y, moving)
         work += reached.work + confirmation.work
         coefficients, ranges = self.part.unknowns_back(y, np.moveaxis(series, 0, -2)), self.ranges
         box = Box(start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order)
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
 
-    def regular(self, start: Array, factors: Factors, moving: Array, order: int) -> Flags:
-        """Whether designs meet no other branch on any line of a grid over the ranges, (designs,).
-
-        The blocks of a stage are looked at over the ranges of its own inputs.
+    def regular(self, start: Array, moving: Array) -> Flags:
+        """Whether designs meet no other branch anywhere in the ranges, (designs,).
 
         Args:
-            start: the middle of the ranges. factors: of C_u there.
-            moving: series of all that moves, powers first.
+            start: the middle of the ranges. moving: series of all that moves, powers first.
         """
-        points, (_, driven) = interpolation(DEGREE).points, self.driven()
-        every, places = powers(self.inputs, order), np.array([*range(self.part.system.unknowns), *driven])
-        change = np.zeros_like(start)
-        change[:, places] = np.abs(moving[1:]).sum(axis=0)
-        good = np.ones(len(start), dtype=bool)
-        for stage in stages(self.part.system, tuple(zip(driven, self.causes, strict=True))):
-            part, within, read = stage.part, every.within(stage.inputs), np.isin(places, stage.moving)
-            own = factors.part(part.rows, part.unknowns)
-            left = np.flatnonzero(~surely_regular(part.system, own, part.taken(change)))
-            if not left.size:
-                continue
-            count = len(stage.inputs)
-            grid = np.meshgrid(*[points] * count, indexing="ij")
-            s = np.stack(grid, axis=-1).reshape(-1, 1, count)
-            sums = (s ** every.exponents[within][:, stage.inputs]).prod(axis=-1)
-            y = np.repeat(start[left, None], len(s), axis=1)
-            terms = moving[np.ix_(within, left, read)]
-            y[..., places[read]] = np.tensordot(sums, terms, axes=1).swapaxes(0, 1)
-            poses = part.taken(y.reshape(len(y), *[len(points)] * count, -1))
-            good[left] &= regular_between(part.system, poses, count)
-        return good
+        whole = np.zeros((*moving.shape[:2], start.shape[-1]))
+        whole[0] = start
+        whole[1:, :, [*range(self.part.system.unknowns), *self.driven()[1]]] = moving[1:]
+        return regular_on(self.part.system, whole.swapaxes(0, 1))
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
         """Series of all that moves, powers first, their degree, and of which designs it is enough.

@@ -1,55 +1,54 @@
 r"""Paths of the known coordinates, followed from pose to pose so that no step can change branch.
 
 Between two sets of known coordinates the path is straight, or a law leads from one to the other; what is not
-yet assembled is taken back in proportion. It is followed in steps that are proven (see `proven_step`): about
-the tangent of each there is exactly one assembly, and it is the continuation of the one that the step started
-from. What a step takes up of the condition goes with its length, so one that is too long tells which is
-proven, and the steps shrink on their own towards a pose where the path ends.
+yet assembled is taken back in proportion. From each place a power series of the path is expanded, and
+followed as far as is proven (see `proven_step`): near it there is exactly one assembly, and it is the
+continuation of the one that the step started from. So the steps shrink on their own towards a pose where the
+path ends.
 
 A place on the way is corrected only until Newton's method is proven to converge from it, which is one step as
-a rule; what it is still off is taken along with the next tangent. Only the end is corrected to the tolerance.
-Rounding is not counted here: within the root of EPS of a pose where two branches cross, it may hide that they
-do.
-
-One pose on its way takes longer steps, along a power series of the path (see `proven_path`); tangents lead
-where no few of these are proven to reach the end, and tell where a path stops.
+a rule; what it is still off is taken back along the rest of the path. Only the end is corrected to the
+tolerance. Rounding is not counted here: within the root of EPS of a pose where two branches cross, it may
+hide that they do. Nor is what cutting the series of a law leaves out, a turn's: of a step of h rad d =
+h^(p + 1) / (p + 1)!, so that where branches cross the assemblies along the cut law come within a root of d
+of both. A step that led past there would have to be no longer than that, and d goes with a higher power of
+it than the square.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.branch import hidden, orientation, same_side, same_signs
+from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
-from pointcoord.numerics.quadratic import QuadraticMap
+from pointcoord.numerics.power_series import expand
+from pointcoord.numerics.quadratic import LARGE, QuadraticMap
 from pointcoord.solve.place import Path
-from pointcoord.solve.proven_path import proven_end
-from pointcoord.solve.proven_step import SHARES, beside_the_way, straight_way
+from pointcoord.solve.proven_step import prove
 
 Array = NDArray[np.float64]
-Law = Callable[[NDArray[np.intp], Array], Array]
-"""Known coordinates of members, by number, at shares of their paths, both (m,): (m, size - unknowns)."""
+Law = Callable[[NDArray[np.intp], Array, int], Array]
+"""Series of the known coordinates of members, by number, about shares of their paths, both (m,), in the share
+and up to an order: (m, order + 1, size - unknowns)."""
 
-# Part of a step that would just be proven, and how much longer the next one is at most.
-SAFETY, LONGER = 0.8, 4.0
-# Part of a step that is tried instead where it overflows, or where digits have run out at its end.
-AGAIN = 0.1
+# Order of a series; of a large map, where every order is one more product of large matrices.
+ORDER, OF_LARGE = 8, 3
 # A path that advances less than this fraction in a step has met the end of what can be assembled: steps
 # shrink in proportion to the distance to the end, which is then near 1e-12 of the path. The end is a fold,
 # where two assemblies meet as the root of the distance: they are still 1e-6 of the path apart, and
 # rounding, which grows as the inverse of that root, is near 1e-10.
 SMALLEST_STEP = 1e-13
+# Lengths of steps that are tried, as shares of what is left: few of those that few steps need.
+LENGTHS = np.concatenate([0.85 ** np.arange(16.0), 0.5 ** np.arange(4.0, 44.0)])
+# Part of a step that is tried instead where digits have run out at its end.
+AGAIN = 0.1
 # Steps tried for a path, or for each part of it that is as long as a step may be.
 STEPS = 2000
-# How far the end of a step that is not proven may be beside its tangent, in parts of it. What bends is in
-# proportion to the step: an end so near the tangent is far from where the step would double back.
-BESIDE = 0.25
 
 
 def follow(
@@ -69,20 +68,20 @@ def follow(
         factors: factorisation of C_u at y, if it is at hand.
         tolerance: how far the end may be from the exact assembly, rounding apart, in units.
         steps: tried at most for each share `longest` of the path.
-        longest: share of the path in one step, so short that SHARES of it show what a law does.
+        longest: share of the path in one step.
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
-    n = system.unknowns
+    n, order = system.unknowns, ORDER if len(system.rows) < LARGE else OF_LARGE
     batch = y.shape[:-1] if callable(target) else np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
     y = np.broadcast_to(y, (*batch, y.shape[-1])).reshape(-1, y.shape[-1]).copy()
     if callable(target):
-        law, still, shares = target, np.zeros(len(y), dtype=bool), np.append(SHARES, 1.0)
+        law, still = target, np.zeros(len(y), dtype=bool)
     else:
         goals = np.broadcast_to(target, (*batch, target.shape[-1])).reshape(len(y), -1)
-        law, still, shares = _straight(y[:, n:].copy(), goals), (goals == y[:, n:]).all(axis=-1), np.ones(1)
+        law, still = _straight(y[:, n:].copy(), goals), (goals == y[:, n:]).all(axis=-1)
     offset = system.residual(y)
-    done, step, rest = np.zeros(len(y)), np.full(len(y), min(longest, 1.0)), np.zeros(len(y))
+    done, most, rest = np.zeros(len(y)), np.full(len(y), min(longest, 1.0)), np.zeros(len(y))
     iterations, work = np.zeros(len(y), dtype=np.int64), Work(residuals=len(y))
     if factors is None or factors.condition.shape != batch:
         factors = factorise(system.jacobian(y))
@@ -93,42 +92,39 @@ def follow(
     for _ in range(int(steps / min(longest, 1.0))):
         if not active.size:
             break
-        here, begun, inverse = y[active], done[active], factors.taken(active).preconditioner
-        end = np.minimum(begun + step[active], 1.0)
-        places = np.where(shares == 1.0, end[:, None], begun[:, None] + (end - begun)[:, None] * shares)
-        known = law(np.repeat(active, len(shares)), places.ravel()).reshape(*places.shape, -1)
-        left_open = (1.0 - np.stack([begun, end]))[..., None] * offset[active]
+        begun, local = done[active], factors.taken(active)
+        left = 1.0 - begun
         with np.errstate(all="ignore"):
-            beside = None if len(shares) == 1 else beside_the_way(here[:, n:], known[:, :-1], known[:, -1])
-            way = straight_way(system, inverse, here, known[:, -1], beside, left_open)
-            proof = way.best_proof(system, inverse)
-            able = np.flatnonzero(proof.holds)
-            length = np.minimum(SAFETY / proof.used, LONGER) * (end - begun)
-            # Of a step so long that it overflows nothing is known.
-            shorter = np.where(np.isnan(length), AGAIN, SAFETY) * (end - begun)
-        step[active] = np.fmin(length, shorter)
-        if able.size:
-            guess = (here + way.tangent)[able]
-            guess[:, n:] = known[able, -1]
-            # On the way it is enough to be where Newton's method is proven to converge.
-            allowed = np.where(end[able] == 1.0, tolerance, np.inf)
-            reached = newton_refine(system, guess, left_open[1, able], allowed)
-            # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
-            # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding.
-            there, factorised = factors_at(system, reached)
-            work += reached.work + factorised
-            apart = np.abs(reached.y - guess)[:, :n]
-            good = reached.converged & proof.taken(able).within(apart)
-            good &= same_side(system, reached.y, there, side[active[able]], end[able] == 1.0)
-            kept, chosen = active[able[good]], np.flatnonzero(good)
-            y[kept], done[kept], rest[kept] = reached.y[chosen], end[able[chosen]], reached.left[chosen]
-            iterations[kept] = reached.iterations[chosen]
-            factors = factors.replaced(kept, there.taken(chosen))
-            step[active[able[~good]]] *= AGAIN
-            step[kept] = np.minimum(length[able[chosen]], longest)
+            # In shares of what is left of the path.
+            known = law(active, begun, order) * left[:, None, None] ** np.arange(order + 1.0)[:, None]
+            lacking = left[:, None] * offset[active]
+            series = _series(system, local, y[active], known)
+            proof = prove(system, local.preconditioner, series, np.stack([lacking, -lacking]), LENGTHS)
+            length = np.minimum(proof.length, most[active] / left)
         # A step that completes a path may be as short as it likes.
+        able = np.flatnonzero((length >= 1.0) | (length * left >= SMALLEST_STEP))
+        if not able.size:
+            break
+        active, series, length, proof = active[able], series[able], length[able], proof.taken(able)
+        end = np.where(length >= 1.0, 1.0, begun[able] + length * left[able])
+        guess = (length[:, None, None] ** np.arange(order + 1.0) @ series)[:, 0]
+        guess[:, n:] = law(active, end, 0)[:, 0]
+        # On the way it is enough to be where Newton's method is proven to converge.
+        allowed = np.where(end == 1.0, tolerance, np.inf)
+        reached = newton_refine(system, guess, (1.0 - end)[:, None] * offset[active], allowed)
+        # In exact arithmetic every correction converges and no path crosses a fold, where the determinant
+        # changes its sign. One that does has run out of digits: a drawing on a fold, to within rounding.
+        there, factorised = factors_at(system, reached)
+        work += reached.work + factorised
+        good = reached.converged & proof.within(np.abs(reached.y - guess)[:, :n])
+        good &= same_side(system, reached.y, there, side[active], end == 1.0)
+        kept, chosen = active[good], np.flatnonzero(good)
+        y[kept], done[kept], rest[kept] = reached.y[good], end[good], reached.left[good]
+        iterations[kept] = reached.iterations[good]
+        factors = factors.replaced(kept, there.taken(chosen))
+        most[active] = np.where(good, longest, AGAIN * length * left[able])
         active = active[
-            (done[active] < 1.0) & (step[active] >= np.minimum(SMALLEST_STEP, 1.0 - done[active]))
+            (done[active] < 1.0) & (most[active] >= np.minimum(SMALLEST_STEP, 1.0 - done[active]))
         ]
     stopped = np.flatnonzero((done < 1.0) & (rest > 0.0))
     if stopped.size:
@@ -143,50 +139,28 @@ def follow(
     return Path(y, factors, rest, work, iterations, done).reshaped(batch)
 
 
+def _series(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Array:
+    """The series of paths from poses to where C is 0, all that they lack taken back, (m, order + 1, size).
+
+    Args:
+        known: series of the known coordinates, (m, order + 1, size - unknowns).
+    """
+    begun = np.zeros((len(y), 2, system.size))
+    begun[:, 0], begun[:, 1, system.unknowns :] = y, known[:, 1]
+    lacking = system.residual(y) + 2.0 * system.polar(y, begun[:, 1])
+    begun[:, 1, : system.unknowns] = -factors.solve(lacking)
+    return expand(system, factors, y, known, begun)
+
+
 def _straight(start: Array, goals: Array) -> Law:
     """The straight paths between known coordinates, each (members, size - unknowns)."""
     change = goals - start
 
-    def law(members: NDArray[np.intp], shares: Array) -> Array:
+    def law(members: NDArray[np.intp], shares: Array, order: int) -> Array:
+        known = np.zeros((len(members), order + 1, goals.shape[-1]))
         share = shares[:, None]
-        return np.where(share == 1.0, goals[members], start[members] + change[members] * share)
+        known[:, 0] = np.where(share == 1.0, goals[members], start[members] + change[members] * share)
+        known[:, 1:2] = change[members][:, None]
+        return known
 
     return law
-
-
-def led(
-    system: QuadraticMap, y: Array, target: Array, factors: Factors | None = None, tolerance: float = 0.0
-) -> Path:
-    """What `follow` gives; one pose goes along a few series where these prove the whole path.
-
-    Args, result: as of `follow`.
-    """
-    if y.ndim == 1 and target.ndim == 1:
-        first = factorise(system.jacobian(y)) if factors is None else factors
-        end = proven_end(system, y, target, first, tolerance)
-        if end is not None:
-            return end if factors is not None else replace(end, work=end.work + Work(factorisations=1))
-    return follow(system, y, target, factors, tolerance)
-
-
-def stepped(system: QuadraticMap, y: Array, target: Array) -> Array | None:
-    """The pose at other known coordinates, if Newton's method finds it close to the tangent; None if not.
-
-    It is on the same side of a fold, and nothing else of it is proven: for telling what stops a motion, where
-    a motion itself goes along proven steps.
-
-    Args:
-        y: an assembled pose, shape (size,). target: known coordinates.
-    """
-    factors = factorise(system.jacobian(y))
-    if factors.singular:
-        return None
-    with np.errstate(all="ignore"):
-        tangent = straight_way(system, factors.preconditioner, y, target).tangent
-        guess = y + tangent
-        guess[system.unknowns :] = target
-        reached = newton_refine(system, guess)
-        there = factorise(system.jacobian(reached.y))
-        beside = np.abs(reached.y - guess).max() <= BESIDE * np.abs(tangent).max()
-    kept = same_signs(orientation(system, there), orientation(system, factors))
-    return reached.y if bool(beside and reached.converged) and kept else None

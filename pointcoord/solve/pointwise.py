@@ -8,26 +8,20 @@ inputs,
 
     u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
 
-and corrected by Newton's method, all at once; then each is proven to continue the one before it, straight
-or, of a turn by more than a radian, round (see `proven_step`). By `chord` X is kept for as long as it is good
-enough,
+and corrected all at once, by Newton's method, or with X kept for as long as it serves (`chord`),
 
-    u <- u - X C(u, w),
+    u <- u - X C(u, w);
 
-from the end of the tangent T that X gives, one instant after the other. Where the theorem of Newton and
-Kantorovich holds all along y0 + s T, X contracts towards the end by k = z + omega r, r the radius of the
-theorem: after a step d, |u* - u| <= k |d| / (1 - k).
-
-Where neither leads on the path is followed in shorter proven steps. Or each instant is reached from the
-drawing (`solve_from_drawing`). The rates are solved for many instants at once in any case. This is what the
-series are measured against.
+then each is proven to continue the one before it, straight (see `proven_step`). Where that does not lead on,
+or a turn takes more than a radian, the path is followed in shorter proven steps, along which inputs go in
+proportion. Or each instant is reached from the drawing (`cold`). The rates are solved for many instants at
+once in any case. This is what the series are measured against.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
 from typing import Protocol
 
 import numpy as np
@@ -42,10 +36,10 @@ from pointcoord.numerics.newton import implicit_rate, newton_refine
 from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
-from pointcoord.solve.assembly import LONGEST, Pose, blocked, close_drawing, driven_to
-from pointcoord.solve.follower import follow
-from pointcoord.solve.place import Path, starting_place, whole_place
-from pointcoord.solve.proven_step import SHARES, straight_way
+from pointcoord.solve.assembly import LONGEST, Pose, blocked, by_inputs, close_drawing, driven_to
+from pointcoord.solve.follower import Law, follow
+from pointcoord.solve.place import starting_place, whole_place
+from pointcoord.solve.proven_step import prove
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -59,8 +53,7 @@ BLOCK = 512
 FIRST_AHEAD = 8
 # Where n eps cond(C_u) is larger, rounding may be more than that.
 ROUNDED = 1e-2
-# Of a kept X a slower contraction is worth a new factorisation, which costs as much as some five steps: from
-# 1e-3 to rounding, 1e-16, it takes thirteen.
+# Of a kept X a slower contraction is worth a new factorisation, which costs as much as some five steps.
 SLOW = 0.1
 # Steps from a distance of 1 to rounding at that rate, and as many again for what a bound misjudges.
 LIMIT = 32
@@ -134,207 +127,136 @@ def solve_instants(
     Returns:
         The states, up to the first instant that cannot be reached. What stands still is solved once.
     """
-    system, n = mechanism.map, mechanism.map.unknowns
-    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
-    y, left = np.empty((len(times), system.size)), np.empty(len(times))
-    y[:1], left[:1] = pose.y, pose.left
     part = mechanism.moving_part(functions)
-    begun = starting_place(part, pose)
-    here, factors, work, done = begun.y, begun.factors, begun.work, 1
-    lead, ahead = (_by_chord, len(times)) if chord else (_proven_ahead, FIRST_AHEAD)
-    goals = part.known(here, known[:, :1])[:, 0]
-    between = Between(mechanism, functions, times, part, here)
-    beside = between.beside(goals)
-    status: Status = COMPLETE
+    system, begun = part.system, starting_place(part, pose)
+    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
+    values = {name: f.series(times, 0)[:, 0] for name, f in functions.items()}
+    turned = sum(
+        (np.abs(np.diff(values[name])) for name in mechanism.topology.turning), np.zeros(len(times) - 1)
+    )
+    # Instants that are reached round, and the end.
+    far = np.append(np.flatnonzero(turned > LONGEST) + 1, len(times))
+    goals = part.known(begun.y, known[:, :1])[:, 0]
+    y, left = np.empty((len(times), system.size)), np.empty(len(times))
+    y[:1], left[:1] = begun.y, begun.left
+    factors, work, done, ahead, status = begun.factors, begun.work, 1, FIRST_AHEAD, COMPLETE
     while done < len(times):
-        targets = goals[done : done + ahead]
-        strip = beside[done - 1 : done - 1 + ahead]
-        found = lead(part.system, here, factors, targets, tolerance, strip)
-        work += found.work
-        count = len(found.left)
-        y[done : done + count], left[done : done + count] = part.back(found.y), found.left
+        straight = goals[done : min(done + ahead, int(far[np.searchsorted(far, done)]))]
+        count, found, rest, spent = _ahead(system, y[done - 1], factors, straight, tolerance, chord)
+        work += spent
+        y[done : done + count], left[done : done + count] = found, rest
         done += count
-        if not chord:
-            ahead = min(2 * ahead, BLOCK) if count == len(targets) else max(count, FIRST_AHEAD)
-        if done == len(times):
-            break
+        ahead = min(2 * ahead, BLOCK) if count == len(straight) else max(count, FIRST_AHEAD)
         if count:
-            here = found.y[-1]
-            factors = factorise(part.system.jacobian(here))
-            work += Work(factorisations=1)
+            if done < len(times):
+                factors = factorise(system.jacobian(y[done - 1]))
+                work += Work(factorisations=1)
             continue
-        path = between.follow(here, goals[done], factors, done, beside[done - 1], tolerance)
+        here, goal = y[done - 1 : done], goals[done : done + 1]
+        ends = {name: (each[done - 1 : done], each[done : done + 1]) for name, each in values.items()}
+        turn = float(turned[done - 1])
+        target: Array | Law = goal
+        if turn > LONGEST:
+            target = _of_part(part, begun.y, by_inputs(mechanism, ends, known[done : done + 1, 0]))
+        longest = LONGEST / max(turn, LONGEST)
+        path = follow(system, here, target, factors.reshaped((1,)), tolerance, longest=longest).reshaped(())
         work += path.work
         if path.done < 1.0:
-            problem = "the mechanism cannot be assembled"
+            problem, when = "the mechanism cannot be assembled", float(times[done])
             place = whole_place(part, path.y, path.factors)
-            stop = blocked(mechanism, problem, place, known[done, 0], path.done < 1.0, float(times[done]))
-            status = Status(stop)
+            unfinished = path.done < 1.0
+            stopped = blocked(mechanism, problem, place.y, place.factors, known[done, 0], unfinished, when)
+            status = Status(stopped)
             y, left, known, times = y[:done], left[:done], known[:done], times[:done]
             break
-        here, factors = path.y, path.factors
-        y[done], left[done] = part.back(here), path.left
+        y[done], left[done], factors = path.y, path.left, path.factors
         done += 1
-    y[:, n:] = known[:, 0]
-    solved = with_rates(system, y, known, times, derivative, square_term, work, left)
+    y = part.back(y)
+    y[:, mechanism.map.unknowns :] = known[:, 0]
+    solved = with_rates(mechanism.map, y, known, times, derivative, square_term, work, left)
     return replace(solved, status=status)
 
 
-@dataclass(frozen=True)
-class Between:
-    """What the known coordinates do between instants.
+def _of_part(part: PartialMap, y: Array, law: Law) -> Law:
+    """A law of what is known to the whole as one of what is known to a part, with a pose of it, (size,)."""
 
-    Attributes:
-        part: whose coordinates they are; here: a pose of it.
-    """
+    def of_part(members: NDArray[np.intp], shares: Array, order: int) -> Array:
+        return part.known(y, law(members, shares, order))
 
-    mechanism: Mechanism
-    functions: Mapping[str, TimeFunction]
-    times: Array
-    part: PartialMap
-    here: Array
-
-    def known(self, instants: Array) -> Array:
-        """At instants, (N, known coordinates)."""
-        known = self.mechanism.known_series({n: f.series(instants, 0) for n, f in self.functions.items()})
-        return self.part.known(self.here, known)[:, 0]
-
-    def at_shares(self, number: int, _: NDArray[np.intp], shares: Array) -> Array:
-        """On the way to an instant, by its number; see `Law`."""
-        first, last = self.times[number - 1 : number + 1]
-        return self.known(np.where(shares == 1.0, last, first + (last - first) * shares))
-
-    def beside(self, goals: Array) -> Array:
-        """How far they go beside the ways between instants, (N - 1, known coordinates), as far as is known.
-
-        What is solved at instants goes straight from one to the next; something that turns by more than
-        LONGEST goes infinitely far beside that.
-        """
-        off = np.zeros((len(self.times) - 1, goals.shape[-1]))
-        off[self.turned > LONGEST] = np.inf
-        return off
-
-    @cached_property
-    def turned(self) -> Array:
-        """By how much inputs turn between instants, rad, (N - 1,)."""
-        places = self.times[:-1, None] + np.diff(self.times)[:, None] * np.concatenate([[0.0], SHARES, [1.0]])
-        turned = np.zeros(len(places))
-        for name in self.mechanism.topology.turning:
-            values = self.functions[name].series(places.ravel(), 0).reshape(places.shape)
-            turned += np.abs(np.diff(values)).sum(axis=-1)
-        return turned
-
-    def follow(
-        self, y: Array, goal: Array, factors: Factors, number: int, beside: Array, tolerance: float
-    ) -> Path:
-        """The proven path to an instant, by its number, from the pose at the one before it."""
-        if not beside.any():
-            return follow(self.part.system, y, goal, factors, tolerance)
-        longest = LONGEST / max(float(self.turned[number - 1]), LONGEST)
-        law = partial(self.at_shares, number)
-        return follow(self.part.system, y, law, factors, tolerance, longest=longest)
+    return of_part
 
 
-@dataclass(frozen=True)
-class _Ahead:
-    """Poses that are proven to continue each other, as of `Solved`, and what all that were tried took."""
-
-    y: Array
-    left: Array
-    work: Work
-
-
-def _proven_ahead(
-    system: QuadraticMap,
-    start: Array,
-    factors: Factors,
-    targets: Array,
-    tolerance: float,
-    beside: Array | None = None,
-) -> _Ahead:
+def _ahead(
+    system: QuadraticMap, start: Array, factors: Factors, targets: Array, tolerance: float, chord: bool
+) -> tuple[int, Array, Array, Work]:
     """Poses with known coordinates one after the other, as many as are proven to continue a pose.
 
     Args:
         start: the pose, (size,). factors: of C_u there. targets: (N, known coordinates).
-        beside: as of `straight_way`.
+    Returns:
+        How many, the poses, what is left of each, and what all that were tried took.
     """
-    n, none = system.unknowns, _Ahead(np.empty((0, len(start))), np.empty(0), Work())
-    if not n * EPS * factors.condition <= ROUNDED or bool(hidden(system, start, factors)):
-        return none
+    n, none = system.unknowns, (0, np.empty((0, len(start))), np.empty(0))
+    if not (len(targets) and n * EPS * factors.condition <= ROUNDED) or bool(hidden(system, start, factors)):
+        return *none, Work()
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
         guess = _guessed(system, inverse, start, targets)
     # A guess that is not finite ends what is tried.
-    finite = np.asarray(np.isfinite(guess).all(axis=-1))
-    reached = newton_refine(system, guess[: _first_false(finite)], tolerance=tolerance)
-    poses = np.concatenate([start[None], reached.y])
+    finite = _first_false(np.asarray(np.isfinite(guess).all(axis=-1)))
+    if not finite:
+        return *none, Work(residuals=3 * len(targets))
+    if chord:
+        with np.errstate(all="ignore"):
+            y, found, left, work = _by_chord(system, inverse, guess[:finite], tolerance)
+    else:
+        reached = newton_refine(system, guess[:finite], tolerance=tolerance)
+        y, found, left, work = reached.y, reached.converged, reached.left, reached.work
+    poses = np.concatenate([start[None], y])
     here, following = poses[:-1], poses[1:]
     with np.errstate(all="ignore"):
-        beside = None if beside is None else beside[: len(here)]
-        way = straight_way(system, inverse, here, following[:, n:], beside)
-        omega = float(system.lipschitz(inverse, np.ones(n)))
-        apart = np.abs(following - here - way.tangent)[:, :n] + reached.left[:, None]
-        proof = way.proof(omega, np.ones(n))
-        good = reached.converged & proof.holds & proof.within(apart)
+        series = np.zeros((len(here), 2, len(start)))
+        series[:, 0], series[:, 1, n:] = here, following[:, n:] - here[:, n:]
+        lacking = system.residual(here) + 2.0 * system.polar(here, series[:, 1])
+        series[:, 1, :n] = -lacking @ inverse.T
+        proof = prove(system, inverse, series, 0.0, np.ones(1))
+        apart = np.abs(following - series.sum(axis=1))[:, :n] + left[:, None]
+        good = found & (proof.length == 1.0) & proof.within(apart)
     count = _first_false(np.asarray(good))
-    return _Ahead(reached.y[:count], reached.left[:count], reached.work + Work(residuals=3 * len(good)))
+    return count, y[:count], left[:count], work + Work(residuals=3 * len(good))
 
 
 def _by_chord(
-    system: QuadraticMap,
-    start: Array,
-    factors: Factors,
-    targets: Array,
-    tolerance: float,
-    beside: Array | None = None,
-) -> _Ahead:
-    """The same one after the other, by the inverse at the start alone, as many as it serves."""
-    n, poses, left, residuals = system.unknowns, [np.empty((0, len(start)))], list[float](), 0
-    if not n * EPS * factors.condition <= ROUNDED or bool(hidden(system, start, factors)):
-        return _Ahead(poses[0], np.empty(0), Work())
-    inverse, here = factors.preconditioner, start
-    omega = system.lipschitz(inverse)
-    for i, target in enumerate(targets):
-        with np.errstate(all="ignore"):
-            way = straight_way(system, inverse, here, target, None if beside is None else beside[i])
-            eta, z = way.norms(np.ones(n))
-            rate = float(z + omega * smallest_radius(eta, z, omega))
-        if not rate <= SLOW:
-            break
-        here = here + way.tangent
-        here[n:] = target
-        rest, steps = _contracted(system, inverse, here, rate, tolerance)
-        residuals += steps + 2
-        if rest is None:
-            break
-        poses.append(here[None])
-        left.append(rest)
-    return _Ahead(np.concatenate(poses), np.array(left), Work(residuals=residuals))
+    system: QuadraticMap, inverse: Array, y: Array, tolerance: float
+) -> tuple[Array, NDArray[np.bool_], Array, Work]:
+    """Poses from guesses of them, by steps with one inverse.
 
-
-def _contracted(
-    system: QuadraticMap, inverse: Array, y: Array, rate: float, tolerance: float
-) -> tuple[float | None, int]:
-    """Carry a place, which is written over, to its pose by steps that contract at a rate.
+    Within r, the radius of the theorem about a guess (see `kantorovich`), X contracts by k = z + omega r:
+    after a step d, |u* - u| <= k |d| / (1 - k).
 
     Returns:
-        What is proven to be left, rounding apart, None where steps do not shrink to that; and the steps.
+        The poses, which of them are as good as asked, what is left of each, rounding apart, and the work.
     """
-    previous = np.inf
-    for count in range(1, LIMIT + 1):
-        step = -(inverse @ system.residual(y))
-        y[: system.unknowns] += step
-        size = float(np.abs(step).max())
+    y, n, magnitude, previous = y.copy(), system.unknowns, np.abs(inverse), np.full(len(y), np.inf)
+    z = np.abs(np.eye(n) - inverse @ system.jacobian(y)).sum(axis=-1).max(axis=-1)
+    omega = system.lipschitz(inverse)
+    count = 0
+    while count < LIMIT:
+        count += 1
+        step = -system.residual(y) @ inverse.T
+        size = np.abs(step).max(axis=-1)
+        if count == 1:
+            rate = z + omega * smallest_radius(size, z, omega)
+        y[:, :n] += step
         left = rate * size / (1.0 - rate)
-        if left <= tolerance:
-            return left, count
+        noise = system.uncertainty(y, np.zeros(y.shape[-1])) @ magnitude.T
         # Near rounding a step is noise, or no longer shrinks.
-        if size < 1e-8:
-            noise = np.abs(inverse) @ system.uncertainty(y, np.zeros_like(y))
-            if (np.abs(step) <= noise).all() or size >= 0.5 * previous:
-                return 0.0, count
-        previous = size
-    return None, LIMIT
+        noisy = (np.abs(step) <= noise).all(axis=-1) | (size < 1e-8) & (size >= 0.5 * previous)
+        done, previous = (left <= tolerance) | noisy, size
+        if (done | ~(rate <= SLOW)).all():
+            break
+    left = np.where(left <= tolerance, left, 0.0)
+    return y, done & (rate <= SLOW), left, Work(residuals=count * len(y))
 
 
 def _guessed(system: QuadraticMap, inverse: Array, start: Array, targets: Array) -> Array:
@@ -363,7 +285,7 @@ def solve_from_drawing(
     square_term: SquareVelocityTerm = square_velocity_term,
     tolerance: float = 0.0,
 ) -> Solved:
-    """Solve at each instant by itself, on a straight way from the closed drawing; all of them at once.
+    """Solve at each instant by itself, from the closed drawing; all of them at once.
 
     Which branch that leads to does not depend on the motion, but it depends on the way: where poses that do
     not exist lie between, it is refused, though a motion might lead around them.
@@ -373,19 +295,17 @@ def solve_from_drawing(
     system = mechanism.map
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     drawing = close_drawing(mechanism, float(times[0]), tolerance)
-    work, parts = drawing.work, []
-    status: Status = COMPLETE
+    work, parts, status = drawing.work, [], COMPLETE
     for low in range(0, len(times), BLOCK):
-        target = known[low : low + BLOCK, 0]
         inputs = {name: f.series(times[low : low + BLOCK], 0)[:, 0] for name, f in functions.items()}
-        _, path = driven_to(mechanism, inputs, drawing, tolerance)
+        target, path = driven_to(mechanism, inputs, drawing, tolerance)
         work += path.work
         unfinished = path.done < 1.0
         first = int(np.argmax(unfinished)) if unfinished.any() else len(target)
         parts.append((path.y[:first], path.left[:first]))
         if unfinished.any():
             problem, when = "the mechanism cannot be assembled", float(times[low + first])
-            status = Status(blocked(mechanism, problem, path, target, unfinished, when))
+            status = Status(blocked(mechanism, problem, path.y, path.factors, target, unfinished, when))
             known, times = known[: low + first], times[: low + first]
             break
     y, left = (np.concatenate(part) for part in zip(*parts, strict=True))

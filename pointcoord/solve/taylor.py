@@ -478,7 +478,7 @@ class _Course:
         # Members share their segments: where these become too short for all, one of them is at its end.
         condition = np.where(unfinished, place.factors.condition, 0.0)
         unfinished = unfinished & (condition >= condition.max())
-        error = blocked(self.mechanism, problem, place, goal, unfinished, instant, change)
+        error = blocked(self.mechanism, problem, place.y, place.factors, goal, unfinished, instant, change)
         # Near a lock the condition number has grown as the inverse root of the shortest step.
         locked = error.condition > REGULAR
         return Status(error if locked else MotionTooRough(error.reduce, instant, coarsest=coarsest))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from every_effect import OF_A_WHEEL
 
+import pointcoord.solve.follower
 import pointcoord.solve.place
 import pointcoord.solve.pointwise
-import pointcoord.solve.proven_path
 from pointcoord import AssemblyError, Motion, NotComputed, Scene, UnknownName, simulate
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import EFFECTS
@@ -18,7 +18,6 @@ from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.patches import flood
 from pointcoord.simulation import effort, prepare_task, solve_by_series
 from pointcoord.solve import assembly
-from pointcoord.solve.proven_path import inverses
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 from validate.comparison.compare import compare
 from validate.formulations.registry import formulation
@@ -114,14 +113,8 @@ def test_counts_are_what_was_done(
         seen["factorisations"] += int(np.prod(matrix.shape[:-2]))
         return factorise(matrix)
 
-    def inverted(matrices: np.ndarray) -> np.ndarray | None:
-        seen["factorisations"] += len(matrices)
-        return inverses(matrices)
-
     solving = pointcoord.solve
-    monkeypatch.setattr(solving.proven_path, "inverses", inverted)
-    own = (newton, assembly, solving.follower, solving.place, flood)
-    for module in (*own, solving.pointwise, solving.proven_path):
+    for module in (newton, assembly, solving.follower, solving.place, flood, solving.pointwise):
         monkeypatch.setattr(module, "factorise", counted)
     motion = simulate(make_scene(samples=SAMPLES), method)
     assert motion.work.factorisations == seen["factorisations"] > 0

@@ -19,10 +19,7 @@ from pointcoord import (
     simulate,
     standing,
 )
-from pointcoord.method import MAP
 from pointcoord.patches import way_map
-from pointcoord.simulation import prepare_task
-from pointcoord.solve.follower import follow, stepped
 
 Array = NDArray[np.float64]
 Make = Callable[..., Scene]
@@ -172,23 +169,3 @@ def test_near_a_fold_what_no_patch_covers_is_refused_with_its_place(
     assert np.isfinite(error.partial.proof().bound).all()
     # Nothing but the map is in the way.
     assert simulate(scene).method == "series"
-
-
-def test_a_step_is_not_taken_across_a_fold_nor_far_from_its_tangent(make_scene: Make) -> None:
-    scene = make_scene([1.6], [0.0])
-    task = prepare_task(scene, MAP)
-    mechanism, y = task.readout.mechanism, task.start.y
-
-    def at(rack: float) -> Array:
-        series = {"arm_angle": np.array([1.6]), "rack": np.array([rack])}
-        return mechanism.known_series(series)[0]
-
-    far = 200.0 * float(follow(mechanism.map, y, at(200.0)).done)
-    assert 100.0 < far < 200.0
-    near = stepped(mechanism.map, y, at(1e-2 * far))
-    assert near is not None
-    proven = follow(mechanism.map, y, at(1e-2 * far))
-    assert np.abs(near - proven.y).max() < 1e-14
-    assert follow(mechanism.map, y, at(0.999 * far)).done == 1.0
-    assert stepped(mechanism.map, y, at(0.999 * far)) is None
-    assert stepped(mechanism.map, y, at(1.001 * far)) is None

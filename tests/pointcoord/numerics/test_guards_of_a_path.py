@@ -9,12 +9,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from pointcoord.numerics.branch import (
-    MOST_PARTS,
     NEAR,
+    PARTS,
+    below_one,
     hidden,
     on_branch,
     regular_along,
-    surely_regular,
+    regular_on,
 )
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import factorise
@@ -75,13 +76,30 @@ def regular(*u: float, length: float = 1.0) -> bool:
     return bool(regular_along(PARABOLA, series, length))
 
 
-@given(u=st.floats(1e-3, 1e3), share=st.floats(0.0, 2.0))
-def test_a_pose_is_surely_regular_up_to_where_the_next_singular_one_lies(u: float, share: float) -> None:
-    """C_u = 2 u is singular at u = 0 only, so that the estimate loses nothing."""
-    assume(abs(share - 1.0) > 1e-6)
-    y = np.array([u, 0.0, 0.0, 1.0])
-    change = np.array([share * u, 1.0, 0.0, 0.0])
-    assert bool(surely_regular(PARABOLA, factorise(PARABOLA.jacobian(y)), change)) == (share < 1.0)
+@given(u=st.floats(1e-3, 1e3), shares=st.tuples(*[st.floats(-1.0, 1.0)] * 3))
+def test_a_series_is_proven_regular_up_to_where_the_next_singular_pose_lies(
+    u: float, shares: tuple[float, float, float]
+) -> None:
+    """C_u = 2 u is singular at u = 0 only, so that the estimate loses nothing, in whatever variables."""
+    series = np.zeros((4, 4))
+    series[:, 0], series[0, 3] = u * np.array([1.0, *shares]), 1.0
+    least = 1.0 - float(np.abs(shares).sum())
+    assume(abs(least) > 1e-6)
+    assert bool(regular_on(PARABOLA, series)) == (least > 0.0)
+
+
+@given(seed=st.integers(0, 2**32 - 1), size=st.integers(1, 6), norm=st.floats(0.1, 3.0))
+def test_what_is_below_one_in_a_norm_has_no_eigenvalue_of_one_or_more(
+    seed: int, size: int, norm: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    matrix = rng.uniform(0.0, 1.0, (size, size)) * rng.choice([0.0, 1.0], (size, size))
+    matrix *= norm / max(np.abs(np.linalg.eigvals(matrix)).max(), 1e-3)
+    radius = float(np.abs(np.linalg.eigvals(matrix)).max())
+    assume(abs(radius - 1.0) > 1e-6)
+    assert radius < 1.0 or not below_one(matrix)
+    # What a row sums to is one of the norms.
+    assert below_one(matrix) or matrix.sum(axis=-1).max() > 1.0 - 1e-8
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4])
@@ -97,7 +115,7 @@ def test_a_zero_of_the_determinant_is_met_whatever_its_order(degree: int, place:
 def test_a_motion_that_turns_back_just_before_a_crossing_meets_none() -> None:
     # det C_u = 2 ((s - 1/2)^2 + beside^2) has its zeros beside the real axis: as near as that shows in parts
     # of the segment no such motion is refused, and nearer ones in shorter segments.
-    beside = 1.0 / MOST_PARTS
+    beside = 1.0 / PARTS[-1]
     assert regular(0.25 + beside**2, -1.0, 1.0)
     assert not regular(0.25, -1.0, 1.0)
 

@@ -12,7 +12,6 @@ from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.follower import follow
-from pointcoord.solve.proven_step import ROOM, straight_way
 
 Points = dict[str, tuple[float, float, float]]
 MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}
@@ -85,33 +84,6 @@ def test_end_of_the_range_is_reached_just_inside_and_refused_just_outside(
         f"bring '{name}' back",
     ):
         assert text in message
-
-
-@by_mechanism
-@few
-@given(angle=angles, rack=st.floats(-40.0, 40.0), seed=st.integers(0, 2**32 - 1))
-def test_a_proven_way_stays_within_newtons_reach_of_the_path(
-    mechanism: Mechanism, angle: float, rack: float, seed: int
-) -> None:
-    pose = at(mechanism, angle, rack)
-    n = mechanism.layout.unknowns
-    rng = np.random.default_rng(seed)
-    change = np.zeros(mechanism.layout.size)
-    for name in ("arm_angle rise", "rack travel"):
-        change[mechanism.layout.scalar(name)] = rng.normal() * 10.0
-    inverse = np.linalg.inv(mechanism.map.jacobian(pose.y))
-    known = pose.y[n:]
-    whole = straight_way(mechanism.map, inverse, pose.y, known + change[n:]).best_proof(
-        mechanism.map, inverse
-    )
-    share = 0.99 * ROOM / float(whole.used)
-    way = straight_way(mechanism.map, inverse, pose.y, known + share * change[n:])
-    # What is proven goes with the length of a way.
-    assert way.best_proof(mechanism.map, inverse).holds
-    # And that is: along all of it the Jacobian stays regular. Its determinant keeps its sign.
-    shares = np.linspace(0.0, 1.0, 40)
-    signs = np.linalg.slogdet(mechanism.map.jacobian(pose.y + shares[:, None] * way.tangent))[0]
-    assert (signs == signs[0]).all()
 
 
 def test_branch_is_kept_past_the_near_singular_place_at_35_degrees(strut: Mechanism) -> None:

@@ -1,12 +1,11 @@
 """Poses and rates at instants: which are proven to continue each other, and the paper's algorithm."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from one_by_one import one_by_one
@@ -16,13 +15,11 @@ from pointcoord import AssemblyError, Motion, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import CHORD, MAP, METHODS, NEWTON, NEWTON_COLD, SERIES, Method
 from pointcoord.numerics.linear import factorise
-from pointcoord.numerics.partial_map import PartialMap
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.simulation import pose_tolerance, prepare_task
 from pointcoord.solve import pointwise
-from pointcoord.solve.assembly import Pose, assemble, close_drawing
-from pointcoord.solve.place import starting_place
-from pointcoord.solve.pointwise import InstantSolver, solve_from_drawing, solve_instants, straight_way
+from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.solve.pointwise import InstantSolver, solve_from_drawing, solve_instants
 from pointcoord.solve.proven_step import ROOM
 from pointcoord.time_functions import Polynomial, Sine, TimeFunction
 from validate.paper.printed import PRINTED
@@ -49,8 +46,11 @@ def test_the_next_pose_is_proven_as_far_as_the_condition_holds(way: float, prove
     # Along w = 1 + s dw: z = |dw| / 2, eta = dw^2 / 8 and omega = 1, so z + sqrt(2 omega eta) is |dw|.
     assert ROOM == 0.9
     factors = factorise(PARABOLA.jacobian(AT_ONE))
-    found = pointwise._proven_ahead(PARABOLA, AT_ONE, factors, np.array([[1.0 + way, 0.0, 1.0]]), 0.0)
-    assert len(found.left) == proven
+    targets = np.array([[1.0 + way, 0.0, 1.0]])
+    for chord in (False, True):
+        count = pointwise._ahead(PARABOLA, AT_ONE, factors, targets, 0.0, chord)[0]
+        # A kept inverse is given up sooner, where it contracts by less than a tenth.
+        assert count == proven or (chord and not count)
 
 
 @by_way
@@ -74,30 +74,7 @@ def test_one_factorisation_serves_many_instants_by_chord(strut: Mechanism) -> No
     assert solved.work.factorisations < 40
 
 
-STEER: dict[str, TimeFunction] = {"arm_angle": Polynomial((1.5,)), "rack": Polynomial((0.0, 10.0))}
-
-
-def steered(strut: Mechanism) -> tuple[PartialMap, Pose]:
-    """What moves when the rack does, and six poses."""
-    part = strut.moving_part(STEER)
-    assert not part.is_whole
-    return part, assemble(
-        strut, {"arm_angle": np.full((2, 3), 1.5), "rack": np.linspace(-5.0, 5.0, 6).reshape(2, 3)}
-    )
-
-
-def test_a_pose_among_exact_ones_that_a_tolerance_left_off_is_solved_to_rounding(strut: Mechanism) -> None:
-    part, poses = steered(strut)
-    y, left, n = poses.y.copy(), np.zeros((2, 3)), strut.map.unknowns
-    y[1, 1, :n] += 1e-6 * np.random.default_rng(2).uniform(-1.0, 1.0, n)
-    left[1, 1] = 1e-5
-    place = starting_place(part, replace(poses, y=y, left=left))
-    # The same pose twice, each to rounding, of coordinates up to 2.
-    off = np.abs(place.y - part.taken(poses.y)).max(axis=-1)
-    assert (off <= 4.0 * np.finfo(float).eps * poses.condition).all()
-    np.testing.assert_array_equal(place.left, np.zeros((2, 3)), strict=True)
-
-
+few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
 EPS = np.finfo(float).eps
 ALL = (SERIES, MAP, NEWTON, NEWTON_COLD, CHORD, PRINTED)
 
@@ -162,6 +139,7 @@ def plainly(scene: Scene) -> tuple[Array, float, float]:
 
 
 @by_car
+@few
 @given(
     swing=st.floats(0.02, 0.25),
     speed=st.floats(0.5, 40.0),
@@ -232,35 +210,3 @@ def test_another_assembly_is_not_taken_for_the_next_pose(
 def at(poses: list[Array], targets: Array, unknowns: int) -> Array:
     """Those of the poses that have these known coordinates."""
     return np.array([min(poses, key=lambda y: np.abs(y[unknowns:] - w).max()) for w in targets])
-
-
-@pytest.mark.parametrize("name", ["steer", "off-axis-strut", "double-wishbone", "five-link"])
-def test_eta_of_a_straight_way_is_at_least_what_is_left_all_along_it(name: str) -> None:
-    """Also with the inverse of another pose, where C_u T does not take back all of C_w dw.
-
-    There the end of the tangent lacks most. Without that, or without what the pose lacks, or the curvature,
-    what is left is somewhere more than eta.
-    """
-    mechanism = prepare_task(Scene.load(name), NEWTON).readout.mechanism
-    system, n, rng = mechanism.map, mechanism.map.unknowns, np.random.default_rng(5)
-    drawing = close_drawing(mechanism)
-    drawn = mechanism.input_values(drawing.y[n:])
-    reach = {name: 30.0 if mechanism.topology.input_units[name] == "mm" else 1.0 for name in drawn}
-    noticed = np.zeros(3, dtype=bool)
-    # How far the pose is from that of the inverse, how long the way is, and how far the pose is off.
-    for apart, length, off in ((0.1, 1e-4, 1e-12), (1e-9, 0.05, 1e-12), (1e-9, 1e-4, 1e-3)):
-        inputs = {name: value + apart * reach[name] for name, value in drawn.items()}
-        target = {name: (value + length * reach[name])[..., None] for name, value in inputs.items()}
-        y = assemble(mechanism, inputs, None, drawing).y
-        y[:n] += off * rng.uniform(-1.0, 1.0, n)
-        inverse = drawing.factors.preconditioner
-        way = straight_way(system, inverse, y, mechanism.known_series(target)[0])
-        eta, _ = way.norms(np.ones(n))
-        start, bend = system.residual(y), system.residual(way.tangent)
-        rows = start, start + 2.0 * system.polar(y, way.tangent), bend
-        first, end, last = (np.abs(inverse @ each).max() for each in rows)
-        for s in (0.25, 0.5, 1.0):
-            left = np.abs(inverse @ system.residual(y + s * way.tangent)).max()
-            assert left <= eta * (1.0 + 1e-9) + 1e-15
-            noticed |= left > np.array([end + last, first + last, max(first, end)])
-    assert noticed.all()
