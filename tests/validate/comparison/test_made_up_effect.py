@@ -189,4 +189,4 @@ def test_every_command_has_it(planted: Plant, tmp_path: Path, capsys: pytest.Cap
     assert main(["validate", path, "-v"]) == 0
     table = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert [line[2] for line in table if line[:1] == ["stub_axle"]] == ["mm"]
-    assert [line[2] for line in table if line[:1] == ["flip"]] == ["rad"]
+    assert [line[2] for line in table if line[:1] == ["flip"]] == ["deg"]
