@@ -1,4 +1,4 @@
-"""`pointcoord simulate`, `plot` and `table`: a scene solved by point coordinates, and its numbers shown."""
+"""`pointcoord simulate` and `plot`: a scene solved by point coordinates, and its numbers shown."""
 
 from __future__ import annotations
 
@@ -6,13 +6,9 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import numpy as np
-
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
-from pointcoord.effects.car_number import CarNumber
-from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
-from pointcoord.wording import meant
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import (
     INSTANTS,
@@ -31,15 +27,11 @@ from validate.extras import needed
 from validate.output.columns import ENDINGS, require_table, write_csv, write_motion
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.progress import progress
-from validate.output.table import Table, csv_of
 from validate.paper.printed import PRINTED
-from validate.plain_text import shown
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
-PICTURES, TABLES = (".svg", ".png"), (".csv", ".md")
+PICTURES = (".svg", ".png")
 SMOOTH = 401  # a curve of fewer instants has corners
-ROWS = 21
-DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2}
 
 SIMULATE = """\
 Solve a scene by point coordinates alone and write what it asks for: a row for each instant, a
@@ -55,12 +47,6 @@ A number is named by as many words of QUANTITY.NAME.COMPONENT as tell it apart: 
 an input by its name, a place as POINT.z, another quantity of a point as QUANTITY.POINT.z; all
 three components are drawn if none is said. {TIME} is the time, {TRAVEL} how far the wheel centre is
 above its drawn place, measured on the chassis. What is positive is said at each axis."""
-TABLE = """\
-Solve a scene by point coordinates and print the wheel's angles and dimensions over the way of
-its inputs, with what they change by per mm of wheel travel and of rack. A sweep such as
-wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range; bump steer is toe_by_travel,
-the motion ratio damper over wheel minus damper_length_by_travel."""
-
 SIMULATE_OPTIONS = f"""\
 {SCENE}
 -o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; CSV on standard output if not given
@@ -77,13 +63,6 @@ PLOT_OPTIONS = f"""\
     place {TRAVEL} takes
 --degrees  angles in degrees, as they are if nothing is said, or in radians
 --instants N  points of a curve; the scene's own if not given, at least {SMOOTH}
-{QUIET}"""
-TABLE_OPTIONS = f"""\
-{SCENE}
--o --output FILE  where to, by its ending {" or ".join(TABLES)}; a table in text if not given
---rows N  how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}
---number NAME  a column, by its name; may be given again
---all  every number of the car that there is
 {QUIET}"""
 AGAIN = {"action": "append"}
 
@@ -134,27 +113,6 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
         ending = "svg" if target is None else Path(target).suffix.removeprefix(".")
         console.put(target, drawn(picture, ending), "the picture")
         return "the picture"
-
-    return solved(scene, target, options, console, write)
-
-
-def run_table(options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Print a table."""
-    target = place_of_result(options, TABLES, console)
-    scene, name = load_scene(options.scene), name_of(options.scene)
-    chosen = _chosen(options, scene, name)
-    topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
-    givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
-    effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in chosen))))
-    scene = scene.model_copy(update={"effects": effects})
-    numbers = {number.path[-1]: number for number in numbers_of(scene) if len(number.path) < 3}
-    driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
-    columns = [numbers[one] for one in (*driven, *chosen)]
-
-    def write(motion: Motion) -> str:
-        rows = options.rows or min(ROWS, len(motion.times))
-        console.put(target, _table(columns, motion, rows, target), "the table")
-        return "the table"
 
     return solved(scene, target, options, console, write)
 
@@ -236,61 +194,6 @@ def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: s
     return tuple({number.path: number for number in named}.values())
 
 
-def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> list[str]:
-    """The numbers of the car that the table is to have."""
-    part = scene.mechanism
-    had = [number for effect in part.effects for number in EFFECTS[effect].names(part.topology)]
-    known = [number for number in dict.fromkeys(had) if number_called(number)]
-    if not known:
-        raise UsageError(
-            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
-            "pointcoord simulate writes what it gives"
-        )
-    for number in options.number or ():
-        if number not in known:
-            own = number.rpartition(".")[2]
-            why = [reason for e in EFFECTS.values() if own in e.own_names and (reason := part.refusal(e))]
-            raise UsageError(
-                f"{name}: --number {number}: {why[0]}"
-                if why
-                else f"{name}: no number of a car is called {shown(number)}"
-                f"{meant(number, known)}; allowed: {', '.join(known)}"
-            )
-    if options.number:
-        return list(dict.fromkeys(options.number))
-    first = [number for own in READ_FIRST for number in known if number.rpartition(".")[2] == own]
-    return known if options.all else first
-
-
-def _table(columns: Sequence[Number], motion: Motion, rows: int, target: str | None) -> str:
-    """Numbers over the motion, angles in degrees: CSV, or text with what is positive."""
-    first, last = motion.times[0], motion.times[-1]
-    samples = motion.at(np.linspace(first, last, rows)) if len(motion.times) > 1 else motion
-    head = tuple(f"{one.path[-1]} [{one.unit_shown()}]" for one in columns)
-    lines = zip(*(one.shown(motion, samples).tolist() for one in columns), strict=True)
-    if target is not None and Path(target).suffix == ".csv":
-        return csv_of(head, lines)
-    digits = [DIGITS[one.unit_shown()] for one in columns]
-    table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
-    # The wheels of an axle share a line.
-    told = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
-    signs = [f"{number}: positive {sign}" for number, sign in told.items()]
-    if target is not None:
-        return "\n".join([table.markdown, "", *(f"- {sign}" for sign in signs), ""])
-    return "\n".join([table.text, "", *signs, ""])
-
-
-def _called(number: str) -> CarNumber:
-    found = number_called(number)
-    assert found is not None  # only such are chosen
-    return found
-
-
-def _rounded(value: float, digits: int) -> str:
-    # Adding 0 turns a rounded -0 into 0.
-    return f"{round(value, digits) + 0.0:.{digits}f}" if np.isfinite(value) else "-"
-
-
 COMMANDS = {
     "simulate": Command(
         SIMULATE,
@@ -308,5 +211,4 @@ COMMANDS = {
             "--degrees": {"action": argparse.BooleanOptionalAction, "default": True},
         },
     ),
-    "table": Command(TABLE, TABLE_OPTIONS, run_table, {"--number": AGAIN}),
 }

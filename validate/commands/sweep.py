@@ -35,6 +35,7 @@ from validate.commands.usage import (
     require_results,
     told_as,
 )
+from validate.commands.values import MOST_VALUES, finite, values_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.columns import ENDINGS, require_table, write_sweep, write_sweep_csv
@@ -83,7 +84,6 @@ EXAMPLES = (
     "offsets"
 )
 KINDS = ("normal", "uniform")
-MOST_VALUES = 10_000_000
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -202,36 +202,12 @@ def _read(text: str, scene: Scene) -> _Vary:
         designs_of(scene, {coordinate: np.zeros(3)})  # a point that is none says so
         raise SweepError(what, "names no coordinate", ", ".join(f"{coordinate}.{axis}" for axis in "xyz"))
     kind, _, size = values.partition(":")
-    parts = values.split(":")
     if kind.strip() in KINDS:
-        spread = _numbers(what, [size])
+        spread = finite(what, [size], EXAMPLES)
         if not offsets or spread[0] < 0.0:
             raise SweepError(what, "is no spread about the drawing", "0 mm or more, after one =")
         return _Vary(coordinate, True, spread, kind.strip())
-    if len(parts) == 1:
-        return _Vary(coordinate, offsets, _numbers(what, values.split(",")))
-    count = parts[-1].strip()
-    if len(parts) != 3 or not (count.isascii() and count.isdigit() and 1 <= int(count) <= MOST_VALUES):
-        raise SweepError(what, "is no range", f"START:STOP:COUNT, with a COUNT of 1 to {MOST_VALUES}")
-    start, stop = _numbers(what, parts[:2]).tolist()
-    if int(count) == 1 and start != stop:
-        raise SweepError(
-            what, "has one value from one number to another", "START = STOP, or a count of 2 or more"
-        )
-    return _Vary(coordinate, offsets, np.linspace(start, stop, int(count)))
-
-
-def _numbers(what: str, texts: list[str]) -> Array:
-    """Finite numbers from their texts."""
-    found = []
-    for text in texts:
-        try:
-            found.append(float(text))
-        except ValueError:
-            raise SweepError(what, f"has {shown(text)!r} for a number", EXAMPLES) from None
-    if not np.isfinite(found).all():
-        raise SweepError(what, "has a number that is not finite", EXAMPLES)
-    return np.array(found)
+    return _Vary(coordinate, offsets, values_of(what, values, EXAMPLES))
 
 
 def _designs_of_file(scene: Scene, path: str) -> Designs:
@@ -249,7 +225,7 @@ def _designs_of_file(scene: Scene, path: str) -> Designs:
     for line, row in lines:
         if len(row) != len(header):
             raise SweepError(f"{name}: line {line}", f"has {len(row)} numbers", f"{len(header)}, as names")
-    values = np.array([_numbers(f"{name}: line {line}", row) for line, row in lines])
+    values = np.array([finite(f"{name}: line {line}", row, EXAMPLES) for line, row in lines])
     return designs_of(scene, {column: values[:, i] for i, column in enumerate(header)})
 
 

@@ -1,0 +1,129 @@
+"""`pointcoord table --grid` and `pointcoord sensitivity` print what the solved cars have."""
+
+import csv
+import io
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, sensitivity, simulate
+from validate.cli import main
+
+
+def printed(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
+    status = main(words)
+    seen = capsys.readouterr()
+    return status, seen.out, seen.err
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
+
+
+def test_a_grid_has_each_cell_and_says_why_one_is_out_of_reach(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "grid.csv"
+    grid = ("--grid", "wheel_travel=-50:50:3", "--grid", "rack=-30,500")
+    status, _, err = printed(
+        capsys,
+        "table",
+        "wheel-travel",
+        *grid,
+        "--number",
+        "toe",
+        "--number",
+        "toe_by_travel",
+        "-o",
+        str(path),
+    )
+    assert status == 3
+    assert "3 of 6 poses are out of reach, the first in row 2: the mechanism cannot be assembled" in err
+    rows = rows_of(path)
+    assert [row["wheel_travel [mm]"] for row in rows] == [
+        *("-50.0", "-50.0"),
+        *("0.0", "0.0"),
+        *("50.0", "50.0"),
+    ]
+    motion = simulate(
+        Scene.load("wheel-travel").model_copy(
+            update={
+                "inputs": {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": -30.0}},
+                "time": {"start": 0.0, "stop": 1.0, "samples": 3},
+                "effects": ("toe", "toe_by_travel"),
+            }
+        )
+    )
+    reached = rows[::2]
+    assert all(row["why there is none"] == "" for row in reached)
+    for row, toe, gain in zip(
+        reached, motion.wheel["toe"], motion.angle_gradient["toe_by_travel"], strict=True
+    ):
+        # Two ways to one pose, each within 1e-13 mm of it; a line of 60 mm.
+        assert abs(float(row["toe [deg]"]) - math.degrees(toe)) <= 1e-12
+        assert abs(float(row["toe_by_travel [deg/mm]"]) - math.degrees(gain)) <= 1e-13
+    for row in rows[1::2]:
+        assert math.isnan(float(row["toe [deg]"] or "nan"))
+        assert "assembly stopped at rack = " in row["why there is none"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (
+            ("--grid", "wheel_travl=1,2"),
+            "names no input that the scene drives (did you mean 'wheel_travel'?)",
+        ),
+        (("--grid", "rack=1:2"), "is no range; allowed: START:STOP:COUNT"),
+        (("--grid", "rack=1,two"), "has 'two' for a number"),
+        (("--grid", "rack=1,2"), "wheel_travel moves in the scene; give its values too"),
+        (("--grid", "rack=1", "--grid", "rack=2"), "is given twice"),
+        (("--grid", "rack=1", "--rows", "3"), "--rows is about a way of the inputs"),
+    ],
+)
+def test_what_is_no_grid_is_refused(
+    words: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status, out, err = printed(capsys, "table", "wheel-travel", *words)
+    assert (status, out, len(err.splitlines())) == (2, "", 1)
+    assert told in err
+
+
+def test_hardpoints_are_ranked_by_the_first_number_and_their_tolerances_spread(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "toe.csv"
+    words = ("sensitivity", "five-link", "--number", "toe", "--tolerance", "0.5")
+    assert printed(capsys, *words, "-o", str(path))[0] == 0
+    rows = rows_of(path)
+    found = [abs(float(row["toe [deg/mm]"])) for row in rows]
+    assert found == sorted(found, reverse=True)
+    scene = Scene.load("five-link")
+    time = {"start": scene.time.start, "stop": scene.time.stop, "samples": 11}
+    own = sensitivity(scene.model_copy(update={"time": time, "effects": ("toe",)}))
+    best = np.argmax(np.abs(own.largest("toe")))
+    assert rows[0]["hardpoint"] == own.coordinates[best]
+    assert float(rows[0]["toe [deg/mm]"]) == pytest.approx(math.degrees(own.largest("toe")[best]), rel=1e-12)
+    status, out, _ = printed(capsys, *words)
+    assert status == 0
+    (line,) = [line for line in out.splitlines() if line.startswith("toe [deg] ")]
+    linear, drawn, worst = map(float, line.split()[2:])
+    # The standard deviation of a sample of 400 is known to 1 / sqrt(800), here to three times that; what is
+    # not linear in half a millimetre is less.
+    assert abs(drawn / linear - 1.0) <= 3.0 / math.sqrt(800.0)
+    assert linear < worst
+    assert printed(capsys, *words, "-o", str(tmp_path / "toe.svg"))[0] == 0
+    assert "<svg" in (tmp_path / "toe.svg").read_text(encoding="utf-8")
+
+
+def test_a_gradient_and_a_point_that_is_none_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, told in (
+        (("--number", "toe_by_rack"), "toe_by_rack"),
+        (("--point", "tie_rod_outr"), "tie_rod_outr"),
+        (("--number", "toes"), "no number of a car is called toes (did you mean 'toe'?)"),
+    ):
+        status, out, err = printed(capsys, "sensitivity", "double-wishbone", *words)
+        assert (status, out, len(err.splitlines())) == (2, "", 1), err
+        assert told in err

@@ -1,0 +1,171 @@
+"""`pointcoord sensitivity`: which hardpoints the numbers of a car hang on, and what their tolerances make."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Scene, Sensitivity, sensitivity, sweep
+from pointcoord.effects.registry import number_called
+from validate.commands.table import asking_for, chosen_numbers
+from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
+from validate.exit_status import ExitStatus
+from validate.extras import needed
+from validate.output.console import Console
+from validate.output.progress import progress
+from validate.output.table import Table, csv_of
+
+Array = NDArray[np.float64]
+
+ENDINGS = (".csv", ".md", ".svg", ".png")
+PICTURES = (".svg", ".png")
+FIRST = ("camber", "toe", "caster", "half_track_change", "kingpin_offset")
+ROWS = 15
+SAMPLES = 11
+DESIGNS = 400
+
+DESCRIPTION = f"""\
+Say how much numbers of a car change by each coordinate of each hardpoint, per mm, where that is
+most over the scene's motion ({SAMPLES} instants of it), the largest of the first number on top; and what a
+tolerance of every coordinate makes of each number: its standard deviation if they are
+independent, to first order and by {DESIGNS} designs drawn at random, and the worst case.
+Without --number these are {", ".join(FIRST)}, as far as the car has them.
+A picture (SVG, PNG) has a bar for each coordinate."""
+
+OPTIONS = f"""\
+{SCENE}
+-o --output FILE  where to, by its ending {", ".join(ENDINGS)}; the first {ROWS} rows in text if not given
+--number NAME  a number of the car; may be given again
+--point NAME  a hardpoint or one of its coordinates, such as tie_rod_outer.z; may be given again
+--tolerance MM  standard deviation of every coordinate, and its limit for the worst case; 1 if not given
+--seed K  of the designs at random; 0 if not given
+{QUIET}"""
+MORE: Mapping[str, Mapping[str, Any]] = {
+    "--number": {"action": "append"},
+    "--point": {"action": "append", "default": []},
+    "--tolerance": {"default": 1.0},
+    "--seed": {"default": 0},
+}
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Print or write the derivatives and the spreads."""
+    target = place_of_result(options, ENDINGS, console)
+    ending = "" if target is None else Path(target).suffix
+    if ending in PICTURES:
+        needed("sensitivity", "matplotlib", "plot")
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    chosen = _chosen(options.number, scene, name)
+    time = {
+        "start": scene.time.start,
+        "stop": scene.time.stop,
+        "samples": min(SAMPLES, scene.time.samples),
+    }
+    scene = asking_for(scene.model_copy(update={"effects": (), "time": time}), chosen)
+    with told_as(name), progress(console, f"solving {name}", total=None, lines=False):
+        found = sensitivity(scene, chosen, options.point)
+        random = _by_designs(scene, found, options.tolerance, options.seed)
+    for coordinate, why in found.failures.items():
+        console.warn(f"{name}: {coordinate} has no derivative: {why}")
+    order = np.argsort(-np.abs(found.largest(chosen[0])), kind="stable")
+    if ending in PICTURES:
+        console.put(target, _picture(found, chosen, order, name, ending), "the picture")
+    else:
+        linear = {n: found.spread(n, options.tolerance) for n in chosen}
+        spreads = {n: (deviation, random[n], worst) for n, (deviation, worst) in linear.items()}
+        text = _text(found, chosen, order, ending, options.tolerance, spreads)
+        console.put(target, text, "the table")
+    return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
+
+
+def _chosen(named: Sequence[str] | None, scene: Scene, name: str) -> list[str]:
+    """The numbers that are named, or those that are read first of what has a value in each design."""
+    known = chosen_numbers(named, True, scene, name)
+    if named:
+        return known
+    plain = [one for one in known if (number := number_called(one)) and not number.way]
+    return [one for own in FIRST for one in plain if one.rpartition(".")[2] == own] or plain
+
+
+def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -> dict[str, float]:
+    """The standard deviation of each number over designs at random, where it is largest."""
+    random = np.random.default_rng(seed)
+    offsets = {one: random.normal(0.0, tolerance, DESIGNS) for one in found.coordinates}
+    designs = sweep(scene, offsets=offsets)
+    arrays = {n: array for channel in designs.numbers.values() for n, array in channel.items()}
+    return {n: float(np.nanstd(arrays[n][designs.solved], axis=0).max()) for n in found.derivatives}
+
+
+def _shown(number: str) -> tuple[str, float]:
+    """The unit of a number for people, and how many of them its own is."""
+    called = number_called(number)
+    assert called is not None  # only such are chosen
+    unit = called.quantity.unit
+    return unit.replace("rad", "deg", 1), float(np.degrees(1.0)) if unit.startswith("rad") else 1.0
+
+
+def _text(
+    found: Sensitivity,
+    chosen: Sequence[str],
+    order: NDArray[np.intp],
+    ending: str,
+    tolerance: float,
+    spreads: Mapping[str, tuple[float, float, float]],
+) -> str:
+    """A row for each coordinate, and what a tolerance makes."""
+    units = {number: _shown(number) for number in chosen}
+    head = ("hardpoint", *(f"{n} [{unit}/mm]" for n, (unit, _) in units.items()))
+    columns = [found.largest(n)[order] * factor for n, (_, factor) in units.items()]
+    names = [found.coordinates[place] for place in order]
+    if ending == ".csv":
+        return csv_of(head, zip(names, *(column.tolist() for column in columns), strict=True))
+    shown = len(names) if ending else min(ROWS, len(names))
+    rows = [(names[i], *(f"{column[i]:.5f}" for column in columns)) for i in range(shown)]
+    made = Table(
+        (f"by {tolerance:g} mm of each", "standard deviation", f"of {DESIGNS} designs", "worst case"),
+        tuple(
+            (
+                f"{n} [{unit}]",
+                *(f"{factor * spread:.4f}" for spread in spreads[n]),
+            )
+            for n, (unit, factor) in units.items()
+        ),
+    )
+    table = Table(head, tuple(rows))
+    if ending:
+        return "\n".join([table.markdown, "", made.markdown, ""])
+    rest = [f"{len(names) - shown} more coordinates: -o FILE.csv has all", ""] if shown < len(names) else [""]
+    return "\n".join([table.text, *rest, made.text, ""])
+
+
+def _picture(
+    found: Sensitivity, chosen: Sequence[str], order: NDArray[np.intp], name: str, ending: str
+) -> bytes:
+    """A panel of bars for each number, a bar for each of the first coordinates."""
+    # Imported here: matplotlib takes a second.
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    from validate.output.figure import BLUE, SETTINGS, drawn, plain
+
+    first = order[:ROWS][::-1]
+    with rc_context(SETTINGS):
+        page = Figure(figsize=(2.2 * len(chosen) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
+        page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
+        panels = page.subplots(1, len(chosen), sharey=True, squeeze=False)[0]
+        for axes, number in zip(panels, chosen, strict=True):
+            unit, factor = _shown(number)
+            axes.barh(
+                [found.coordinates[i] for i in first], factor * found.largest(number)[first], color=BLUE
+            )
+            axes.set_xlabel(f"{number}, {unit}/mm")
+            plain(axes)
+        return drawn(page, ending.removeprefix("."))
+
+
+COMMANDS = {"sensitivity": Command(DESCRIPTION, OPTIONS, run, MORE)}

@@ -1,0 +1,216 @@
+"""`pointcoord table`: what an engineer reads of a car, over the way of its inputs or on a grid of them."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, PointcoordError, Scene, SweepError, solve_poses
+from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
+from pointcoord.wording import meant
+from validate.commands.solved import solved
+from validate.commands.usage import (
+    QUIET,
+    SCENE,
+    Command,
+    given,
+    load_scene,
+    name_of,
+    place_of_result,
+    told_as,
+)
+from validate.commands.values import values_of
+from validate.curves.numbers import Number, numbers_of
+from validate.errors import UsageError
+from validate.exit_status import ExitStatus
+from validate.output.console import Console
+from validate.output.table import Table, csv_of
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+
+ENDINGS = (".csv", ".md")
+ROWS = 21
+DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2}
+EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
+
+DESCRIPTION = """\
+Solve a scene by point coordinates and print the wheel's angles and dimensions over the way of
+its inputs, with what they change by per mm of wheel travel and of rack. A sweep such as
+wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range; bump steer is toe_by_travel,
+the motion ratio damper over wheel minus damper_length_by_travel. With --grid there is a row for
+every combination of values of inputs, and the other inputs stay where the scene begins:
+
+  --grid wheel_travel=-50:50:11 --grid rack=-30:30:7
+
+What is out of reach has no numbers and says why; then it ends with 3."""
+
+OPTIONS = f"""\
+{SCENE}
+-o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; a table in text if not given
+--rows N  how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}
+--grid INPUT=VALUES  a row for every combination of values instead, in mm or rad; may be given again
+--number NAME  a column, by its name; may be given again
+--all  every number of the car that there is
+{QUIET}"""
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Print a table."""
+    target = place_of_result(options, ENDINGS, console)
+    if options.grid and given(options, "--rows"):
+        raise UsageError("--rows is about a way of the inputs; leave it out with --grid")
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    chosen = chosen_numbers(options.number, options.all, scene, name)
+    scene = asking_for(scene, chosen)
+    numbers = {number.path[-1]: number for number in numbers_of(scene) if len(number.path) < 3}
+    if options.grid:
+        return _on_grid(scene, [numbers[one] for one in chosen], options, target, console)
+    driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
+    columns = [numbers[one] for one in (*driven, *chosen)]
+
+    def write(motion: Motion) -> str:
+        rows = options.rows or min(ROWS, len(motion.times))
+        first, last = motion.times[0], motion.times[-1]
+        samples = motion.at(np.linspace(first, last, rows)) if len(motion.times) > 1 else motion
+        values = [one.shown(motion, samples) for one in columns]
+        console.put(target, _text(columns, values, target), "the table")
+        return "the table"
+
+    return solved(scene, target, options, console, write)
+
+
+def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name: str) -> list[str]:
+    """Numbers of the car by their names; those that are read first, or all, where none is named.
+
+    Args:
+        name: of the scene, for messages.
+    Raises:
+        UsageError: the car has no such number, or none at all.
+    """
+    part = scene.mechanism
+    had = [number for effect in part.effects for number in EFFECTS[effect].names(part.topology)]
+    known = [number for number in dict.fromkeys(had) if number_called(number)]
+    if not known:
+        raise UsageError(
+            f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
+            "pointcoord simulate writes what it gives"
+        )
+    for number in named or ():
+        if number not in known:
+            own = number.rpartition(".")[2]
+            why = [reason for e in EFFECTS.values() if own in e.own_names and (reason := part.refusal(e))]
+            raise UsageError(
+                f"{name}: --number {number}: {why[0]}"
+                if why
+                else f"{name}: no number of a car is called {shown(number)}"
+                f"{meant(number, known)}; allowed: {', '.join(known)}"
+            )
+    if named:
+        return list(dict.fromkeys(named))
+    first = [number for own in READ_FIRST for number in known if number.rpartition(".")[2] == own]
+    return known if every else first
+
+
+def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
+    """The scene with the effects that give some numbers beside its own."""
+    topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
+    givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
+    effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in numbers))))
+    return scene.model_copy(update={"effects": effects})
+
+
+def _on_grid(
+    scene: Scene, columns: Sequence[Number], options: argparse.Namespace, target: str | None, console: Console
+) -> ExitStatus:
+    """A row for each combination of values; status 3 where one of them is out of reach."""
+    axes = _axes(scene, options.grid)
+    grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True))
+    held = {n: law.series(scene.time.start, 0)[0] for n, law in scene.functions.items() if n not in axes}
+    name = name_of(options.scene)
+    try:
+        with told_as(name):
+            poses = solve_poses(scene, {**held, **{n: values.ravel() for n, values in grid.items()}})
+    except PointcoordError as error:
+        console.complain(f"{name}: {error}; nothing is written")
+        return ExitStatus.NO_VERDICT
+    inputs = {n.path[-1]: n for n in numbers_of(scene) if n.path[-1] in axes}
+    # A pose has no motion: what is read of the car is there by quantity and name.
+    values = [grid[n].ravel() for n in axes] + [poses.numbers[c.path[0]][c.path[1]] for c in columns]
+    every = [*(inputs[n] for n in axes), *columns]
+    turned = [np.degrees(v) if c.unit.startswith("rad") else v for c, v in zip(every, values, strict=True)]
+    reasons = {row: str(error) for row, error in poses.failures.items()}
+    console.put(target, _text(every, turned, target, reasons), "the table")
+    if not reasons:
+        return ExitStatus.AGREE
+    first = min(reasons)
+    console.complain(
+        f"{name}: {len(reasons)} of {len(poses.bound)} poses are out of reach, the first in row {first + 1}: "
+        f"{reasons[first]}"
+    )
+    return ExitStatus.NO_VERDICT
+
+
+def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
+    """The values of each input of a grid.
+
+    Raises:
+        UsageError: one is not driven, or is given twice. SweepError: values are no range and no list.
+    """
+    found: dict[str, Array] = {}
+    for text in texts:
+        name, equals, values = text.partition("=")
+        if name not in scene.inputs or not equals:
+            problem = f"names no input that the scene drives{meant(name, scene.inputs)}"
+            raise SweepError(f"--grid {shown(text)}", problem, f"{EXAMPLES}; of {', '.join(scene.inputs)}")
+        if name in found:
+            raise SweepError(f"--grid {shown(name)}", "is given twice", "each input once")
+        found[name] = values_of(f"--grid {shown(text)}", values, EXAMPLES)
+    moving = [n for n, law in scene.functions.items() if n not in found and not law.still]
+    if moving:
+        raise UsageError(f"{moving[0]} moves in the scene; give its values too, --grid {moving[0]}=VALUES")
+    return found
+
+
+def _text(
+    columns: Sequence[Number],
+    values: Sequence[Array],
+    target: str | None,
+    reasons: Mapping[int, str] | None = None,
+) -> str:
+    """Numbers, angles in degrees: CSV, or text with what is positive.
+
+    Args:
+        reasons: why there are none in a row, of a grid.
+    """
+    head = tuple(f"{one.path[-1]} [{one.unit_shown()}]" for one in columns)
+    lines = [tuple(line) for line in zip(*(each.tolist() for each in values), strict=True)]
+    if target is not None and Path(target).suffix == ".csv":
+        if reasons is None:
+            return csv_of(head, lines)
+        told = ((*line, reasons.get(row, "")) for row, line in enumerate(lines))
+        return csv_of((*head, "why there is none"), told)
+    digits = [DIGITS[one.unit_shown()] for one in columns]
+    table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
+    # The wheels of an axle share a line.
+    told_signs = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
+    signs = [f"{number}: positive {sign}" for number, sign in told_signs.items()]
+    if target is not None:
+        return "\n".join([table.markdown, "", *(f"- {sign}" for sign in signs), ""])
+    return "\n".join([table.text, "", *signs, ""])
+
+
+def _rounded(value: float, digits: int) -> str:
+    # Adding 0 turns a rounded -0 into 0.
+    return f"{round(value, digits) + 0.0:.{digits}f}" if np.isfinite(value) else "-"
+
+
+COMMANDS = {
+    "table": Command(
+        DESCRIPTION, OPTIONS, run, {"--number": {"action": "append"}, "--grid": {"action": "append"}}
+    )
+}

@@ -1,0 +1,54 @@
+"""Values that the command line gives as a range or a list."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import SweepError
+from validate.plain_text import shown
+
+Array = NDArray[np.float64]
+
+MOST_VALUES = 10_000_000
+
+
+def values_of(what: str, text: str, examples: str) -> Array:
+    """START:STOP:COUNT or A,B,C as finite numbers.
+
+    Args:
+        what: gives them, for messages. examples: of what is allowed.
+    Raises:
+        SweepError: they are none.
+    """
+    parts = text.split(":")
+    if len(parts) == 1:
+        return finite(what, text.split(","), examples)
+    count = parts[-1].strip()
+    if len(parts) != 3 or not (count.isascii() and count.isdigit() and 1 <= int(count) <= MOST_VALUES):
+        raise SweepError(what, "is no range", f"START:STOP:COUNT, with a COUNT of 1 to {MOST_VALUES}")
+    start, stop = finite(what, parts[:2], examples).tolist()
+    if int(count) == 1 and start != stop:
+        raise SweepError(
+            what, "has one value from one number to another", "START = STOP, or a count of 2 or more"
+        )
+    return np.linspace(start, stop, int(count))
+
+
+def finite(what: str, texts: Sequence[str], examples: str) -> Array:
+    """Finite numbers from their texts.
+
+    Raises:
+        SweepError: one is none.
+    """
+    found = []
+    for text in texts:
+        try:
+            found.append(float(text))
+        except ValueError:
+            raise SweepError(what, f"has {shown(text)!r} for a number", examples) from None
+    if not np.isfinite(found).all():
+        raise SweepError(what, "has a number that is not finite", examples)
+    return np.array(found)
