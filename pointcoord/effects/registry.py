@@ -101,6 +101,9 @@ READ_FIRST = (
 )
 """The numbers that a table shows unless others are asked for, as far as a car has them."""
 
+RANKED_FIRST = ("camber", "toe", "caster", "half_track_change", "kingpin_offset")
+"""The numbers whose hardpoints are ranked unless others are asked for, as far as a car has them."""
+
 ANGLES: Mapping[str, Angle] = {
     name: number for name, number in NUMBERS_OF_THE_CAR.items() if isinstance(number, Angle)
 }

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, Sensitivity, sensitivity, sweep
-from pointcoord.effects.registry import number_called
+from pointcoord.effects.registry import RANKED_FIRST, number_called
 from validate.commands.table import asking_for, chosen_numbers
 from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
 from validate.exit_status import ExitStatus
@@ -24,7 +24,6 @@ Array = NDArray[np.float64]
 
 ENDINGS = (".csv", ".md", ".svg", ".png")
 PICTURES = (".svg", ".png")
-FIRST = ("camber", "toe", "caster", "half_track_change", "kingpin_offset")
 ROWS = 15
 SAMPLES = 11
 DESIGNS = 400
@@ -34,7 +33,7 @@ Say how much numbers of a car change by each coordinate of each hardpoint, per m
 most over the scene's motion ({SAMPLES} instants of it), the largest of the first number on top; and what a
 tolerance of every coordinate makes of each number: its standard deviation if they are
 independent, to first order and by {DESIGNS} designs drawn at random, and the worst case.
-Without --number these are {", ".join(FIRST)}, as far as the car has them.
+Without --number these are {", ".join(RANKED_FIRST)}, as far as the car has them.
 A picture (SVG, PNG) has a bar for each coordinate."""
 
 OPTIONS = f"""\
@@ -89,7 +88,7 @@ def _chosen(named: Sequence[str] | None, scene: Scene, name: str) -> list[str]:
     if named:
         return known
     plain = [one for one in known if (number := number_called(one)) and not number.way]
-    return [one for own in FIRST for one in plain if one.rpartition(".")[2] == own] or plain
+    return [one for own in RANKED_FIRST for one in plain if one.rpartition(".")[2] == own] or plain
 
 
 def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -> dict[str, float]:
