@@ -140,7 +140,7 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     if not (np.isfinite(wanted) and wanted > 0.0):
         raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
     plan = plan_effects(name for name in scene.effects if EFFECTS[name].derivative == 0)
-    found = solve_unrelated(mechanism, driving, wanted, coordinates=bool(plan.ways))
+    found = solve_unrelated(mechanism, driving, wanted, coordinates=plan.along_ways)
     chassis = ChassisMotion.of(mechanism, {})
     readout = Readout(mechanism, plan, chassis, scene.mechanism.axes)
     rows = readout.room(len(found.bound))

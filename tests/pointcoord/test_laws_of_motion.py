@@ -179,7 +179,9 @@ def compare(
         expected = sense * getattr(plain, quantity)["knuckle"] @ matrix.T
         assert np.abs(getattr(other, quantity)["knuckle"] - expected).max() <= allowed
     for name in plain.wheel:
-        expected = expected_angle(name, plain, other, matrix)
+        # A steer angle is positive to the left on both wheels.
+        turned = sense if name == "steer_angle" else 1.0
+        expected = turned * expected_angle(name, plain, other, matrix)
         assert np.abs(other.wheel[name] - expected).max() <= tolerance.angle
 
 

@@ -19,11 +19,16 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from flint import acb, acb_mat, arb, ctx
 from numpy.typing import NDArray
 
 from validate.assemblies.homotopy import solve_quadratic
 from validate.assemblies.legs import forms
+from validate.extras import MissingPackage
+
+try:
+    from flint import acb, acb_mat, arb, ctx
+except ImportError as error:
+    raise MissingPackage("validate.assemblies", error) from None
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

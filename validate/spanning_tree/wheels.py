@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validate.reference.car_data import LENGTHS, car_data
 from validate.reference.effects.car import RADIUS, Car, DrawnCar, Line
+from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.vectors import Vector
 from validate.spanning_tree.chassis import ChassisMotion
@@ -48,6 +50,8 @@ class Wheels:
             parts.setdefault(part + dot, {})[last] = named
         directions, radius = car_directions(plain), plain["wheel_radius"]
         points = {name: _vector(place) for name, place in tree.drawn.items()}
+        given = {key: float(one) for key, one in car_data(plain).items()}
+        data = {key: one / tree.unit if key in LENGTHS else one for key, one in given.items()}
         cars = {
             prefix: DrawnCar.of(
                 roles=roles,
@@ -57,7 +61,7 @@ class Wheels:
                 side=_side(plain, roles, directions["right"]),
                 wheel_radius=None if radius is None else radius / tree.unit,
                 origin=_vector(-tree.origin / tree.unit),
-                data={},  # no number that is made of positions alone takes any
+                data=data,
                 number=float,
             )
             for prefix, roles in parts.items()
@@ -96,16 +100,29 @@ class Wheels:
             prefix: Car(one, _lines(one, turned_points, turned_vectors), _lines(one, points, vectors))
             for prefix, one in self.cars.items()
         }
+        pair = self._pair()
+        own = dict.fromkeys(name.rpartition(".")[2] for name in names)
         found = {}
-        for name in names:
-            part, dot, base = name.rpartition(".")
-            effect, one = EFFECTS.get(base), self.cars.get(part + dot)
-            if effect is None or one is None or effect.along is not None:
+        for name, effect in ((name, EFFECTS[name]) for name in own if name in EFFECTS):
+            if effect.along is not None:
                 continue
-            has = {*one.ends, *([] if one.wheel_radius is None else [RADIUS])}
-            if not effect.lacks(has):
-                found[name] = effect.evaluate(cars[part + dot]) * self.tree.unit**effect.power
+            both = PAIR in effect.needs
+            for prefixes in [pair] if both and pair else [] if both else [(prefix,) for prefix in cars]:
+                if not any(effect.lacks(self._has(prefix) | {PAIR}) for prefix in prefixes):
+                    value = effect.evaluate(*(cars[prefix] for prefix in prefixes))
+                    label = name if both else prefixes[0] + name
+                    found[label] = value * self.tree.unit**effect.power
         return found
+
+    def _has(self, prefix: str) -> set[str]:
+        """What a part's car has of what effects need."""
+        one = self.cars[prefix]
+        return {*one.ends, *one.data, *([] if one.wheel_radius is None else [RADIUS])}
+
+    def _pair(self) -> tuple[str, ...]:
+        """The prefixes of the left and the right part, where there are these two."""
+        sides = {side: f"{part}." for part, side in self.plain["sides"].items() if f"{part}." in self.cars}
+        return (sides["left"], sides["right"]) if len(sides) == len(self.cars) == 2 else ()
 
 
 def knuckles(plain: Mapping[str, Any]) -> dict[str, str]:

@@ -163,14 +163,15 @@ def _one_sided(car: RandomScene, answers: Sequence[Solution | FormulationError])
 
 
 def _shares(outcome: Outcome) -> Row:
-    """Largest share of each quantity, and of each wheel angle.
+    """Largest share of each quantity, and of each number of the car, whichever wheel it is of.
 
     Where one model claims nothing, as of a point at rest, a share says nothing of what both claim.
     """
     largest: Row = {}
     for row in outcome.rows:
         if row.part < ALONE:
-            name = f"share_{row.name if QUANTITIES[row.quantity].of == 'car' else row.quantity}"
+            own = row.name.rpartition(".")[2]
+            name = f"share_{own if QUANTITIES[row.quantity].of == 'car' else row.quantity}"
             largest[name] = max(largest.get(name, 0.0), row.share)
     return largest
 

@@ -52,7 +52,8 @@ def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar
             right_or_none = np.where((one < 0) & (two < 0), part(to_right), nan)
             return np.where((one > 0) & (two > 0), part(to_left), right_or_none)
 
-        return Dual(chosen(value_of), chosen(slope_of))
+        dual = isinstance(to_left, Dual)
+        return Dual(chosen(value_of), chosen(slope_of)) if dual else chosen(value_of)
     if one > 0 and two > 0:
         return to_left
     return to_right if one < 0 and two < 0 else to_left * nan

@@ -73,7 +73,7 @@ class DrawnCar:
         side: int,
         wheel_radius: Scalar | None,
         origin: Vector,
-        data: Mapping[str, Fraction],
+        data: Mapping[str, Any],
         number: Callable[[Fraction], Scalar],
     ) -> DrawnCar:
         """A drawing.
