@@ -10,7 +10,6 @@ from fractions import Fraction
 from types import FunctionType, SimpleNamespace
 from typing import Any, cast
 
-import mpmath
 import numpy as np
 import pytest
 from every_effect import every_effect
@@ -26,7 +25,8 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosed_rows, enclosure, kantorovich
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import Product, quadratic_map
-from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.adjudication.reference_solution import DUST, inputs_at, reference_instant
+from validate.reference.exact import as_fraction
 
 Array = NDArray[np.float64]
 # u u + 2 u p = q: one unknown, whose error counts by its square, and two known numbers.
@@ -131,11 +131,13 @@ def scene_holds(name: str) -> bool:
             for part, values in channel.items():
                 kept = values, proof.proven[quantity][part], proof.expected[quantity][part]
                 reported, bounds, expected = (np.atleast_1d(array[k]).tolist() for array in kept)
-                with mpmath.workdps(60):
-                    for value, bound, most, x in zip(reported, bounds, expected, own[part], strict=True):
-                        # The reference has some 60 digits, and a proof rounds by some u^2.
-                        if not abs(value - x) - 1e-50 * (1.0 + abs(x)) <= bound <= most + 1e-24:
-                            return False
+                for value, bound, most, x in zip(reported, bounds, expected, own[part], strict=True):
+                    # A double less a fraction would be rounded to a double: both are made fractions.
+                    # The reference has some 60 digits, and a proof rounds by some u^2.
+                    right = as_fraction(x, part)
+                    off = abs(Fraction(value) - right) - Fraction(DUST) * (1 + abs(right))
+                    if not off <= bound <= most + 1e-24:
+                        return False
     return True
 
 
