@@ -187,17 +187,25 @@ def test_the_order_that_was_chosen_costs_least(monkeypatch: pytest.MonkeyPatch) 
 # ---------------------------------------------------------------------------------- planted faults
 
 
+# Scenes in which a method leaves something. Each pose is corrected by one step of Newton's method at least:
+# from the drawing of off-axis-strut a series leads so near that this one already leaves only rounding.
+LEAVING = [("newton", "off-axis-strut"), ("newton-cold", "bounce"), ("chord", "off-axis-strut")]
+
+
+@pytest.mark.parametrize(("method", "name"), LEAVING, ids=[method for method, _ in LEAVING])
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
 def test_a_claim_without_what_the_tolerance_left_is_caught(
-    tolerance: float, monkeypatch: pytest.MonkeyPatch
+    tolerance: float, method: str, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scene = Scene.load("off-axis-strut")
-    exact, motion = (simulate(asking(scene, t), "newton-cold") for t in (FINEST, tolerance))
+    scene = Scene.load(name)
+    exact, motion = (simulate(asking(scene, t), method) for t in (FINEST, tolerance))
     gap = np.abs(motion.position["wheel_centre"] - exact.position["wheel_centre"])
 
     def claimed() -> Array:
         return motion.proof(rates=True).expected["position"]["wheel_centre"]
 
+    # Otherwise there is nothing to be caught here, and another scene is to be taken.
+    assert gap.max() > rounding(exact)
     assert (gap <= claimed()).all()
     monkeypatch.setattr(type(motion.solved), "unsolved", lambda self, instants: np.zeros(len(instants)))
     assert not (gap <= claimed()).all()
