@@ -27,7 +27,7 @@ from pointcoord.numerics.power_series import expand
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.jet import Jet
 from pointcoord.patches.lookup import Marked
-from pointcoord.patches.patch_proof import PatchProof, prove_patches
+from pointcoord.patches.patch_proof import prove_patches
 from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.reported_points import reported_points
 from pointcoord.solve.assembly import assemble
@@ -44,7 +44,9 @@ BATCH = 32
 # Steps of a path to the middle of a box: those that arrive take some ten, and one that takes more leads to a
 # fold or through what no patch will cover at once.
 STEPS = 32
-# A part that uses no less than this share of what the whole did is as exact as rounding lets it be.
+# A part that uses no less than this share of what the whole did is as exact as rounding lets it be. One that
+# uses less may be so too, as what rounding makes is half or twice as much by chance in another box: its parts
+# are tried, and the smallest box, which has none, is asked what it is off by (see `PatchProof.rounded`).
 NO_BETTER = 0.9
 # Terms of the last order that are so many tolerances large leave out more than one: no need to prove it.
 COARSE = 1e3
@@ -70,6 +72,22 @@ class Entry:
     twice: Whole
     y: Array
     used: float = np.inf
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a box that was expanded is not kept.
+
+    Attributes:
+        y: the pose at its middle, (size,).
+        weights: how much each input takes part, (p,).
+        used: of what is allowed, where it is proven. rounded: whether rounding alone makes that too much.
+    """
+
+    y: Array
+    weights: Array
+    used: float = np.inf
+    rounded: bool = False
 
 
 @dataclass(frozen=True)
@@ -164,7 +182,7 @@ class _Flood:
         self.work += path.work
         arrived = np.flatnonzero(path.done >= 1.0)
         for place in np.flatnonzero(path.done < 1.0).tolist():
-            self._halve(*boxes[place], None, None)
+            self._halve(*boxes[place], None)
         if not arrived.size:
             return
         y = path.y[arrived]
@@ -179,7 +197,7 @@ class _Flood:
         last, along = last_terms(series[..., : system.unknowns], count, self.order)
         coarse = last * float(mechanism.unit) > COARSE * self.limits.tolerance
         for place in np.flatnonzero(coarse).tolist():
-            self._halve(*boxes[int(arrived[place])], y[place], (along[place], np.inf))
+            self._halve(*boxes[int(arrived[place])], Failure(y[place], along[place]))
         fine = np.flatnonzero(~coarse)
         if fine.size:
             self._prove(
@@ -209,11 +227,14 @@ class _Flood:
         used = np.full(len(boxes), np.inf)
         used[proven] = self.limits.used(points, off, float(mechanism.unit))
         whole = np.array([entry.used for _, entry in boxes])
-        rounded = np.isfinite(used) & (used > NO_BETTER * whole) & self.limits.keep_rounded
-        keep = (used <= 1.0) | rounded
+        smallest = np.array([np.subtract(high, low).max() == 1 for (low, high), _ in boxes])
+        rounded = np.isfinite(used) & ((used > NO_BETTER * whole) | (smallest & proof.rounded))
+        keep = (used <= 1.0) | (rounded & self.limits.keep_rounded)
         for place, box in enumerate(boxes):
             if not keep[place]:
-                self._halve(*box, y[place], self._failure(proof, place, float(used[place])))
+                weights = (proof.left_out if proof.proven[place] else proof.change)[place]
+                weights = np.nan_to_num(weights, nan=0.0, posinf=1e300)
+                self._halve(*box, Failure(y[place], weights, float(used[place]), bool(rounded[place])))
         near = keep[proven]
         if near.any():
             good = proven[near]
@@ -232,27 +253,21 @@ class _Flood:
             )
             self._enter_neighbours(self.kept[-1], list(self.waiting))
 
-    def _failure(self, proof: PatchProof, place: int, used: float) -> tuple[Array, float]:
-        """How much each input takes part in a failure, and what of the limits was reached."""
-        weights = proof.left_out if proof.proven[place] else proof.change
-        return np.nan_to_num(weights[place], nan=0.0, posinf=1e300), used
-
-    def _halve(self, key: Key, entry: Entry, y: Array | None, failure: tuple[Array, float] | None) -> None:
+    def _halve(self, key: Key, entry: Entry, failure: Failure | None) -> None:
         """Cut a box that failed in two.
 
         Args:
-            y: the pose at its middle, if that was reached. failure: likewise.
+            failure: if its middle was reached.
         """
         low, high = np.array(key)
         sizes = high - low
-        used = np.inf if failure is None else failure[1]
-        if np.isfinite(used) and used > NO_BETTER * entry.used:
+        if failure is not None and failure.rounded:
             self.given_up[key] = ROUNDING
             return
         if not (sizes > 1).any():
             self.given_up[key] = FOLD
             return
-        weights = sizes / self.domain.parts if failure is None else failure[0]
+        weights = sizes / self.domain.parts if failure is None else failure.weights
         along = int(np.argmax(np.where(sizes > 1, weights, -1.0)))
         cut = int(low[along] + sizes[along] // 2)
         parts = []
@@ -264,8 +279,8 @@ class _Flood:
             part: Key = (tuple(first.tolist()), tuple(last.tolist()))
             if self.wanted is not None and not self.wanted.any_in(first[None], last[None])[0]:
                 continue
-            if y is not None:
-                self.entered[part] = Entry(low + high, y, used)
+            if failure is not None:
+                self.entered[part] = Entry(low + high, failure.y, failure.used)
             elif (2 * first <= entry.twice).all() and (entry.twice <= 2 * last).all():
                 self.entered[part] = entry
             else:

@@ -55,6 +55,8 @@ ITERATIONS = 40
 # Least weight of a coordinate: what hardly changes still may be off.
 LEAST = 1e-3
 REFINEMENTS = 4
+# Of what is left over, what cutting the series may make where it is mostly rounding.
+MOSTLY = 0.5
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,8 @@ class PatchProof:
         unique_within: no other assembly lies within this of the series, (P, unknowns).
         change: z by input: how much each input changes the Jacobian, (P, p).
         left_out: eta by input: how much each takes part in what the series leaves out, (P, p).
+        rounded: whether that is mostly rounding and doubt of the data, in every derivative, so that no
+            smaller patch is much nearer, (P,).
     """
 
     proven: NDArray[np.bool_]
@@ -74,6 +78,7 @@ class PatchProof:
     unique_within: Array
     change: Array
     left_out: Array
+    rounded: NDArray[np.bool_]
 
 
 def prove_patches(
@@ -93,7 +98,7 @@ def prove_patches(
         data: how far the known coordinates' series are off beside that, (P, size).
     """
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-        remaining = _remaining(system, factors, series, order, low, data)
+        remaining, cut = _remaining(system, factors, series, order, low, data)
         change = _change(system, factors, series, order, low, data)
         weights = _perron(change.value)
         z = ((change.value @ weights[..., None])[..., 0] / weights).max(axis=-1)
@@ -104,19 +109,25 @@ def prove_patches(
         error = _errors(remaining, change, weights, omega, found.radius, found.contraction)
         spread = ((change.first @ weights[:, None, :, None])[..., 0] / weights[:, None]).max(axis=-1)
         left_out = (remaining.first / weights[:, None]).max(axis=-1)
+        rounded = _mostly_rounded(remaining, cut, weights)
     return PatchProof(
         proven=proven,
         error=error.scaled(INFLATION).where(proven),
         unique_within=np.where(proven[:, None], weights * found.outer[:, None], 0.0),
         change=spread,
         left_out=left_out,
+        rounded=rounded,
     )
 
 
 def _remaining(
     system: QuadraticMap, factors: Factors, series: Array, order: int, low: Array, data: Jet
-) -> Jet:
-    """q: bounds of X C(y) and of its derivatives, rounding and doubt of the data included, (P, unknowns)."""
+) -> tuple[Jet, Jet]:
+    """q: bounds of X C(y) and of its derivatives, rounding and doubt of the data included, (P, unknowns).
+
+    Returns:
+        All of them, and what of them is by powers above the order, which a series leaves out.
+    """
     inputs = data.first.shape[1]
     inverse = factors.preconditioner
     magnitude = np.swapaxes(np.abs(inverse), -1, -2)
@@ -131,7 +142,10 @@ def _remaining(
     centre = residual(system, differences(system, Enclosed.of(series[:, 0], low)))
     rows[:, 0] = centre.middle
     exponents = powers(inputs, 2 * order).exponents
-    stepped = Jet.of(rows @ np.swapaxes(inverse, -1, -2), exponents)
+    stepped = rows @ np.swapaxes(inverse, -1, -2)
+    kept, cut = (
+        Jet.of(stepped[:, part], exponents[part]) for part in (slice(own.count), slice(own.count, None))
+    )
     # Each coefficient is a sum of products of rounded differences: two terms and what its row sums at order
     # zero, and as many terms as there are powers elsewhere.
     terms = max(len(row) for row in system.rows)
@@ -148,11 +162,22 @@ def _remaining(
     spread = (rounded + moved).each(lambda part: _gathered(system, part))
     spread += Jet.of(rows, exponents).scaled((system.unknowns + 2) * EPS)
     spread += Jet.constant(centre.radius[0] + UNIT_ROUNDOFF * np.abs(rows[:, 0]), inputs)
-    return stepped + Jet(
+    spread = Jet(
         (spread.value[:, None] @ magnitude)[:, 0],
         spread.first @ magnitude,
         spread.second @ magnitude[:, None],
     )
+    return kept + cut + spread, cut
+
+
+def _mostly_rounded(remaining: Jet, cut: Jet, weights: Array) -> NDArray[np.bool_]:
+    """Whether what cutting the series leaves is the smaller part of all that remains, (P,)."""
+    found = np.ones(len(weights), dtype=bool)
+    for part, whole in zip(cut.parts, remaining.parts, strict=True):
+        beside = weights.reshape(len(weights), *[1] * (part.ndim - 2), -1)
+        few = (part / beside).max(axis=-1) <= MOSTLY * (whole / beside).max(axis=-1)
+        found &= few.reshape(len(weights), -1).all(axis=-1)
+    return found
 
 
 def _of_factors(system: QuadraticMap, off: Jet) -> tuple[Jet, Jet]:

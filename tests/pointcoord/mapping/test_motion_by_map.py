@@ -169,3 +169,19 @@ def test_near_a_fold_what_no_patch_covers_is_refused_with_its_place(
     assert np.isfinite(error.partial.proof().bound).all()
     # Nothing but the map is in the way.
     assert simulate(scene).method == "series"
+
+
+@pytest.mark.parametrize(("way", "covered"), [(1.0, True), (60.0, False)])
+def test_the_smallest_patch_is_kept_if_rounding_alone_keeps_it_from_being_nearer(
+    way: float, covered: bool, make_scene: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(way_map, "HALVINGS", {1: 0})
+    scene = make_scene([1.6], [0.0, way], stop=1.0, samples=3).model_copy(update={"tolerance": 1e-14})
+    if covered:
+        motion = simulate(scene, "map")
+        assert motion.status.complete
+        assert len(motion.solved.patches.low) == 1
+        assert motion.proof(rates=True).bound.max() < 1e-10
+    else:
+        with pytest.raises(MotionNotMapped, match="smallest"):
+            simulate(scene, "map")

@@ -250,7 +250,7 @@ def test_what_a_series_leaves_is_no_more_than_its_bound_says(doubtful: bool) -> 
             low[place] = 1e-6 * float(random_series(generator)[0])
         factors = factorise(system.jacobian(series[:1]))
         data = Jet.of(errors[None], powers(1, LOW_ORDER).exponents)
-        found = patch_proof._remaining(system, factors, series[None], LOW_ORDER, low[None], data)
+        found, _ = patch_proof._remaining(system, factors, series[None], LOW_ORDER, low[None], data)
         exact = [
             [Fraction(a) + Fraction(b) for a, b in zip(own, off, strict=True)]
             for own, off in zip(series.T.tolist(), errors.T.tolist(), strict=True)
