@@ -82,10 +82,6 @@ class TimeFunction(Protocol):
 class Rounded:
     """A time function whose own value is known in twice the working precision."""
 
-    def exact(self, instants: Array) -> list[Enclosed]:
-        """See `TimeFunction`."""
-        raise NotImplementedError
-
     def enclosed(self: TimeFunction, instants: Array) -> list[Enclosed]:
         """See `TimeFunction`."""
         values = enumerate(self.exact(instants))

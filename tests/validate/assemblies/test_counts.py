@@ -1,6 +1,7 @@
 """All assemblies of a knuckle on its legs are found, each is one, and none that is false is certified."""
 
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -66,7 +67,7 @@ def test_a_dense_system_has_two_to_the_n_solutions_and_each_is_one() -> None:
     assert np.abs(left).max() <= 1e-13
 
 
-def pose(name: str, *held: str) -> tuple[dict[str, object], dict[str, Array]]:
+def pose(name: str, *held: str) -> tuple[dict[str, Any], dict[str, Array]]:
     scene = Scene.load(name)
     there = scene.model_copy(update={"inputs": {one: {"constant": "drawn"} for one in held}})
     motion = simulate(there)
@@ -114,10 +115,10 @@ def test_every_real_assembly_keeps_every_length(scene: str, held: str, number: i
         assert abs(at["wheel_centre"][2] - places["wheel_centre"][2]) <= 1e-9
 
 
-def _placed(box: tuple[acb, ...], name: str, mechanism: object, places: dict[str, Array]) -> Array:
+def _placed(box: tuple[acb, ...], name: str, mechanism: dict[str, Any], places: dict[str, Array]) -> Array:
     """A point of the knuckle at a pose, mm: e x e* / |e|^2 + 2 g e* / |e|^2 about the knuckle's middle."""
     z = np.array([float(number.real.mid()) for number in box])
-    body = mechanism["bodies"]["knuckle"]  # type: ignore[index]
+    body = mechanism["bodies"]["knuckle"]
     middle = np.mean([places[n] for n in body], axis=0)
     size = max(float(np.abs(place - middle).max()) for place in places.values())
     e, g = z[:4], z[4:]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
+from pointcoord.effects.loads import Loads
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.car_axes import CarAxes
 from validate.adjudication.reference_solution import reference_solution
@@ -48,7 +49,7 @@ def test_three_mechanics_give_the_same_forces(name: str) -> None:
 def test_a_fault_of_one_is_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, right = loaded("axle-steer"), EFFECTS["loads"]
 
-    class Wrong(type(right)):  # type: ignore[misc]
+    class Wrong(Loads):
         def evaluate(self, poses: Any) -> Any:
             (left, moment), other = poses.axes.loads["left"], poses.axes.loads["right"]
             loads = {
