@@ -92,3 +92,12 @@ def test_sums_are_rounded_once_although_their_terms_cancel() -> None:
                 float(3000 * mpmath.cos(angle) + slow),
                 float(-9 * swing),
             ]
+
+
+def test_rates_too_large_for_a_double_are_infinite_with_their_sign() -> None:
+    """Of 10^200 rad/s even the turn is known by fractions alone, and its square is beyond the doubles."""
+    instants = [1.0, 2.0, 3.0, 4.0]
+    found = rates(InputPart(sine=SinePart(amplitude=1.0, angular_frequency=1e200)), np.array(instants))
+    with mpmath.workdps(300):
+        for row, t in zip(found.tolist(), instants, strict=True):
+            assert row[2] == -math.inf * float(mpmath.sign(mpmath.sin(mpmath.mpf(1e200) * t)))
