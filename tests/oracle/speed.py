@@ -15,7 +15,7 @@ COMMIT = "babc22c"
 """The last one before a suspension became a file."""
 TURNS = 4
 SIZE = os.environ.get("SPEED", "small")  # or full
-FACTORS = (1.3, 2.0)  # what issues 17 and 18 allow
+FACTORS = (1.3, 2.0)  # above these a line says so
 
 Ratios = dict[str, float]
 
