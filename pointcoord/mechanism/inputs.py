@@ -11,6 +11,7 @@ from pointcoord.linkage import drives
 from pointcoord.linkage.constraints import turn
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
+from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF, Ground
 from pointcoord.linkage.constraints.in_body import Normal
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
@@ -19,7 +20,7 @@ from pointcoord.linkage.drives import Drive
 from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.wording import shown
 
-CHASSIS = "chassis"
+CHASSIS: Literal["chassis"] = "chassis"
 
 
 def _once(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -67,6 +68,10 @@ class Compiled(Protocol):
     @property
     def wheel_radius(self) -> float | None:
         """Of the scene, mm."""
+
+    @property
+    def ground(self) -> tuple[Ground, list[Drive]]:
+        """The ground as the driven chassis sees it, and what drives it."""
 
     def shared(self, body: str, other: str) -> tuple[str, ...]:
         """Points of two bodies, as the first lists them."""
@@ -216,9 +221,10 @@ class Height(Input):
 
 
 class Contact(Input):
-    """The height of a wheel's contact point."""
+    """The height of a wheel's contact point, in the chassis' frame or over the ground."""
 
     contact: Pair
+    over: Literal["chassis", "ground"] = CHASSIS
 
     @property
     def directions(self) -> tuple[str, ...]:
@@ -227,8 +233,9 @@ class Contact(Input):
     def made(self, name: str, of: Compiled) -> Made:
         value, (inner, centre) = f"value of {name}", self.contact
         assert of.wheel_radius is not None  # the scene is refused without
-        rows = ContactHeight(inner, centre, "up", value, of.wheel_radius)
-        return [rows], [drives.Travel(value, name, centre, centre, "up", False)]
+        ground, moves = of.ground if self.over == "ground" else (CHASSIS_ITSELF, [])
+        rows = ContactHeight(inner, centre, value, of.wheel_radius, ground)
+        return [*ground.constraints, rows], [drives.Travel(value, name, centre, centre, "up", False), *moves]
 
 
 class Distance(Input):
