@@ -133,7 +133,8 @@ class CarPart(Part):
     """What the whole car is like, for the effects that ask for it.
 
     `axle` says which one the wheel is of. Lengths are in mm, the height of the centre of gravity above the
-    drawn ground. Of all that brakes or drives the car, the shares are those of this axle.
+    drawn ground. Of all that brakes or drives the car, the shares are those of this axle. The spring stands
+    between the damper's ends; its rate is in N/mm.
     """
 
     axle: Literal["front", "rear"] | None = None
@@ -141,6 +142,8 @@ class CarPart(Part):
     centre_of_gravity_height: Positive | None = None
     brake_share: Share | None = None
     drive_share: Share | None = None
+    spring_rate: Positive | None = None
+    spring_free_length: Positive | None = None
 
     @property
     def numbers(self) -> dict[str, float]:
