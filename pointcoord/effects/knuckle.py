@@ -1,8 +1,8 @@
 """How what is fixed in the knuckle moves along a way: places, and directions.
 
 Of three points p_0, p_1, p_2 of the knuckle with e1 = p_1 - p_0 and e2 = p_2 - p_0, a vector that is fixed in
-it is a e1 + b e2 + c n, n = e1 x e2, with constant a, b, c; so its derivative is a e1' + b e2' + c n'. That is
-w x it, with the angular velocity w, so that
+it is a e1 + b e2 + c n, n = e1 x e2, with constant a, b, c; so its derivative is a e1' + b e2' + c n'. Of
+the angular velocity w it is w x the vector, so that
 
     2 |n|^2 w = (e2 x n) x e1' + (n x e1) x e2' + n x n'.
 """

@@ -26,7 +26,7 @@ from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS, car_directions
 from pointcoord.linkage.drives import Drive, Travel, TurnedBy
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism.inputs import CHASSIS, Ends, Moves, Turn, Turns
+from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Ends, Moves, Turn, Turns
 from pointcoord.mechanism.structure import Slide, Structure
 
 Array = NDArray[np.float64]
@@ -178,7 +178,7 @@ def compiled(
     structure: Structure,
     driven: Collection[str],
     choices: Choices,
-    wheel_radius: float | None = None,
+    lengths: Mapping[str, float] | None = None,
     puts_in_place: bool = False,
 ) -> Topology:
     """The topology of a structure whose inputs are driven.
@@ -186,10 +186,10 @@ def compiled(
     Args:
         driven: names of inputs; those that move the chassis may be among them.
         choices: what of the bodies stands for them.
-        wheel_radius: mm; needed where the height of a contact point is driven.
+        lengths: that driven inputs need beside the points, by name, mm.
         puts_in_place: whether closing a drawing moves points on purpose.
     """
-    return _Compiler(structure, tuple(driven), choices, wheel_radius).topology(puts_in_place)
+    return _Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
 
 
 @dataclass(frozen=True)
@@ -197,7 +197,7 @@ class _Compiler:
     structure: Structure
     driven: tuple[str, ...]
     choices: Choices
-    wheel_radius: float | None
+    lengths: Mapping[str, float]
 
     def topology(self, puts_in_place: bool) -> Topology:
         """All of it."""
@@ -309,6 +309,21 @@ class _Compiler:
                 moves.append((value, one.along))
                 made.append(Travel(value, name, chassis[0], chassis[0], one.along, False))
         return Ground(tuple(turns), (Displaced(tuple(moves)),) if moves else ()), made
+
+    def length(self, name: str, input: str) -> float:
+        """A length that an input needs, mm.
+
+        Raises:
+            MechanismError: the scene does not say it.
+        """
+        if name not in self.lengths:
+            what, usual = LENGTHS[name]
+            raise MechanismError(
+                f"input {input!r} is {what}, and the mechanism has no {name}; allowed: {name} in mm, such as "
+                f"{name} = {usual}",
+                (input,),
+            )
+        return self.lengths[name]
 
     def shared(self, body: str, other: str) -> tuple[str, ...]:
         return self.structure.shared(body, other)

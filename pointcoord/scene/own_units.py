@@ -21,7 +21,7 @@ AXES = {
 }
 """Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
 
-OF_THE_WHEEL = ("wheel_radius",)
+OF_THE_WHEEL = ("wheel_radius", "rack_per_turn")
 # By what power of the unit of length each goes.
 OF_THE_CAR = {"wheelbase": 1, "centre_of_gravity_height": 1, "spring_free_length": 1, "spring_rate": -1}
 
