@@ -70,7 +70,8 @@ def _checked(name: str, value: Any) -> float:
     if name.endswith("share"):
         fine, allowed = number and 0.0 <= value <= 1.0, "a number from 0 to 1 is needed"
     else:
-        fine, allowed = number and 0.0 < value <= LONGEST, "a number above 0 is needed, in mm or N/mm"
+        what, unit = ("rate", "N/mm") if name == "spring_rate" else ("length", "mm")
+        fine, allowed = number and 0.0 < value <= LONGEST, f"a {what} above 0 is needed, in {unit}"
     if not fine:
         raise DescriptionError(f"{name} is {value!r}; {allowed}", name, value)
     return float(value)

@@ -50,8 +50,8 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
             sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
                 and a dot.
-            wheel_radius: of the wheel, mm, or None where nothing needs it; likewise rack_per_turn, the mm that
-                the rack travels for a turn of the steering wheel.
+            wheel_radius: of the wheel, mm, or None where nothing needs it; likewise rack_per_turn, the mm
+                that the rack travels for a turn of the steering wheel.
             car: numbers of the car, as far as given (see `car_of`).
             loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
     Raises:
