@@ -4,6 +4,7 @@ r"""Kinds of input: the rows that say them, the numbers w that these take, and w
     angle from the drawing    g1 w1 - g2 w2 = 0,                w1 = sin(theta), w2 = cos(theta) / |n|,
                               g1 = R e . R' e,  g2 = R e . R' (n x e),  n along the hinge, e across it
     travel of a slide         s = w                             w = travel / length of the slide's line
+    turn of a steering wheel  s = w                             w = travel / length, travel = rack_per_turn angle / (2 pi)
     height of a point         P . direction = w
     contact height            (centre - s up) . direction = w,  s^2 + (r m / l)^2 = r^2,
                               m = (centre - inner) . up, l their distance, r the wheel's radius
@@ -24,7 +25,7 @@ from flint import arb
 from validate.reference.compiler import CHASSIS, Compiler, Exact, Table
 from validate.reference.directions import directed
 from validate.reference.errors import BadInputError
-from validate.reference.exact import as_ball
+from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
@@ -116,23 +117,48 @@ def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) 
 
 
 def _travel(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    return _slid(compiler, name, spec["travel"], lambda: arb(1))
+
+
+def _steers(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    given = compiler.plain.get("rack_per_turn")
+    if given is None:
+        raise BadInputError("rack_per_turn", None, f"a number of mm, which inputs.{name} needs")
+    return _slid(compiler, name, spec["steers"], lambda: travel_per_radian(compiler.plain))
+
+
+def travel_per_radian(plain: Mapping[str, Any]) -> arb:
+    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm.
+
+    Raises:
+        BadInputError: rack_per_turn is no number other than 0.
+    """
+    per_turn = as_fraction(plain["rack_per_turn"], "rack_per_turn")
+    if per_turn == 0:
+        raise BadInputError("rack_per_turn", plain["rack_per_turn"], "a number of mm other than 0")
+    return as_ball(per_turn) / (2 * arb.pi())
+
+
+def _slid(compiler: Compiler, name: str, slides: Sequence[str], per_input: Callable[[], arb]) -> Drive:
+    """Slides that go `per_input` mm per mm or rad of the input, a ball at the present precision."""
     drawn, lengths, unit = [], [], compiler.unit
-    for slide in spec["travel"]:
+    for slide in slides:
         shares, along, squared = compiler.lines[slide]
         compiler.row(name, shares[0] - compiler.number())
         told = compiler.plain["slides"][slide]
         off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
+    per_input()
 
     def numbers(value: Jet) -> list[Jet]:
-        local = value * as_ball(1 / unit)
+        local = value * (per_input() * as_ball(1 / unit))
         return [local * (1 / as_ball(squared).sqrt()) for squared in lengths]
 
     return Drive(
         numbers,
         lambda: [as_ball(one) for one in drawn],
-        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt(),
+        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(),
         required=False,
     )
 
@@ -193,6 +219,7 @@ def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
 KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {
     "angle": _angle,
     "travel": _travel,
+    "steers": _steers,
     "height": _height,
     "contact": _contact,
     "distance": _distance,

@@ -39,6 +39,23 @@ def _caster(car: Car) -> Scalar:
     return angle(-dot(car.steering.along, car.forward), dot(car.steering.along, car.up))
 
 
+def _arcsine(sine: Scalar, unit_squared: Scalar) -> Scalar:
+    """asin(s / l) by atan2(s, sqrt(l^2 - s^2))."""
+    return angle(sine, root(unit_squared - sine * sine))
+
+
+def _camber_by_arcsine(car: Car) -> Scalar:
+    """-asin(n . up), n = a / |a| (Adams/Car)."""
+    a = car.wheel.along
+    return _arcsine(-dot(a, car.up), dot(a, a))
+
+
+def _toe_by_arcsine(car: Car) -> Scalar:
+    """asin(n . forward), n = a / |a| (OptimumK)."""
+    a = car.wheel.along
+    return _arcsine(dot(a, car.forward), dot(a, a))
+
+
 def steer_angle(car: Car) -> Scalar:
     """Toe of a right wheel, minus toe of a left one: positive to the left."""
     ahead = dot(car.wheel.along, car.forward)
@@ -176,6 +193,8 @@ ANGLES = (
 
 OF_POSITIONS = (
     *ANGLES,
+    Effect("camber_by_arcsine", "rad", (WHEEL,), _camber_by_arcsine),
+    Effect("toe_by_arcsine", "rad", (WHEEL,), _toe_by_arcsine),
     Effect("steer_angle", "rad", (WHEEL,), steer_angle),
     Effect("travel", "mm", (WHEEL,), _travel),
     Effect("contact_travel", "mm", (WHEEL, RADIUS), _contact_travel),
