@@ -90,7 +90,8 @@ def _report(name: str, found: Imported) -> list[str]:
     part = found.scene.mechanism
     width = max(len(point.name) for point in found.points)
     wide = max(len(point.written) for point in found.points)
-    lines = [f"{name}: {found.format.words}, read as a {part.type or 'mechanism'} of the {part.side} wheel"]
+    kind = f"a {part.type} of the {part.side} wheel" if part.type else "a mechanism of its own"
+    lines = [f"{name}: {found.format.words}, read as {kind}"]
     lines += [f"  {fact}" for fact in found.facts]
     lines += [
         f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"

@@ -1,4 +1,4 @@
-"""A MuJoCo model (MJCF): what of it makes a mechanism. Bodies, joints, sites, and equalities that close loops.
+"""A MuJoCo model (MJCF): what of it makes a mechanism, its bodies, joints, sites, connects and welds.
 
 Everything is placed in the scene's axes as it is in the home pose. What changes no motion (geoms, masses,
 forces, contacts, sensors, pictures, ranges of joints) is passed over; what may change it and is not known
@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from pointcoord.mechanism.inputs import CHASSIS
 from validate.hardpoint_files.contents import short
 from validate.tables.errors import FileError
 
@@ -32,7 +31,7 @@ SECTIONS = {
 }
 IN_BODY = {"body", "joint", "freejoint", "site", "geom", "inertial", "camera", "light"}
 KINDS = ("hinge", "slide", "ball", "free")
-TURNS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
+TURNS, OTHER_TURNS = ("quat", "axisangle", "euler"), ("xyaxes", "zaxis")
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ class MjcfBody:
 
 @dataclass(frozen=True)
 class Connect:
-    """Two bodies that meet at one place: where it is of each, (3,), m, and the sites that say so, if any do."""
+    """Two bodies that meet at one place: where it is of each, (3,), m, and the sites that say so, if any."""
 
     name: str
     line: int
@@ -74,7 +73,7 @@ class Mjcf:
     """A model, read.
 
     Attributes:
-        bodies: by name, parents first, without MJCF's world, which is the chassis.
+        bodies: by name, parents first, without the world.
         sites: by name, the body of each and where it is, (3,), m.
         connects, welds: what closes loops; pairs of bodies that are one.
         actuated: names of actuators by the joints that they drive. texts: of `custom`, by name.
@@ -158,8 +157,8 @@ class _Reader:
         return FileError(self.source, self.lines[element], f"{called} {problem}", allowed)
 
     def model(self, axes: Array) -> Mjcf:
-        self.frames[CHASSIS] = _Frame(np.zeros(3), axes)
-        waiting = [(world, CHASSIS, "main") for world in self.root.findall("worldbody")]
+        self.frames[WORLD] = _Frame(np.zeros(3), axes)
+        waiting = [(world, WORLD, "main") for world in self.root.findall("worldbody")]
         # A list and no recursion: bodies may be nested deeper than calls may be.
         for element, body, of_class in waiting:
             for child in element:
@@ -222,37 +221,22 @@ class _Reader:
 
     def _turn(self, element: Element, given: Attributes) -> Array:
         """The axes of a frame as columns."""
-        keys = [key for key in TURNS if key in given]
-        if len(keys) > 1:
-            raise self.refuse(element, f"has {' and '.join(keys)}", "one of them")
+        keys = [key for key in (*TURNS, *OTHER_TURNS) if key in given]
+        if len(keys) > 1 or not {*keys} <= {*TURNS}:
+            raise self.refuse(element, f"has {' and '.join(keys)}", f"one of {', '.join(TURNS)}")
         key = keys[0] if keys else "quat"
         unit = 1.0 if self.compiler.get("angle", "degree") == "radian" else np.pi / 180.0
         if key == "axisangle":
-            *axis, angle = self._numbers(element, given, key, (0.0, 0.0, 1.0, 0.0))
-            return _about(np.array(axis), angle * unit)
+            x, y, z, angle = self._numbers(element, given, key, (0.0, 0.0, 1.0, 0.0))
+            axis = np.array([x, y, z]) / (np.linalg.norm([x, y, z]) or 1.0)
+            return np.asarray(Rotation.from_rotvec(angle * unit * axis).as_matrix())
         if key == "euler":
             # Small letters are axes that turn along, for which scipy has capitals.
             order = self.compiler.get("eulerseq", "xyz").swapcase()
             if sorted(order.lower()) != ["x", "y", "z"] or not (order.isupper() or order.islower()):
-                raise self.refuse(
-                    element, f"turns by eulerseq {short(order.swapcase())}", "such as xyz or XYZ"
-                )
+                raise self.refuse(element, f"turns by eulerseq {order.swapcase()}", "such as xyz or XYZ")
             angles = self._numbers(element, given, key, (0.0, 0.0, 0.0)) * unit
             return np.asarray(Rotation.from_euler(order, angles).as_matrix())
-        if key == "zaxis":
-            axis = self._direction(element, given, key, (0.0, 0.0, 1.0))
-            across = np.array([-axis[1], axis[0], 0.0])
-            return _about(
-                across if np.any(across) else np.eye(3)[0],
-                float(np.arctan2(np.hypot(axis[0], axis[1]), axis[2])),
-            )
-        if key == "xyaxes":
-            x, y = self._numbers(element, given, key, (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)).reshape(2, 3)
-            z = np.cross(x, y)
-            if not np.any(z):
-                raise self.refuse(element, f"has xyaxes {short(given[key])}", "two directions")
-            found = np.stack([x, np.cross(z, x), z], axis=1)
-            return np.asarray(found / np.linalg.norm(found, axis=0))
         w, x, y, z = self._direction(element, given, key, (1.0, 0.0, 0.0, 0.0))
         return np.asarray(Rotation.from_quat([x, y, z, w]).as_matrix())
 
@@ -262,7 +246,7 @@ class _Reader:
         if element.get("mocap") == "true":
             raise self.refuse(element, "is moved from outside (mocap)", "bodies on joints")
         if name in self.frames:
-            name = f"{name}_{len(self.bodies)}"
+            raise self.refuse(element, "has the name of another one", "a name of its own")
         base = self.frames[parent]
         at = base.place(self._numbers(element, element.attrib, "pos", (0.0, 0.0, 0.0)))
         self.frames[name] = frame = _Frame(at, base.turn @ self._turn(element, element.attrib))
@@ -315,11 +299,12 @@ class _Reader:
         return self.sites[name]
 
     def _weld(self, element: Element, given: Attributes) -> tuple[str, str]:
-        pose = self._numbers(element, given, "relpose", (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0))
-        other = "relpose" in given and np.any(pose[3:]) and np.any(pose != [0, 0, 0, 1, 0, 0, 0])
-        for key, wrong in (("site1", True), ("relpose", other), ("torquescale", True)):
-            if key in given and wrong:
-                raise self.refuse(element, f"has {key}", "body1 and body2, welded as in the home pose")
+        # Zeros for a quaternion stand for the home pose.
+        if np.any(self._numbers(element, given, "relpose", (0.0,) * 7)[3:]):
+            raise self.refuse(element, "has a relpose", "none: welded as in the home pose")
+        for key in ("site1", "torquescale"):
+            if key in given:
+                raise self.refuse(element, f"has {key}", "body1 and body2")
         return self._pair(element, given)
 
     def _pair(self, element: Element, given: Attributes) -> tuple[str, str]:
@@ -329,13 +314,4 @@ class _Reader:
             if body != WORLD and body not in self.bodies:
                 known = ", ".join((WORLD, *self.bodies))
                 raise self.refuse(element, f"names no body {short(body)}", f"body1 and body2 of {known}")
-        return _ours(one), _ours(other)
-
-
-def _ours(body: str) -> str:
-    return CHASSIS if body == WORLD else body
-
-
-def _about(axis: Array, angle: float) -> Array:
-    size = float(np.linalg.norm(axis))
-    return np.asarray(Rotation.from_rotvec(axis * (angle / size) if size else np.zeros(3)).as_matrix())
+        return one, other

@@ -15,7 +15,8 @@ sites; where a joint has none, one is made.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +26,7 @@ from numpy.typing import NDArray
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import PAIR_ROLES, ROLES
 from validate.hardpoint_files.axes import DIRECTIONS, vector_along
-from validate.hardpoint_files.mjcf import Connect, Mjcf, MjcfJoint
+from validate.hardpoint_files.mjcf import WORLD, Connect, Mjcf, MjcfJoint
 from validate.spanning_tree.cut import across
 from validate.tables.errors import FileError
 
@@ -91,7 +92,7 @@ class _Builder:
 
     def _merged(self) -> dict[str, str]:
         """By name of a body in the model, that of ours: without a joint, or welded, several are one."""
-        found = {CHASSIS: CHASSIS}
+        found = {WORLD: CHASSIS}
         for body in self.model.bodies.values():
             found[body.name] = self._named(body.name) if body.joints else found[body.parent]
         for one, other in self.model.welds:
@@ -113,42 +114,41 @@ class _Builder:
         for name, (body, at) in model.sites.items():
             if name not in closing:
                 self._made(name, at, {self.bodies[body]}, f"site {name}")
-        chains = self._chains()
-        for kinds in (("hinge", "ball"), ("slide",)):
-            # Last what slides: whether a body is more than a point shows by then.
-            if kinds == ("slide",):
-                for connect in model.connects:
-                    self._connect(connect)
-            for body, parent, joint in chains:
-                if joint.kind in kinds and body != parent:
-                    getattr(self, f"_{joint.kind}")(joint, body, parent)
+        chains = [one for one in self._chains() if one[0] != one[1]]
+        for body, parent, joint in chains:
+            if joint.kind == "hinge":
+                self._hinge(joint, body, parent)
+            elif joint.kind == "ball":
+                self._shared(joint.name, joint.at, body, parent, f"joint {joint.name}")
+        for connect in model.connects:
+            self._connect(connect)
+        # Last what slides: whether a body is more than a point shows by then.
+        for body, parent, joint in chains:
+            if joint.kind == "slide":
+                self._slide(joint, body, parent)
         return self._tables()
 
     def _chains(self) -> list[tuple[str, str, MjcfJoint]]:
         """Every joint with the body that it carries and the one that it is on."""
-        model, found, handed = self.model, [], dict[str, tuple[str, tuple[MjcfJoint, ...]]]()
-        children = [body.parent for body in model.bodies.values()]
+        model, found, handed = self.model, [], dict[str, tuple[str, tuple[tuple[str, MjcfJoint], ...]]]()
+        children = Counter(body.parent for body in model.bodies.values())
         used = {body for body, _ in model.sites.values()}
         used |= {body for connect in model.connects for body in connect.bodies}
         used |= {body for pair in model.welds for body in pair}
         for body in model.bodies.values():
             parent, before = handed.get(body.parent, (body.parent, ()))
-            joints = (*before, *body.joints)
-            if body.name not in used and children.count(body.name) == 1:
-                handed[body.name] = parent, joints
-                continue
-            if body.name not in used and body.name not in children:
+            between = [self._named(f"{body.name} {joint.name}") for joint in body.joints[:-1]]
+            chain = (*before, *zip((*between, self.bodies[body.name]), body.joints, strict=False))
+            if body.name not in used and children[body.name] == 1:
+                handed[body.name] = parent, chain
+            elif body.name not in used and body.name not in children:
                 # Such as a wheel that spins.
                 self.facts.append(f"body {body.name} holds no site, body or loop, and is left out")
-                continue
-            own, base = self.bodies[body.name], self.bodies[parent]
-            if not joints or _is_free(joints):
-                continue
-            for joint in joints[:-1]:
-                between = self._named(f"{body.name} {joint.name}")
-                found.append((between, base, joint))
-                base = between
-            found.append((own, base, joints[-1]))
+            elif not _is_free([joint for _, joint in chain]):
+                base = self.bodies[parent]
+                for own, joint in chain:
+                    found.append((own, base, joint))
+                    base = own
         return found
 
     # Points.
@@ -200,13 +200,10 @@ class _Builder:
         if body != CHASSIS:
             self.inputs[joint.name] = {"angle": body, **on, "from": "drawing"}
 
-    def _ball(self, joint: MjcfJoint, body: str, parent: str) -> None:
-        self._shared(joint.name, joint.at, body, parent, f"joint {joint.name}")
-
     def _connect(self, connect: Connect) -> None:
         one, other = (self.bodies[body] for body in connect.bodies)
         first, second = connect.places
-        apart = float(np.linalg.norm(first - second))
+        apart = float(np.linalg.norm(second - first))
         if apart > NEAR * self.size:
             told = f"connect {connect.name} joins places that are {1e3 * apart:.4g} mm apart in the home pose"
             raise FileError(self.source, connect.line, told, "places that meet as drawn")
@@ -226,12 +223,12 @@ class _Builder:
         through = self._made(f"{joint.name}_zero", start if words else start - step, {parent}, source)
         line = {"body": parent, "through": through, "along": words[0] if words else ends[-1]}
         name = self._named(f"{joint.name}_slide")
+        self.on_axes |= {body, parent}
         if is_point:
             self.points[ends[0]].bodies -= {body}
             self.slides[name] = {"point": ends[0], **line}
         else:
             self.slides[name] = {"points": ends, **line, "turns": False}
-            self.on_axes |= {body}
         self.inputs[joint.name] = {"travel": name}
 
     # Tables.
@@ -260,7 +257,8 @@ class _Builder:
         inputs = {_word(name): one for name, one in {**driven, **wheel, **others}.items()}
         tables = {"bodies": bodies, "rods": rods, "slides": self.slides, "inputs": inputs, "roles": roles}
         points = {name: (point.at, point.source) for name, point in self.points.items()}
-        return MjcfMechanism(points, tables, self._side(roles), tuple(self.facts))
+        side = "right" if self.model.texts.get("side") == "right" else "left"
+        return MjcfMechanism(points, tables, side, tuple(self.facts))
 
     def _beside(self, body: str, own: list[str]) -> list[str]:
         """A point more, of a body whose points lie in one line."""
@@ -272,14 +270,6 @@ class _Builder:
             return []
         at = start + ARM * self.size * across(axis)[0]
         return [self._made(f"{body}_beside", at, {body}, f"body {body}, whose points lie in one line")]
-
-    def _side(self, roles: Mapping[str, Any]) -> str:
-        """Of the wheel: as a text of the model says, or as it lies outboard of the chassis."""
-        said = self.model.texts.get("side", "")
-        if said in ("left", "right") or not ("wheel_axis" in roles and "inboard" in roles):
-            return "right" if said == "right" else "left"
-        wheel, inner = (self.points[name].at[1] for name in (roles["wheel_axis"][1], roles["inboard"]))
-        return "right" if wheel > inner else "left"
 
     def _roles(self, bodies: Mapping[str, Any]) -> dict[str, Any]:
         """Roles that texts of the model name, of bodies and points that are there."""
@@ -297,7 +287,7 @@ def _word(name: str) -> str:
     return re.sub(r"\W+", "_", name).strip("_") or "unnamed"
 
 
-def _is_free(joints: tuple[MjcfJoint, ...]) -> bool:
+def _is_free(joints: Sequence[MjcfJoint]) -> bool:
     """Whether joints leave a body all of its six freedoms."""
     kinds = sorted(joint.kind for joint in joints)
     if kinds != ["ball", "slide", "slide", "slide"]:

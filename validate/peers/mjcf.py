@@ -107,7 +107,7 @@ def _in_metres(linkage: Linkage) -> Linkage:
 
 
 def _drawn(spec: mujoco.MjSpec, linkage: Linkage) -> None:
-    """Balls at points, and links from each body's origin to its points and ends of loops; they touch nothing."""
+    """Balls at points, and links from each body's origin to its points and loops; they touch nothing."""
     size = float(np.ptp([place.at for place in linkage.points.values()], axis=0).max())
     looks = {"contype": 0, "conaffinity": 0, "mass": 0.0}
     ends = [end for loop in linkage.loops for end in (loop.first, loop.second)]
