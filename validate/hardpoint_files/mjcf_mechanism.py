@@ -119,7 +119,7 @@ class _Builder:
             if joint.kind == "hinge":
                 self._hinge(joint, body, parent)
             elif joint.kind == "ball":
-                self._shared(joint.name, joint.at, body, parent, f"joint {joint.name}")
+                self._shared(joint.name, joint.at, {body, parent}, f"joint {joint.name}")
         for connect in model.connects:
             self._connect(connect)
         # Last what slides: whether a body is more than a point shows by then.
@@ -158,14 +158,14 @@ class _Builder:
         self.points[name] = _Point(at, bodies, source)
         return name
 
-    def _shared(self, wish: str, at: Array, one: str, other: str, source: str) -> str:
-        """A point of two bodies at a place: one that either of them has there, or a new one."""
+    def _shared(self, wish: str, at: Array, bodies: set[str], source: str) -> str:
+        """A point of bodies at a place: one that any of them has there, or a new one."""
         for name, point in self.points.items():
-            theirs = not point.bodies.isdisjoint((one, other))
+            theirs = not point.bodies.isdisjoint(bodies)
             if theirs and np.linalg.norm(point.at - at) <= NEAR * self.size:
-                point.bodies |= {one, other}
+                point.bodies |= bodies
                 return name
-        return self._made(wish, at, {one, other}, source)
+        return self._made(wish, at, bodies, source)
 
     def _on(self, joint: MjcfJoint, names: Iterable[str]) -> list[str]:
         """The first and the last point of these on the axis of a joint; one if there are no two."""
@@ -208,7 +208,7 @@ class _Builder:
             told = f"connect {connect.name} joins places that are {1e3 * apart:.4g} mm apart in the home pose"
             raise FileError(self.source, connect.line, told, "places that meet as drawn")
         if one != other:
-            self._shared(connect.name, first, one, other, f"connect on line {connect.line}")
+            self._shared(connect.name, first, {one, other}, f"connect on line {connect.line}")
 
     def _slide(self, joint: MjcfJoint, body: str, parent: str) -> None:
         source, own = f"joint {joint.name}", self._of(body)
@@ -220,7 +220,7 @@ class _Builder:
             ends.append(self._made(f"{joint.name}_end", start + step, {body}, source))
         words = [word for word in DIRECTIONS if np.array_equal(vector_along(word), joint.axis)]
         # Along a direction the travel is 0 as drawn. A line through two points needs these apart.
-        through = self._made(f"{joint.name}_zero", start if words else start - step, {parent}, source)
+        through = self._shared(f"{joint.name}_zero", start if words else start - step, {parent}, source)
         line = {"body": parent, "through": through, "along": words[0] if words else ends[-1]}
         name = self._named(f"{joint.name}_slide")
         self.on_axes |= {body, parent}
