@@ -33,7 +33,7 @@ DIRECTIONS = {
 def vector_along(word: str) -> NDArray[np.float64]:
     """A direction by its name in the scene's axes, (3,)."""
     at, sign = DIRECTIONS[word]
-    return sign * np.eye(3)[at] + 0.0
+    return np.asarray(sign * np.eye(3)[at])
 
 
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)

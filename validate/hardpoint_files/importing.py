@@ -26,7 +26,7 @@ from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
 from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, plain, short
 from validate.hardpoint_files.derived import derived
-from validate.hardpoint_files.format import Format, format_of
+from validate.hardpoint_files.format import MJCF, Format, format_of
 from validate.hardpoint_files.mjcf import read_mjcf
 from validate.hardpoint_files.mjcf_mechanism import mechanism_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
@@ -41,8 +41,6 @@ from validate.tables.units import LENGTHS
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
 SIDES = ("left", "right")
 PARTS = ("front", "rear")
-# The form of files that have a mechanism of their own.
-MJCF = "mjcf"
 # Of a metre: a tenth of what rounding leaves of a car's coordinates, so that 0.57 m is 570 mm.
 DIGITS = 15
 # Points or lines that are named one by one.

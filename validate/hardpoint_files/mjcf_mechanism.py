@@ -255,7 +255,8 @@ class _Builder:
             if joint not in self.inputs
         ]
         inputs = {_word(name): one for name, one in {**driven, **wheel, **others}.items()}
-        tables = {"bodies": bodies, "rods": rods, "slides": self.slides, "inputs": inputs, "roles": roles}
+        tables: dict[str, Mapping[str, Any]] = {"bodies": bodies, "rods": rods, "slides": self.slides}
+        tables |= {"inputs": inputs, "roles": roles}
         points = {name: (point.at, point.source) for name, point in self.points.items()}
         side = "right" if self.model.texts.get("side") == "right" else "left"
         return MjcfMechanism(points, tables, side, tuple(self.facts))

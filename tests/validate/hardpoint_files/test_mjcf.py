@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import pinocchio
 import pytest
-from foreign_files import imported
+from foreign_files import FOUR_BAR, imported
 from numpy.typing import NDArray
 from program import ENVIRONMENT, ROOT
 
@@ -81,6 +81,18 @@ def test_a_car_in_other_axes_is_the_same_model() -> None:
     assert first == second
 
 
+def test_a_car_far_from_the_origin_of_its_coordinates_is_exported_where_it_is() -> None:
+    scene = Scene.load("double-wishbone")
+    plain = scene.mechanism.plain(tuple(scene.inputs))
+    plain["points"] = {name: [x + 40000.0, y, z] for name, (x, y, z) in plain["points"].items()}
+    model = mujoco.MjModel.from_xml_string(mjcf_of(plain, "car"))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    places = {name: np.array(place) for name, place in plain["points"].items()}
+    for name, place in places.items():
+        assert np.linalg.norm(1e3 * data.site(name).xpos - place) <= rounding(places), name
+
+
 @pytest.mark.parametrize("name", CARS)
 def test_an_exported_car_comes_back_with_its_camber_over_travel(name: str, tmp_path: Path) -> None:
     back = import_hardpoints(exported(name, tmp_path)).scene
@@ -119,33 +131,11 @@ def test_an_exported_linkage_comes_back_with_its_motion(name: str, tmp_path: Pat
         assert np.abs(places - second.position[point]).max() <= 2.1 * TOLERANCE, point
 
 
-FOUR_BAR = """
-<mujoco>
-  <default>
-    <joint axis="0 0 1"/>
-    <default class="pin"><joint axis="0 1 0"/></default>
-  </default>
-  <worldbody>
-    <body name="crank" childclass="pin" euler="0 -60 0">
-      <joint name="crank"/>
-      <geom size="0.1"/>
-      <body name="coupler" pos="0.1 0 0" euler="0 40 0">
-        <joint name="knee"/>
-        <site name="end" pos="0.3 0 0"/>
-      </body>
-    </body>
-    <body name="rocker" pos="0.35 0 0"><joint class="pin"/></body>
-  </worldbody>
-  <equality><connect body1="coupler" body2="rocker" anchor="0.3 0 0"/></equality>
-  <actuator><position name="motor" joint="crank"/></actuator>
-</mujoco>
-"""
-
-
 # The same with a body more, on the rocker's end: the coupler and it are one.
 WELDED = FOUR_BAR.replace(
     '<joint class="pin"/>',
-    '<joint class="pin"/><body name="tip" pos="-0.018092213764227 0 0.189208583376144"><joint class="pin"/></body>',
+    '<joint class="pin"/>'
+    '<body name="tip" pos="-0.018092213764227 0 0.189208583376144"><joint class="pin"/></body>',
 ).replace('<connect body1="coupler" body2="rocker" anchor="0.3 0 0"/>', '<weld body1="coupler" body2="tip"/>')
 
 
