@@ -44,8 +44,8 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     # the positions that a model found, and the printed rows of the paper have a wheel centre; a sweep and an
     # import ask the topology which point its wheel centre is. The static angles of a wheel whose spin axis
     # another program's file lacks are two options of the import, and `axle` is which of the axles in such a
-    # file. A turn is one of the chassis. A MuJoCo model says its roles by their names, of which one is of a body,
-    # and the input of its wheel is called as ours are.
+    # file. A turn is one of the chassis. A MuJoCo model says its roles by their names, of which one is of a
+    # body, and the input of its wheel is called as ours are.
     allowed = {
         "absolute_coordinates.py": {"position"},
         "modelled.py": {"position"},

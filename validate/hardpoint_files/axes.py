@@ -77,10 +77,10 @@ class Axes:
     @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
-        return bool(np.linalg.det(self.turn) > 0.0)
+        return bool(np.linalg.det(self.matrix) > 0.0)
 
     @property
-    def turn(self) -> NDArray[np.float64]:
+    def matrix(self) -> NDArray[np.float64]:
         """The scene's coordinates from the file's, (3, 3)."""
         return np.stack([vector_along(word) for word in self.directions], axis=1)
 

@@ -173,7 +173,7 @@ def _whole_mechanism(source: str, choices: Choices, found: Format, text: str) ->
     )
     if not axes.right_handed:
         raise FileError(source, 0, f"has left-handed axes {axes.words}", "right-handed ones")
-    made = mechanism_of(read_mjcf(text, source, axes.turn), source)
+    made = mechanism_of(read_mjcf(text, source, axes.matrix), source)
     points = []
     for name, (at, words) in made.points.items():
         x, y, z = (Decimal(repr(round(float(number), DIGITS))) * LENGTHS[found.unit] for number in at)

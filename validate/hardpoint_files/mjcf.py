@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from validate.hardpoint_files.contents import short
+from validate.hardpoint_files.contents import FARTHEST, short
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
@@ -207,9 +207,9 @@ class _Reader:
             found = np.array([float(word) for word in words])
         except ValueError:
             found = np.array([np.nan])
-        if len(found) != len(default) or not np.isfinite(found).all():
+        if len(found) != len(default) or not (np.abs(found) <= float(FARTHEST)).all():
             told = f"has {key} {short(given.get(key, ''))}"
-            raise self.refuse(element, told, f"{len(default)} finite numbers")
+            raise self.refuse(element, told, f"{len(default)} numbers up to {FARTHEST:g}")
         return found
 
     def _direction(self, element: Element, given: Attributes, key: str, default: Sequence[float]) -> Array:
@@ -217,7 +217,7 @@ class _Reader:
         found = self._numbers(element, given, key, default)
         if not np.any(found):
             raise self.refuse(element, f"has {key} {short(given[key])}", "a direction")
-        return np.asarray(found / np.linalg.norm(found))
+        return _unit(found)
 
     def _turn(self, element: Element, given: Attributes) -> Array:
         """The axes of a frame as columns."""
@@ -228,8 +228,7 @@ class _Reader:
         unit = 1.0 if self.compiler.get("angle", "degree") == "radian" else np.pi / 180.0
         if key == "axisangle":
             x, y, z, angle = self._numbers(element, given, key, (0.0, 0.0, 1.0, 0.0))
-            axis = np.array([x, y, z]) / (np.linalg.norm([x, y, z]) or 1.0)
-            return np.asarray(Rotation.from_rotvec(angle * unit * axis).as_matrix())
+            return np.asarray(Rotation.from_rotvec(angle * unit * _unit(np.array([x, y, z]))).as_matrix())
         if key == "euler":
             # Small letters are axes that turn along, for which scipy has capitals.
             order = self.compiler.get("eulerseq", "xyz").swapcase()
@@ -315,3 +314,10 @@ class _Reader:
                 known = ", ".join((WORLD, *self.bodies))
                 raise self.refuse(element, f"names no body {short(body)}", f"body1 and body2 of {known}")
         return one, other
+
+
+def _unit(vector: Array) -> Array:
+    """A vector of length 1; of one that is zero, zero. The largest component first: squares can vanish."""
+    largest = float(np.abs(vector).max())
+    scaled = vector / (largest or 1.0)
+    return np.asarray(scaled / (np.linalg.norm(scaled) or 1.0))

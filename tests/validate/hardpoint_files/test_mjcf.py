@@ -252,7 +252,7 @@ def broken(old: str, new: str) -> str:
         (broken('"crank" childclass', '"crank" mocap="true" childclass'), 8, "<body> 'crank' is moved from"),
         (broken('childclass="pin"', 'childclass="nut"'), 9, "<joint> 'crank' is of class 'nut'"),
         (broken('euler="0 -60 0"', 'xyaxes="1 0 0 0 1 0"'), 8, "<body> 'crank' has xyaxes"),
-        (broken('euler="0 -60 0"', 'euler="0 -60 x"'), 8, "euler '0 -60 x'; allowed: 3 finite numbers"),
+        (broken('euler="0 -60 0"', 'euler="0 -60 x"'), 8, "euler '0 -60 x'; allowed: 3 numbers up to 1e+9"),
         (
             broken('<joint name="knee"/>', '<joint name="knee" type="screw"/>'),
             12,
