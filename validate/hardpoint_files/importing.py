@@ -163,14 +163,8 @@ def _whole_mechanism(source: str, choices: Choices, found: Format, text: str) ->
     for one in fields(choices):
         if one.name not in ("format", "axes") and getattr(choices, one.name) != one.default:
             raise _takes_no(source, one.name)
-    axes, by = (
-        (found.axes[""], "ours unless --axes says others")
-        if choices.axes is None
-        else (
-            Axes.of(choices.axes),
-            "by --axes",
-        )
-    )
+    axes = OUR_AXES if choices.axes is None else Axes.of(choices.axes)
+    by = "ours unless --axes says others" if choices.axes is None else "by --axes"
     if not axes.right_handed:
         raise FileError(source, 0, f"has left-handed axes {axes.words}", "right-handed ones")
     made = mechanism_of(read_mjcf(text, source, axes.matrix), source)

@@ -24,6 +24,8 @@ Element = ElementTree.Element
 Attributes = Mapping[str, str]
 
 WORLD = "world"
+# A car has some thirty, and time grows with the third power.
+MOST_BODIES = 100
 # Elements without a say in where bodies can go, of the model and of a body.
 SECTIONS = {
     *("compiler", "option", "size", "statistic", "visual", "default", "asset", "worldbody", "contact"),
@@ -125,10 +127,10 @@ class _Frame:
     """Where a body's frame is, (3,), and its axes as columns, (3, 3)."""
 
     at: Array
-    turn: Array
+    axes: Array
 
     def place(self, local: Array) -> Array:
-        return np.asarray(self.at + self.turn @ local)
+        return np.asarray(self.at + self.axes @ local)
 
 
 class _Reader:
@@ -158,7 +160,9 @@ class _Reader:
 
     def model(self, axes: Array) -> Mjcf:
         self.frames[WORLD] = _Frame(np.zeros(3), axes)
-        waiting = [(world, WORLD, "main") for world in self.root.findall("worldbody")]
+        waiting = [
+            (world, WORLD, world.get("childclass", "main")) for world in self.root.findall("worldbody")
+        ]
         # A list and no recursion: bodies may be nested deeper than calls may be.
         for element, body, of_class in waiting:
             for child in element:
@@ -166,6 +170,8 @@ class _Reader:
                     raise self.refuse(child, "is not known in a body", ", ".join(sorted(IN_BODY)))
                 if child.tag == "site":
                     given = self._given(child, of_class)
+                    if "fromto" in given:
+                        raise self.refuse(child, "has fromto", "pos")
                     at = self.frames[body].place(self._numbers(child, given, "pos", (0.0, 0.0, 0.0)))
                     self.sites[child.get("name", f"site_{len(self.sites)}")] = body, at
                 if child.tag == "body":
@@ -244,11 +250,13 @@ class _Reader:
         name = element.get("name") or f"body_{len(self.bodies)}"
         if element.get("mocap") == "true":
             raise self.refuse(element, "is moved from outside (mocap)", "bodies on joints")
+        if len(self.bodies) == MOST_BODIES:
+            raise self.refuse(element, f"is one body more than {MOST_BODIES}", "fewer")
         if name in self.frames:
             raise self.refuse(element, "has the name of another one", "a name of its own")
         base = self.frames[parent]
         at = base.place(self._numbers(element, element.attrib, "pos", (0.0, 0.0, 0.0)))
-        self.frames[name] = frame = _Frame(at, base.turn @ self._turn(element, element.attrib))
+        self.frames[name] = frame = _Frame(at, base.axes @ self._turn(element, element.attrib))
         joints = [child for child in element if child.tag in ("joint", "freejoint")]
         found = tuple(self._joint(one, name, number, frame, of_class) for number, one in enumerate(joints))
         self.bodies[name] = MjcfBody(name, parent, found)
@@ -264,7 +272,7 @@ class _Reader:
         if np.any(self._numbers(element, given, "ref", (0.0,))):
             self.facts.append(f"joint {name} is counted from the home pose, and not from its ref")
         at = frame.place(self._numbers(element, given, "pos", (0.0, 0.0, 0.0)))
-        return MjcfJoint(name, kind, at, frame.turn @ axis)
+        return MjcfJoint(name, kind, at, frame.axes @ axis)
 
     def _equalities(self) -> tuple[tuple[Connect, ...], tuple[tuple[str, str], ...]]:
         connects, welds = [], []

@@ -188,6 +188,7 @@ def test_frames_are_placed_as_mujoco_places_them(compiler: str) -> None:
             <body name="c" quat="2 1 -1 0.5" childclass="two">
               <site name="r"/>
               <site name="s" pos="1 1 1"/>
+              <site name="t" class="main"/>
             </body>
           </body>
         </body>
@@ -203,7 +204,7 @@ def test_frames_are_placed_as_mujoco_places_them(compiler: str) -> None:
     found = read_mjcf(text, "model.xml", turn)
     # Three turns, each of four roundings, of places within 8 m.
     near = 8.0 * 12 * EPSILON
-    assert set(found.sites) == {"p", "q", "r", "s"}
+    assert set(found.sites) == {"p", "q", "r", "s", "t"}
     for name, (_, at) in found.sites.items():
         assert np.abs(at - turn @ data.site(name).xpos).max() <= near, name
     for body in found.bodies.values():
@@ -251,6 +252,7 @@ def broken(old: str, new: str) -> str:
         (broken('<geom size="0.1"/>', '<replicate count="3"/>'), 10, "<replicate>"),
         (broken('"crank" childclass', '"crank" mocap="true" childclass'), 8, "<body> 'crank' is moved from"),
         (broken('childclass="pin"', 'childclass="nut"'), 9, "<joint> 'crank' is of class 'nut'"),
+        (broken('name="end" pos="0.3 0 0"', 'fromto="0 0 0 1 0 0"'), 13, "<site> has fromto"),
         (broken('euler="0 -60 0"', 'xyaxes="1 0 0 0 1 0"'), 8, "<body> 'crank' has xyaxes"),
         (broken('euler="0 -60 0"', 'euler="0 -60 x"'), 8, "euler '0 -60 x'; allowed: 3 numbers up to 1e+9"),
         (
@@ -264,6 +266,7 @@ def broken(old: str, new: str) -> str:
         (broken('body2="rocker"', 'body2="roker"'), 18, "<connect> names no body 'roker'"),
         (broken('body1="coupler" body2="rocker"', 'site1="end" site2="and"'), 18, "names no site 'and'"),
         (broken(' anchor="0.3 0 0"', ""), 18, "<connect> has no anchor"),
+        ("<mujoco><worldbody>" + 9999 * "<body>" + 9999 * "</body>" + "</worldbody></mujoco>", 1, "than 100"),
         (broken("<default>\n    <joint", '<compiler coordinate="global"/><default><joint'), 3, "global"),
     ],
 )
