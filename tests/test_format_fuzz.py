@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_files import CAR, STRUT, chrono, lotus_report, table
+from foreign_files import CAR, FOUR_BAR, STRUT, chrono, lotus_report, table
 from guarded import TooLong, run_within, wrong_words
 from made_rows import kept, study
 from mutation import mutated
@@ -104,6 +104,7 @@ FORMATS = {
     "Chrono suspension": Format(
         "strut.json", lambda: chrono("macpherson", STRUT.mechanism.points, -1).encode("utf-8"), IMPORT, True
     ),
+    "MuJoCo model": Format("model.xml", lambda: FOUR_BAR.encode("utf-8"), IMPORT),
     "names of points": Format("names.toml", lambda: NAMES, IMPORTED, True),
     "designs": Format("designs.csv", lambda: DESIGNS, "sweep double-wishbone --designs {file}"),
 }

@@ -36,6 +36,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = {
     "hard": ("hard", "try the cases that are known to be hard"),
     "cost": ("cost", "measure and show what accuracy costs in time"),
     "import": ("hardpoints", "make a scene from another program's hardpoints"),
+    "export": ("export", "write a car as another program's model"),
     "report": ("report", "validate scenes and write a page of HTML about it"),
     "fit": ("fit", "fit hardpoints to measured curves"),
     "study": ("study", "long studies, by several processes or a cluster"),

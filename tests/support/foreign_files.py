@@ -54,6 +54,30 @@ STATIC = {
 }
 
 
+# Of MuJoCo: crank, coupler and rocker in the plane of x and z.
+FOUR_BAR = """
+<mujoco>
+  <default>
+    <joint axis="0 0 1"/>
+    <default class="pin"><joint axis="0 1 0"/></default>
+  </default>
+  <worldbody>
+    <body name="crank" childclass="pin" euler="0 -60 0">
+      <joint name="crank"/>
+      <geom size="0.1"/>
+      <body name="coupler" pos="0.1 0 0" euler="0 40 0">
+        <joint name="knee"/>
+        <site name="end" pos="0.3 0 0"/>
+      </body>
+    </body>
+    <body name="rocker" pos="0.35 0 0"><joint class="pin"/></body>
+  </worldbody>
+  <equality><connect body1="coupler" body2="rocker" anchor="0.3 0 0"/></equality>
+  <actuator><position name="motor" joint="crank"/></actuator>
+</mujoco>
+"""
+
+
 def imported(folder: Path, text: str, name: str = "car.txt", **choices: Any) -> Imported:
     """What becomes of a file of such a text."""
     path = folder / name

@@ -44,7 +44,8 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     # the positions that a model found, and the printed rows of the paper have a wheel centre; a sweep and an
     # import ask the topology which point its wheel centre is. The static angles of a wheel whose spin axis
     # another program's file lacks are two options of the import, and `axle` is which of the axles in such a
-    # file. A turn is one of the chassis.
+    # file. A turn is one of the chassis. A MuJoCo model says its roles by their names, of which one is of a
+    # body, and the inputs of its slides and of its wheel are written as ours are.
     allowed = {
         "absolute_coordinates.py": {"position"},
         "modelled.py": {"position"},
@@ -53,6 +54,7 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
         "sweep.py": {"wheel_centre"},
         "importing.py": {"wheel_centre", "camber", "toe", "axle"},
         "hardpoints.py": {"camber", "toe"},
+        "mjcf_mechanism.py": {"knuckle", "travel", "wheel_travel"},
         "wheel_angles.py": {"wheel_centre"},
     }
     assert NAMES[kind]

@@ -28,6 +28,7 @@ DESCRIPTION = """\
 Make a scene from a file of hardpoints of another program. Points get our names, axes and unit;
 the scene has x rearward, y right, z up, mm, a comment with the source of each point, and a
 bounce to begin with. Points that are not known are listed, and what the file lacks is asked for.
+A MuJoCo model becomes a mechanism of its own, by its bodies, joints, sites, welds and connects.
 
 formats:
 """ + "\n".join(f"  {one.name.ljust(8)}  {one.words}" for one in formats().values())
@@ -89,7 +90,8 @@ def _report(name: str, found: Imported) -> list[str]:
     part = found.scene.mechanism
     width = max(len(point.name) for point in found.points)
     wide = max(len(point.written) for point in found.points)
-    lines = [f"{name}: {found.format.words}, read as a {part.type} of the {part.side} wheel"]
+    kind = f"a {part.type} of the {part.side} wheel" if part.type else "a mechanism of its own"
+    lines = [f"{name}: {found.format.words}, read as {kind}"]
     lines += [f"  {fact}" for fact in found.facts]
     lines += [
         f"  {point.name.ljust(width)}  {point.written.ljust(wide)}  {shown(point.source)}"

@@ -13,6 +13,7 @@ from decimal import Decimal
 from itertools import permutations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from validate.errors import UsageError
 from validate.hardpoint_files.contents import Place
@@ -27,6 +28,14 @@ DIRECTIONS = {
     "up": (2, 1),
     "down": (2, -1),
 }
+
+
+def vector_along(word: str) -> NDArray[np.float64]:
+    """A direction by its name in the scene's axes, (3,)."""
+    at, sign = DIRECTIONS[word]
+    return np.asarray(sign * np.eye(3)[at])
+
+
 ALLOWED = "the directions of x, y and z, such as forward,left,up, of " + ", ".join(DIRECTIONS)
 
 
@@ -68,8 +77,12 @@ class Axes:
     @property
     def right_handed(self) -> bool:
         """Whether x, y and z are right-handed, as the scene's are."""
-        turned = [np.eye(3)[at] * sign for at, sign in map(DIRECTIONS.__getitem__, self.directions)]
-        return bool(np.linalg.det(turned) > 0.0)
+        return bool(np.linalg.det(self.matrix) > 0.0)
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """The scene's coordinates from the file's, (3, 3)."""
+        return np.stack([vector_along(word) for word in self.directions], axis=1)
 
     def to_scene(self, place: Place, unit: str) -> Place:
         """A place in the file's axes and unit as x rearward, y right, z up, mm."""

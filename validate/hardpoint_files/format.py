@@ -29,6 +29,9 @@ FORMS: Mapping[str, Callable[..., Contents]] = {
 }
 """How a text becomes points, by the form that a format names."""
 
+MJCF = "mjcf"
+"""The form of files that are whole mechanisms and no points."""
+
 # Characters at the beginning of a file in which its format is looked for.
 HEAD = 4000
 
@@ -60,7 +63,7 @@ class Format(BaseModel):
     known_by: str
     axes: dict[str, Annotated[Axes, BeforeValidator(Axes.of)]]
     unit: str
-    suspensions: dict[str, dict[str, tuple[str, ...]]]
+    suspensions: dict[str, dict[str, tuple[str, ...]]] = {}
     called: dict[str, str] = {}
     notes: dict[str, str] = {}
     names: dict[str, tuple[str, ...]] = {}

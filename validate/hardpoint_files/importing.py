@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from decimal import Decimal
 from functools import cached_property
 from math import radians, tan
@@ -26,7 +26,9 @@ from validate.hardpoint_files.axes import ALLOWED, OUR_AXES, Axes, axes_seen
 from validate.hardpoint_files.columns import NO_WHEEL, WHEELS, Wheel, wheel_of
 from validate.hardpoint_files.contents import Axle, Contents, FilePoint, Place, SpinAxis, plain, short
 from validate.hardpoint_files.derived import derived
-from validate.hardpoint_files.format import Format, format_of
+from validate.hardpoint_files.format import MJCF, Format, format_of
+from validate.hardpoint_files.mjcf import read_mjcf
+from validate.hardpoint_files.mjcf_mechanism import mechanism_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
 from validate.hardpoint_files.written_scene import ScenePoint, bounce_of, scene_of, scene_text
@@ -39,6 +41,8 @@ from validate.tables.units import LENGTHS
 SMALLEST, LARGEST = Decimal(150), Decimal(4000)
 SIDES = ("left", "right")
 PARTS = ("front", "rear")
+# Of a metre: a tenth of what rounding leaves of a car's coordinates, so that 0.57 m is 570 mm.
+DIGITS = 15
 # Points or lines that are named one by one.
 NAMED = 12
 
@@ -115,6 +119,8 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
     choices, source = Choices(**said), str(path)
     own = NO_NAMES if choices.names is None else read_names(choices.names)
     found, text = _opened(source, choices)
+    if found.form == MJCF:
+        return _whole_mechanism(source, choices, found, text)
     return _Import(source, choices, found, found.read(text, source, own.table), own).result()
 
 
@@ -126,6 +132,8 @@ def names_of(path: str | Path, format: str | None = None, suspension: str | None
     """
     choices, source = Choices(format, suspension), str(path)
     found, text = _opened(source, choices)
+    if found.form == MJCF:
+        raise _takes_no(source, "names")
     try:
         contents = found.read(text, source, {})
     except FileError:
@@ -143,6 +151,36 @@ def _opened(source: str, choices: Choices) -> tuple[Format, str]:
     if text is None:
         raise FileError(source, 0, "is no text", "a text file; of a workbook, one sheet saved as CSV")
     return format_of(text, choices.format), text
+
+
+def _takes_no(source: str, option: str) -> FileError:
+    allowed = "--axes, where x, y and z point; names of sites are those of points"
+    return FileError(source, 0, f"is a whole mechanism, for which --{option} means nothing", allowed)
+
+
+def _whole_mechanism(source: str, choices: Choices, found: Format, text: str) -> Imported:
+    """A scene of a file that has bodies and joints of its own."""
+    for one in fields(choices):
+        if one.name not in ("format", "axes") and getattr(choices, one.name) != one.default:
+            raise _takes_no(source, one.name)
+    axes = OUR_AXES if choices.axes is None else Axes.of(choices.axes)
+    by = "ours unless --axes says others" if choices.axes is None else "by --axes"
+    if not axes.right_handed:
+        raise FileError(source, 0, f"has left-handed axes {axes.words}", "right-handed ones")
+    made = mechanism_of(read_mjcf(text, source, axes.matrix), source)
+    points = []
+    for name, (at, words) in made.points.items():
+        x, y, z = (Decimal(repr(round(float(number), DIGITS))) * LENGTHS[found.unit] for number in at)
+        points.append(ScenePoint(name, (x, y, z), words))
+    facts = [
+        f"the file's axes are {axes.words}, {by}, in m; here x rearward, y right, z up, in mm",
+        *made.facts,
+    ]
+    drawn = scene_of(source, "mechanism", made.side, points, made.tables)
+    stands = standing(drawn)
+    laws, scene = bounce_of(drawn, stands)
+    written = scene_text(source, found.words, drawn, points, laws, facts, ())
+    return Imported(found, scene, written, tuple(points), (), (), stands, tuple(facts), ())
 
 
 @dataclass(frozen=True)

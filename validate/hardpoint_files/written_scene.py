@@ -12,10 +12,14 @@ from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
 from pointcoord.effects.car_number import DIMENSION
 from pointcoord.effects.registry import EFFECTS
+from pointcoord.errors import SceneError
 from pointcoord.mechanism import mechanism_file
+from pointcoord.mechanism.faults import TableFault
+from pointcoord.mechanism.file import MechanismFile
+from pointcoord.mechanism.structure import CLOSING
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
-from validate.toml_written import value_of
+from validate.toml_written import key_of, value_of
 
 # Part of the way from the drawing to the nearer end of the driven input that the bounce takes: far from where
 # links lie in line, and still some 50 mm of wheel travel of a road car.
@@ -57,25 +61,30 @@ Laws = Mapping[str, tuple[Mapping[str, Any], str]]
 """Of each input its law as in a scene, and the same for people."""
 
 
-def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) -> Scene:
+def scene_of(
+    source: str,
+    kind: str,
+    side: str,
+    points: Iterable[ScenePoint],
+    tables: Mapping[str, Any] | None = None,
+) -> Scene:
     """A scene of points that stands still; its inputs have no meaning yet.
 
+    Args:
+        kind: a shipped mechanism, or what tables are to be called. tables: of a mechanism file.
     Raises:
-        SceneError: the points make no car.
+        SceneError: the points make no car, or the tables no mechanism.
     """
+    places = {point.name: [float(number) for number in point.place] for point in points}
     content: dict[str, Any] = {
         "title": shown(f"{kind} from {Path(source).name}"),
         "tolerance": TOLERANCE,
-        "mechanism": {
-            "type": kind,
-            "side": side,
-            "points": {point.name: [float(number) for number in point.place] for point in points},
-        },
+        "mechanism": {**(tables or {"type": kind}), "side": side, "points": places},
         "inputs": {},
         "time": {"start": 0.0, "stop": 0.0, "samples": 1},
     }
-    topology = mechanism_file(kind).topology()
-    content["inputs"] = {name: {"constant": 1.0} for name in topology.required_inputs}
+    driven = required_inputs(source, kind, tables, places)
+    content["inputs"] = {name: {"constant": 1.0} for name in driven}
     scene = Scene.from_mapping(content, source)
     # Angles and rates; what is made of the wheel's radius or a damper a table seldom says.
     had = [EFFECTS[e] for e in scene.mechanism.effects if EFFECTS[e].quantities != (DIMENSION,)]
@@ -84,13 +93,27 @@ def scene_of(source: str, kind: str, side: str, points: Iterable[ScenePoint]) ->
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
 
+def required_inputs(
+    source: str, kind: str, tables: Mapping[str, Any] | None, places: Mapping[str, Sequence[float]]
+) -> tuple[str, ...]:
+    """The first inputs that hold every freedom."""
+    if tables is None:
+        return mechanism_file(kind).topology().required_inputs
+    try:
+        drawn = {name: (x, y, z) for name, (x, y, z) in places.items()}
+        return MechanismFile.of(tables, kind).topology(points=drawn).required_inputs
+    except TableFault as fault:
+        raise SceneError(source, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
+
+
 def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
     """A bounce about the drawing, with the others held as drawn, well within what the linkage reaches."""
     laws: dict[str, tuple[Mapping[str, Any], str]] = {}
-    for drive in drawn.mechanism.topology.drives:
+    drives = drawn.mechanism.topology.drives
+    for drive in drives:
         name, unit, here = drive.input, drive.unit, stands.inputs[drive.input]
         # What pushes a point steers; what pushes none carries the wheel up and down.
-        if drive.pushes:
+        if drive.pushes and not all(other.pushes for other in drives):
             laws[name] = {"constant": here}, f"{unit}, as drawn"
             continue
         low, high = (end.value for end in stands.reach[name])
@@ -114,8 +137,9 @@ def scene_text(
     facts: Sequence[str],
     others: Sequence[FilePoint],
 ) -> str:
-    """The scene as a file."""
+    """The scene as a file; a mechanism that is not a shipped one stands in it."""
     part = drawn.mechanism
+    tables = {} if part.type else {name: getattr(part, name) for name in CLOSING if getattr(part, name)}
     rows = [(point.name, point.written, point.source) for point in points]
     first, second = (max(len(row[i]) for row in rows) for i in (0, 1))
     lines = [
@@ -126,12 +150,21 @@ def scene_text(
         f"tolerance = {drawn.tolerance:g}",
         "",
         "[mechanism]",
-        f"type = {value_of(part.name)}",
+        *([f"type = {value_of(part.type)}"] if part.type else []),
         f"side = {value_of(part.side)}",
         "",
         "[mechanism.points]    # mm",
         *(f"{name.ljust(first)} = {place.ljust(second)}    # {shown(words)}" for name, place, words in rows),
         *(f"# not used: {shown(point.source)}" for point in others),
+        *(
+            line
+            for name, table in tables.items()
+            for line in (
+                "",
+                f"[mechanism.{name}]",
+                *(f"{key_of(entry)} = {value_of(value)}" for entry, value in table.items()),
+            )
+        ),
         "",
         "[inputs]",
         *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),

@@ -35,7 +35,7 @@ class InMujoco(Program):
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage = linkage
-        self.model = model = _model(linkage)
+        self.model = model = spec_of(linkage).compile()
         self.data = mujoco.MjData(model)
         self.as_drawn = self.coordinates
         self.sites = [model.site(name).id for name in linkage.points]
@@ -114,12 +114,12 @@ class InMujoco(Program):
         return result
 
 
-def _model(linkage: Linkage) -> mujoco.MjModel:
+def spec_of(linkage: Linkage) -> mujoco.MjSpec:
     """Bodies of mass 1, on which no rate depends; sites for points and for the ends of loops."""
     spec = mujoco.MjSpec()
     spec.option.gravity = np.zeros(3)
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
-    bodies = {CHASSIS: spec.worldbody}
+    bodies = {CHASSIS: spec.worldbody.add_body(name=CHASSIS)}
     for joint in linkage.joints:
         turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
         quaternion = np.empty(4)
@@ -131,6 +131,7 @@ def _model(linkage: Linkage) -> mujoco.MjModel:
             mass=1.0,
             inertia=[1.0, 1.0, 1.0],
             explicitinertial=True,
+            ipos=np.zeros(3),
         )
         body.add_joint(name=joint.body, type=KINDS[joint.kind], axis=own.T @ joint.axis)
 
@@ -152,4 +153,4 @@ def _model(linkage: Linkage) -> mujoco.MjModel:
             name2=names[1],
             active=True,
         )
-    return spec.compile()
+    return spec

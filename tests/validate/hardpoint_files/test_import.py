@@ -13,7 +13,7 @@ from pointcoord.mechanism import mechanism_file
 from validate.cli import main
 from validate.errors import UsageError
 from validate.hardpoint_files.axes import DIRECTIONS, Axes
-from validate.hardpoint_files.format import FORMS, formats
+from validate.hardpoint_files.format import FORMS, MJCF, formats
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
 
@@ -420,7 +420,7 @@ def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> Non
 @pytest.mark.parametrize("name", formats())
 def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
     one = formats()[name]
-    assert one.form in FORMS
+    assert one.form in (*FORMS, MJCF)
     assert {*one.called.values(), *one.notes} <= one.suspensions.keys()
     points = {kind: {*mechanism_file(kind).points} for kind in one.suspensions}
     assert {*one.names} <= set().union(*points.values())

@@ -1,0 +1,314 @@
+"""A car as a MuJoCo model, read by MuJoCo, by Pinocchio and by our own import; and models of others."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pinocchio
+import pytest
+from foreign_files import FOUR_BAR, imported
+from numpy.typing import NDArray
+from program import ENVIRONMENT, ROOT
+
+from pointcoord import Scene, simulate
+from pointcoord.mechanism.file import MechanismFile
+from validate import compare
+from validate.cli import main
+from validate.closed_drawing import closed_drawing
+from validate.hardpoint_files.importing import import_hardpoints
+from validate.hardpoint_files.mjcf import read_mjcf
+from validate.hardpoint_files.mjcf_mechanism import mechanism_of
+from validate.peers.mjcf import mjcf_of
+from validate.tables.errors import FileError
+
+Array = NDArray[np.float64]
+
+EPSILON = float(np.finfo(float).eps)
+# mm: what simulate may leave out of a place, of every scene here.
+TOLERANCE = 1e-9
+CARS = ("double-wishbone", "off-axis-strut", "bounce", "five-link", "pushrod", "semi-trailing-arm")
+LINKAGES = ("spatial-four-bar", "slider-crank", "n-four-bar", "andrews-squeezer", "bricard")
+
+
+def exported(name: str, folder: Path) -> Path:
+    path = folder / f"{name}.xml"
+    assert main(["export", name, "--mjcf", str(path)]) == 0
+    return path
+
+
+def rounding(places: dict[str, Array]) -> float:
+    """mm: seven bodies at most lie one on another; each turn has four roundings and each sum one, of numbers
+    as large as the largest coordinate, and so has the way there when it is written.
+    """
+    return 2 * 7 * 5 * EPSILON * max(float(np.abs(place).max()) for place in places.values())
+
+
+@pytest.mark.parametrize("name", [*CARS, *LINKAGES, "axle-steer"])
+def test_mujoco_and_pinocchio_place_the_exported_points_where_they_are_drawn(
+    name: str, tmp_path: Path
+) -> None:
+    path, drawn = exported(name, tmp_path), dict(closed_drawing(Scene.load(name)).places)
+    near = rounding(drawn)
+    model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    for point, place in drawn.items():
+        assert np.linalg.norm(1e3 * data.site(point).xpos - place) <= near, point
+    # Loops are closed there, and nothing sets the car in motion.
+    assert np.abs(data.efc_pos).max(initial=0.0) <= 1e-3 * near
+
+    # Pinocchio reads no sites of the world's own body.
+    other = pinocchio.buildModelFromMJCF(str(path))
+    found = other.createData()
+    pinocchio.framesForwardKinematics(other, found, pinocchio.neutral(other))
+    frames = {frame.name: number for number, frame in enumerate(other.frames)}
+    moving = [point for point in drawn if model.site(point).bodyid != model.body("chassis").id]
+    assert moving
+    for point in moving:
+        assert np.linalg.norm(1e3 * found.oMf[frames[point]].translation - drawn[point]) <= near, point
+
+
+def test_a_car_in_other_axes_is_the_same_model() -> None:
+    scene = Scene.load("double-wishbone")
+    content = scene.model_dump(exclude_none=True)
+    points = {name: (-x, -y, z) for name, (x, y, z) in scene.mechanism.points.items()}
+    content["mechanism"] |= {"points": points, "right": (0.0, -1.0, 0.0)}
+    first, second = (
+        mjcf_of(one.mechanism.plain(tuple(one.inputs)), "car") for one in (scene, Scene.from_mapping(content))
+    )
+    assert first == second
+
+
+def test_a_car_far_from_the_origin_of_its_coordinates_is_exported_where_it_is() -> None:
+    scene = Scene.load("double-wishbone")
+    plain = scene.mechanism.plain(tuple(scene.inputs))
+    plain["points"] = {name: [x + 40000.0, y, z] for name, (x, y, z) in plain["points"].items()}
+    model = mujoco.MjModel.from_xml_string(mjcf_of(plain, "car"))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    places = {name: np.array(place) for name, place in plain["points"].items()}
+    for name, place in places.items():
+        assert np.linalg.norm(1e3 * data.site(name).xpos - place) <= rounding(places), name
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_an_exported_car_comes_back_with_its_camber_over_travel(name: str, tmp_path: Path) -> None:
+    back = import_hardpoints(exported(name, tmp_path)).scene
+    assert compare(back, "pointcoord", "absolute").agreed
+    scene = Scene.load(name)
+    # Travel is counted from the drawing, and only the closed one is exported.
+    points = closed_drawing(scene).places
+    closed = {"mechanism": {"points": {name: place.tolist() for name, place in points.items()}}}
+    both = []
+    for one, other in ((scene, closed), (back, {"mechanism": {}})):
+        content = one.model_dump(exclude_none=True, exclude={"inputs", "time"})
+        content["mechanism"] |= other["mechanism"]
+        laws = {"rack": {"constant": 0.0}} if "rack" in one.inputs else {}
+        laws |= {"wheel_travel": {"sweep": [-40.0, 40.0]}}
+        both.append(simulate(Scene.from_mapping(content | {"inputs": laws, "effects": ["camber"]})))
+    axis = scene.mechanism.topology.wheel_axis
+    length = float(np.linalg.norm(points[axis[1]] - points[axis[0]]))
+    # Either end of either axis is off by the tolerance at most, which turns a line of that length by so much.
+    # Drawings differ by rounding, a ten-thousandth of it.
+    near = 4.001 * TOLERANCE / length
+    camber, again = (motion.wheel["camber"] for motion in both)
+    assert np.ptp(camber) > 1e-3
+    assert np.abs(camber - again).max() <= near
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_an_exported_linkage_comes_back_with_its_motion(name: str, tmp_path: Path) -> None:
+    scene = Scene.load(name)
+    back = import_hardpoints(exported(name, tmp_path)).scene
+    assert compare(back, "pointcoord", "absolute").agreed
+    (driven,) = scene.inputs
+    changed = back.model_copy(update={"inputs": {driven: scene.inputs[driven]}, "time": scene.time})
+    first, second = simulate(scene), simulate(changed)
+    for point, places in first.position.items():
+        # Drawings differ by rounding, which a motion near its ends makes a thousand times as large: 1e-10 mm.
+        assert np.abs(places - second.position[point]).max() <= 2.1 * TOLERANCE, point
+
+
+# The same with a body more, on the rocker's end: the coupler and it are one.
+WELDED = FOUR_BAR.replace(
+    '<joint class="pin"/>',
+    '<joint class="pin"/>'
+    '<body name="tip" pos="-0.018092213764227 0 0.189208583376144"><joint class="pin"/></body>',
+).replace('<connect body1="coupler" body2="rocker" anchor="0.3 0 0"/>', '<weld body1="coupler" body2="tip"/>')
+
+
+@pytest.mark.parametrize("text", [FOUR_BAR, WELDED], ids=["connect", "weld"])
+def test_a_four_bar_of_somebody_else_moves_as_its_closed_form(text: str, tmp_path: Path) -> None:
+    found = imported(tmp_path, text, "four_bar.xml").scene
+    assert list(found.inputs) == ["motor"]
+    motion = simulate(found.model_copy(update={"inputs": {"motor": {"sweep": [-0.5, 2.0]}}}))
+    turn = np.linspace(-0.5, 2.0, len(motion.times))
+    # A joint turns right-handed about y, which leads z to x; the crank is drawn 60 deg above x.
+    angle = np.radians(60.0) - turn
+    pin = 100.0 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    ground = np.array([350.0, 0.0])
+    drawn = 100.0 * np.array([np.cos(np.pi / 3), np.sin(np.pi / 3)])
+    end = drawn + 300.0 * np.array([np.cos(np.radians(20.0)), np.sin(np.radians(20.0))])
+    rocker = float(np.linalg.norm(end - ground))
+    # Where the circles about both pins meet, on the side of the drawing.
+    across = ground - pin
+    size = np.linalg.norm(across, axis=-1)
+    along = (300.0**2 - rocker**2 + size**2) / (2.0 * size)
+    height = np.sqrt(300.0**2 - along**2)
+    unit = across / size[:, None]
+    exact = pin + along[:, None] * unit + height[:, None] * np.stack([-unit[:, 1], unit[:, 0]], axis=-1)
+    place = motion.position["end"]
+    assert np.ptp(place[:, 2]) > 30.0
+    # Rounding of the closed form: some ten operations on 350 mm.
+    assert np.abs(place[:, [0, 2]] - exact).max() <= TOLERANCE + 40 * EPSILON * 350.0
+    assert np.abs(place[:, 1]).max() <= TOLERANCE
+
+
+@pytest.mark.parametrize("compiler", ["", 'angle="radian" eulerseq="zyx"', 'eulerseq="XZY"'])
+def test_frames_are_placed_as_mujoco_places_them(compiler: str) -> None:
+    text = f"""
+    <mujoco>
+      <compiler {compiler}/>
+      <default>
+        <site pos="0.1 0.2 0.3"/>
+        <default class="one">
+          <joint axis="1 2 2" pos="0.1 0 0"/>
+          <default class="two"><site pos="3 2 1"/></default>
+        </default>
+      </default>
+      <worldbody>
+        <body name="a" pos="1 2 3" euler="0.3 -0.4 0.7" childclass="one">
+          <joint name="j"/>
+          <site name="p"/>
+          <body name="b" pos="0.3 0 0.1" axisangle="1 -1 0.5 0.9">
+            <joint name="k" type="slide" axis="0 3 4"/>
+            <site name="q" class="two"/>
+            <body name="c" quat="2 1 -1 0.5" childclass="two">
+              <site name="r"/>
+              <site name="s" pos="1 1 1"/>
+              <site name="t" class="main"/>
+            </body>
+          </body>
+        </body>
+      </worldbody>
+    </mujoco>"""
+    spec = mujoco.MjSpec.from_string(text)
+    for body in spec.bodies[1:]:
+        body.mass, body.inertia, body.ipos, body.explicitinertial = 1.0, np.ones(3), np.zeros(3), True
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    turn = np.array([[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]])
+    found = read_mjcf(text, "model.xml", turn)
+    # Three turns, each of four roundings, of places within 8 m.
+    near = 8.0 * 12 * EPSILON
+    assert set(found.sites) == {"p", "q", "r", "s", "t"}
+    for name, (_, at) in found.sites.items():
+        assert np.abs(at - turn @ data.site(name).xpos).max() <= near, name
+    for body in found.bodies.values():
+        for joint in body.joints:
+            number = model.joint(joint.name).id
+            assert np.abs(joint.at - turn @ data.xanchor[number]).max() <= near
+            assert np.abs(joint.axis - turn @ data.xaxis[number]).max() <= near
+
+
+@pytest.mark.parametrize(
+    "joints",
+    [
+        '<joint axis="1 0 0"/>',
+        '<joint type="slide" axis="1 2 0"/>',
+        '<joint axis="1 0 0"/><joint axis="0 1 0"/>',
+        '<joint type="slide" axis="0 0 1"/><joint axis="0 0 1"/>',
+        '<joint type="ball"/>',
+        '<joint type="slide" axis="0 1 0"/><joint type="ball"/>',
+        '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 1 0"/>',
+    ],
+)
+def test_a_body_has_the_freedoms_that_mujoco_counts(joints: str, tmp_path: Path) -> None:
+    sites = "".join(f'<site name="s{k}" pos="{0.3 * k} {0.1 * k * k} {0.2 - 0.1 * k}"/>' for k in range(3))
+    body = f'<body name="b" pos="0 0 0.4">{joints}{sites}<geom size="0.1"/></body>'
+    text = f"<mujoco><worldbody>{body}</worldbody></mujoco>"
+    model = mujoco.MjModel.from_xml_string(text)
+    made = mechanism_of(read_mjcf(text, "b.xml", np.eye(3)), "b.xml")
+    points = {name: tuple(1e3 * at) for name, (at, _) in made.points.items()}
+    assert MechanismFile.of(made.tables, "b").freedoms(points=points) == model.nv
+
+
+def broken(old: str, new: str) -> str:
+    assert old in FOUR_BAR
+    return FOUR_BAR.replace(old, new)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ('<!DOCTYPE m [<!ENTITY a "aa">]><mujoco>&a;</mujoco>', 1, "DOCTYPE"),
+        ("<mujoco><worldbody></mujoco>", 1, "no XML: mismatched tag"),
+        ("<a><mujoco/></a>", 1, "<a> is <a>"),
+        (broken("<worldbody>", '<include file="b.xml"/><worldbody>'), 7, "<include> is not known"),
+        (broken('<geom size="0.1"/>', '<frame name="f"/>'), 10, "<frame> 'f' is not known in a body"),
+        (broken('<geom size="0.1"/>', '<replicate count="3"/>'), 10, "<replicate>"),
+        (broken('"crank" childclass', '"crank" mocap="true" childclass'), 8, "<body> 'crank' is moved from"),
+        (broken('childclass="pin"', 'childclass="nut"'), 9, "<joint> 'crank' is of class 'nut'"),
+        (broken('name="end" pos="0.3 0 0"', 'fromto="0 0 0 1 0 0"'), 13, "<site> has fromto"),
+        (broken('euler="0 -60 0"', 'xyaxes="1 0 0 0 1 0"'), 8, "<body> 'crank' has xyaxes"),
+        (broken('euler="0 -60 0"', 'euler="0 -60 x"'), 8, "euler '0 -60 x'; allowed: 3 numbers up to 1e+9"),
+        (
+            broken('<joint name="knee"/>', '<joint name="knee" type="screw"/>'),
+            12,
+            "'knee' is of type 'screw'",
+        ),
+        (broken('<joint name="knee"/>', '<joint name="knee" axis="0 0 0"/>'), 12, "axis '0 0 0'"),
+        (broken("<equality>", '<equality><joint joint1="knee"/>'), 18, "<joint> is an equality"),
+        (broken("<equality>", '<equality><weld body1="crank" relpose="0 0 0 1 0 0 0"/>'), 18, "relpose"),
+        (broken('body2="rocker"', 'body2="roker"'), 18, "<connect> names no body 'roker'"),
+        (broken('body1="coupler" body2="rocker"', 'site1="end" site2="and"'), 18, "names no site 'and'"),
+        (broken(' anchor="0.3 0 0"', ""), 18, "<connect> has no anchor"),
+        ("<mujoco><worldbody>" + 9999 * "<body>" + 9999 * "</body>" + "</worldbody></mujoco>", 1, "than 100"),
+        (broken("<default>\n    <joint", '<compiler coordinate="global"/><default><joint'), 3, "global"),
+    ],
+)
+def test_what_is_not_known_is_refused_by_its_name_and_line(
+    text: str, line: int, words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(FileError) as caught:
+        imported(tmp_path, text, "model.xml", format="mjcf")
+    assert f"model.xml: line {line}: " in str(caught.value)
+    assert words in str(caught.value)
+
+
+def test_sites_that_are_to_meet_and_are_apart_are_refused(tmp_path: Path) -> None:
+    text = broken('<joint class="pin"/>', '<joint class="pin"/><site name="tip" pos="0 0 0.2"/>')
+    text = text.replace('body1="coupler" body2="rocker" anchor="0.3 0 0"', 'site1="end" site2="tip"')
+    with pytest.raises(FileError, match=r"line 18: connect end joins places that are 21\.\d+ mm apart"):
+        imported(tmp_path, text, "model.xml")
+
+
+def test_what_means_nothing_for_a_model_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileError, match="is a whole mechanism, for which --side means nothing"):
+        imported(tmp_path, FOUR_BAR, "model.xml", side="left")
+    names = str(tmp_path / "names.toml")
+    assert main(["import", str(tmp_path / "model.xml"), "--names", names]) == 2
+
+
+def test_a_model_is_read_without_mujoco(tmp_path: Path) -> None:
+    path = tmp_path / "model.xml"
+    path.write_text(FOUR_BAR, encoding="utf-8")
+    program = (
+        "import sys; sys.modules['mujoco'] = None\n"
+        "from validate.cli import main\n"
+        f"raise SystemExit(main(['import', {str(path)!r}]) or main(['export', 'bounce']) - 2)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=ROOT,
+        env=ENVIRONMENT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "[mechanism.bodies]" in done.stdout
+    assert "'export' needs the package 'mujoco'" in done.stderr

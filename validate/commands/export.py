@@ -1,0 +1,54 @@
+"""`pointcoord export`: a car as another program's model."""
+
+from __future__ import annotations
+
+import argparse
+
+from validate.closed_drawing import closed_drawing, warnings_of
+from validate.commands.usage import SCENE, Command, load_scene, name_of, require_results, told_as
+from validate.exit_status import ExitStatus
+from validate.extras import needed
+from validate.output.console import Console
+from validate.plain_text import shown
+
+ENDINGS = (".xml", ".mjcf")
+
+DESCRIPTION = """\
+Write a car as a MuJoCo model (MJCF) that opens in its viewer: bodies on joints, rods, and the
+loops that they close; its home pose is the closed drawing. Lengths are in m, x points rearward, y
+right and z up. Inputs that are a hinge or a slide have an actuator, the others are free; motions
+of the chassis are left out. pointcoord import reads it again."""
+
+OPTIONS = f"""\
+{SCENE}
+--mjcf FILE  the model, {" or ".join(ENDINGS)}; standard output if not given, or for -
+"""
+
+
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Write the model.
+
+    Returns:
+        NO_VERDICT if the drawing cannot be closed, so that there is no home pose.
+    """
+    result = {"--mjcf": options.mjcf}
+    require_results(result, (options.scene,), options, console, {"--mjcf": ENDINGS}, says=False)
+    mjcf = needed("export", "validate.peers.mjcf", "peers")
+    scene, name = load_scene(options.scene), name_of(options.scene)
+    with told_as(name):
+        drawing = closed_drawing(scene)
+    if not drawing.places:
+        console.complain(f"{name}: {drawing.words}; nothing is written")
+        return ExitStatus.NO_VERDICT
+    for warning in warnings_of(scene, drawing.closing):
+        console.warn(f"{name}: {warning}")
+    places = {point: place.tolist() for point, place in drawing.places.items()}
+    plain = {**scene.mechanism.plain(tuple(scene.inputs)), "points": places}
+    target = None if options.mjcf == "-" else options.mjcf
+    console.put(target, mjcf.mjcf_of(plain, scene.title or name), "the model")
+    if target is not None:
+        console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={shown(target)}")
+    return ExitStatus.AGREE
+
+
+COMMANDS = {"export": Command(DESCRIPTION, OPTIONS, run, {"--mjcf": {"default": "-"}})}

@@ -1,0 +1,146 @@
+"""A car as an MJCF file: the model that `in_mujoco` builds, in m, with x rearward, y right and z up.
+
+The text is that of `mjSpec`, which prints six digits; places and axes are written again in full.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from validate.peers.in_mujoco import spec_of
+from validate.peers.linkage import Linkage, linkage_of
+from validate.plain_text import shown
+from validate.spanning_tree.cut import CHASSIS, Joint, Place
+
+Array = NDArray[np.float64]
+
+MM = 1e-3  # m
+# Of the car's size: a point's ball and the radius of a link.
+BALL, LINK = 0.008, 0.003
+LINK_COLOUR, POINT_COLOUR = [0.45, 0.5, 0.55, 1.0], [0.85, 0.3, 0.15, 1.0]
+# N/m and N s/m, or of angles, on bodies of 1 kg and 1 kg m^2: slow beside MuJoCo's time step of 2 ms.
+STIFFNESS, DAMPING = 1000.0, 60.0
+NOTE = """
+ {title}
+
+ Lengths in m; x rearward, y right, z up. In the home pose, where all joints are 0, the car is as drawn.
+ Sites are its points. A rod is a body on a ball joint, and `connect` closes loops. Bodies have 1 kg and
+ no weight: this is a model of motion, not of forces. Driven: {driven}.
+ Texts name the roles of points, from which pointcoord import makes camber and other angles.
+"""
+
+
+def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
+    """The MJCF file of a flat mechanism; inputs that are joints of it have actuators.
+
+    Raises:
+        HardpointsError: it is no mechanism.
+    """
+    linkage = _in_metres(_with_joints_driven(_z_up(plain)))
+    spec = spec_of(linkage)
+    spec.modelname = title
+    _drawn(spec, linkage)
+    actuators: dict[str, str] = {}
+    for driven in linkage.driven:
+        name = driven.input if driven.input not in actuators else f"{driven.input} of {driven.body}"
+        actuators[name] = driven.body
+        # A spring and a damper that follow the viewer's slider.
+        spec.add_actuator(
+            name=name,
+            target=driven.body,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+            gainprm=[STIFFNESS, *[0.0] * 9],
+            biasprm=[0.0, -STIFFNESS, -DAMPING, *[0.0] * 7],
+        )
+    for role, named in {"side": plain["side"], **plain["roles"]}.items():
+        spec.add_text(name=role, data=named if isinstance(named, str) else " ".join(named))
+    spec.compile()
+    others = ", ".join(name for name in plain["inputs"] if name not in actuators)
+    driven_words = ", ".join(f"{name} (joint {joint})" for name, joint in actuators.items()) or "nothing"
+    free = f"; no joint of it, and free here: {others}" if others else ""
+    return _text(spec, NOTE.format(title=shown(title), driven=driven_words + free))
+
+
+def _z_up(plain: Mapping[str, Any]) -> dict[str, Any]:
+    """The mechanism in a car with x rearward, y right and z up."""
+    up, right = np.array(plain["up"], dtype=float), np.array(plain["right"], dtype=float)
+    turn = np.array([np.cross(right, up), right, up])
+    points = {name: (turn @ np.array(place)).tolist() for name, place in plain["points"].items()}
+    return {**plain, "points": points, "up": [0.0, 0.0, 1.0], "right": [0.0, 1.0, 0.0]}
+
+
+def _with_joints_driven(plain: Mapping[str, Any]) -> Linkage:
+    """With those inputs alone that drive a joint which the mechanism has anyway."""
+    bare = linkage_of({**plain, "inputs": {}})
+    own = {joint.body for joint in bare.joints}
+    kept = {driven.input for driven in linkage_of(plain).driven if driven.body in own}
+    linkage = linkage_of({**plain, "inputs": {name: plain["inputs"][name] for name in kept}})
+    # Points of the chassis too; no body's turn is reported.
+    return replace(linkage, points=linkage.tree.points, bodies={})
+
+
+def _in_metres(linkage: Linkage) -> Linkage:
+    """Counted from the car's own origin, in m."""
+    tree = linkage.tree
+
+    def metres(at: Array) -> Array:
+        return np.asarray(MM * (tree.origin + tree.unit * at))
+
+    def place(one: Place) -> Place:
+        return replace(one, at=metres(one.at))
+
+    def joint(one: Joint) -> Joint:
+        return replace(one, at=metres(one.at))
+
+    loops = tuple(replace(one, first=place(one.first), second=place(one.second)) for one in tree.loops)
+    joints = tuple(joint(one) for one in tree.joints)
+    points = {name: place(one) for name, one in linkage.points.items()}
+    return replace(linkage, tree=replace(tree, joints=joints, loops=loops), points=points)
+
+
+def _drawn(spec: mujoco.MjSpec, linkage: Linkage) -> None:
+    """Balls at points, and links from each body's origin to its points and loops; they touch nothing."""
+    size = float(np.ptp([place.at for place in linkage.points.values()], axis=0).max())
+    looks = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+    ends = [end for loop in linkage.loops for end in (loop.first, loop.second)]
+    every = {(one.body, *np.round(one.at, 9)): one for one in (*linkage.points.values(), *ends)}
+    for place in linkage.points.values():
+        spec.body(place.body).add_geom(
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[BALL * size, 0.0, 0.0],
+            pos=linkage.local(place),
+            rgba=POINT_COLOUR,
+            **looks,
+        )
+    for place in every.values():
+        end = linkage.local(place)
+        if place.body != CHASSIS and np.linalg.norm(end) > LINK * size:
+            spec.body(place.body).add_geom(
+                type=mujoco.mjtGeom.mjGEOM_CAPSULE,
+                size=[LINK * size, 0.0, 0.0],
+                fromto=[0.0, 0.0, 0.0, *end],
+                rgba=LINK_COLOUR,
+                **looks,
+            )
+
+
+def _text(spec: mujoco.MjSpec, note: str) -> str:
+    """The file, with all digits of what places bodies, joints and sites."""
+    root = ElementTree.fromstring(spec.to_xml())
+    for kind, keys in (("body", ("pos", "quat")), ("joint", ("axis",)), ("site", ("pos",))):
+        for element in root.iter(kind):
+            one = getattr(spec, kind)(element.get("name"))
+            for key in keys if element.get("type") != "ball" else ():
+                element.set(key, " ".join(repr(float(number)) for number in getattr(one, key)))
+    # Two hyphens would end the comment.
+    root.insert(0, ElementTree.Comment(note.replace("--", "- -")))
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
