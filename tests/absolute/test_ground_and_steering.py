@@ -1,4 +1,4 @@
-"""Wheels that stay on the ground as the car moves over it, steering wheels, and the screw axis of steering."""
+"""Wheels that stay on the ground as the car moves over it, steering wheels, and the axis of steering."""
 
 from typing import Any
 
