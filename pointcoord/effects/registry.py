@@ -9,6 +9,7 @@ from pointcoord.effects.ackermann import ACKERMANN
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.angles_by_arcsine import ANGLES_BY_ARCSINE
 from pointcoord.effects.anti_features import ANTI_FEATURES
+from pointcoord.effects.arm_roll_centre import ARM_ROLL_CENTRE
 from pointcoord.effects.axle import AXLE
 from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
@@ -21,7 +22,7 @@ from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.motion_ratio import MOTION_RATIO
 from pointcoord.effects.position import POSITION
-from pointcoord.effects.roll_centre import ARM_ROLL_CENTRE, ROLL_CENTRE
+from pointcoord.effects.roll_centre import ROLL_CENTRE
 from pointcoord.effects.screw_axis import SCREW_AXIS
 from pointcoord.effects.spring import SPRING
 from pointcoord.effects.steer_angle import STEER_ANGLE
