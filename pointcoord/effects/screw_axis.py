@@ -27,7 +27,7 @@ from pointcoord.effects.knuckle import angular_velocity, at_rest, component
 from pointcoord.effects.steering_axis import LENGTHS, Axis
 from pointcoord.effects.wheel_angles import KINGPIN
 
-PITCH = Quantity("pitch", "pitch of the screw axis", "mm/rad", "car")
+PITCH = Quantity("screw_pitch", "pitch of the screw axis", "mm/rad", "car")
 # Turns per rack travel of one radius of the wheel that rounding does not tell from none.
 LEAST = 1e-9
 

@@ -295,7 +295,7 @@ def _screw_axis(car: Car) -> Numbers:
     return {
         "wheel": {f"screw_{name}": number for name, number in angles.items()},
         "dimension": {f"screw_{name}": n for name, n in _steering_axis(other)["dimension"].items()},
-        "pitch": {"screw_pitch": [pitch]},
+        "screw_pitch": {"screw_pitch": [pitch]},
     }
 
 

@@ -82,8 +82,8 @@ def test_effects_do_not_see_where_the_origin_lies_but_for_the_middle_plane(car: 
     plain, aside = moved((0, 0, 0)), moved((0, 100, 0))
     assert same(plain, moved((-3000, 0, 70)))
     assert not same(plain, aside)
-    height = aside.effect("roll_centre_height")
-    assert same(replace(plain, effects={**plain.effects, "roll_centre_height": height}), aside)
+    heights = {name: aside.effect(name) for name in ("roll_centre_height", "arm_roll_centre_height")}
+    assert same(replace(plain, effects={**plain.effects, **heights}), aside)
 
 
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
