@@ -14,6 +14,8 @@ EXAMPLES: Mapping[str, str | float] = {
     "centre_of_gravity_height": 550.0,
     "brake_share": 0.6,
     "drive_share": 0.5,
+    "spring_rate": 30.0,
+    "spring_free_length": 350.0,
 }
 LONGEST = sys.float_info.max
 # Which way the axle is from the middle of the car, rearward.
@@ -26,7 +28,8 @@ def car_of(given: Any) -> dict[str, float]:
     Args:
         given: None, or a mapping with any of axle, "front" or "rear"; wheelbase, mm; centre_of_gravity_height
             above the ground as drawn, mm; brake_share and drive_share, the parts of the braking and of the
-            driving force that act at this axle, 0 to 1.
+            driving force that act at this axle, 0 to 1; spring_rate, N/mm, and spring_free_length, mm, of a
+            spring between the ends of the damper.
     Returns:
         The same, but for the axle, which is -1 for the front one and 1 for the rear one.
     Raises:
@@ -67,7 +70,8 @@ def _checked(name: str, value: Any) -> float:
     if name.endswith("share"):
         fine, allowed = number and 0.0 <= value <= 1.0, "a number from 0 to 1 is needed"
     else:
-        fine, allowed = number and 0.0 < value <= LONGEST, "a length above 0 is needed, in mm"
+        what, unit = ("rate", "N/mm") if name == "spring_rate" else ("length", "mm")
+        fine, allowed = number and 0.0 < value <= LONGEST, f"a {what} above 0 is needed, in {unit}"
     if not fine:
         raise DescriptionError(f"{name} is {value!r}; {allowed}", name, value)
     return float(value)

@@ -6,11 +6,12 @@
 Joints are made of two kinds of rows: two points meet along some directions, and directions of two bodies stay
 at right angles. A free point, of no body, is a body of its own that does not turn. A wheel's contact point is
 the lowest of a disc that turns about the wheel's axis and has a level radius: its height is that of a
-body's point.
+body's point. Over the ground, both are of a body that stands as the ground does to the moved chassis.
 """
 
 import math
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from itertools import combinations
 from typing import Any
 
@@ -31,7 +32,7 @@ SHORTEST_AXIS = math.sqrt(EPS)
 LARGEST_SKEW = 1e-6
 SIDES = ("left", "right")
 ROLES = ("wheel_axis", "steering_axis", "damper")
-INPUTS = ("angle", "travel", "height", "contact", "distance")
+INPUTS = ("angle", "travel", "steers", "height", "contact", "distance")
 NOTHING, AXES = np.zeros(3), np.eye(3)
 
 
@@ -42,14 +43,16 @@ def compile(mechanism: Mapping[str, Any]) -> Model:
         mechanism: plain data, mm and rad:
             bodies: name -> names of its points; `chassis` is one of them. rods: name -> two points.
             slides: name -> points, body, through, along, turns.
-            inputs: those that are driven, name -> one of angle, travel, height, contact, distance; or
-                turns, which turn the whole car. What displaces it is no part of the linkage.
+            inputs: those that are driven, name -> one of angle, travel, steers, height, contact, distance; or
+                turns or moves, which turn and displace the whole car, and are no part of the linkage unless
+                a contact is over the ground.
             roles: knuckle, a body; wheel_axis, steering_axis and damper, two points each, if there are any.
             points: name -> (x, y, z). up, right: directions, at any length. side: "left" or "right".
             sides: of a mechanism with parts, part -> side; names of its roles and inputs begin with the part
                 and a dot.
-            wheel_radius: of the wheel, mm, or None where nothing needs it.
-            car: axle, wheelbase, centre_of_gravity_height, brake_share and drive_share, as far as given.
+            wheel_radius: of the wheel, mm, or None where nothing needs it; likewise rack_per_turn, the mm
+                that the rack travels for a turn of the steering wheel.
+            car: numbers of the car, as far as given (see `car_of`).
             loads: part, or "" -> force, N, and moment, N mm, of the ground on its wheel, where there are any.
     Raises:
         DescriptionError: a name that does not exist, points that make no line, directions at no right angle,
@@ -458,11 +461,29 @@ class _Compiler:
         self._over(name, ground, self.points[about], body, self.points[of], way, **law)
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
-        _one_of(f"a slide of input {name!r}", self.slides, *given["travel"])
-        for slide in given["travel"]:
+        self._slides(name, given["travel"], 1.0)
+
+    def _steers(self, name: str, given: Mapping[str, Any]) -> None:
+        per_turn = self.of.get("rack_per_turn")
+        number = isinstance(per_turn, int | float) and not isinstance(per_turn, bool)
+        if not (number and per_turn and math.isfinite(per_turn)):
+            raise DescriptionError(
+                f"input {name!r} needs rack_per_turn, not {per_turn!r}; give the travel of the rack for a "
+                "turn of the steering wheel, in mm",
+                name,
+                per_turn,
+            )
+        self._slides(name, given["steers"], per_turn / math.tau)
+
+    def _slides(self, name: str, slides: Iterable[str], per_unit: float) -> None:
+        """A value drives slides, so many mm for a unit of it."""
+        _one_of(f"a slide of input {name!r}", self.slides, *slides)
+        for slide in slides:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
-            self._over(name, body, self.points[through], second, self.points[point], way, steers=True)
+            start, end = self.points[through], self.points[point]
+            law = {"factor": per_unit / self.size, "drawn": float(way @ (end - start)) / per_unit + 0.0}
+            self._over(name, body, start, second, end, way, steers=per_unit, **law)
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
         point, along = given["height"], given.get("along", "up")
@@ -488,10 +509,38 @@ class _Compiler:
             )
         level = level / np.linalg.norm(level)
         lowest = self.points[centre] - self.radius * np.cross(level, axis)
+        over = given.get("over", CHASSIS)
+        _one_of(f"`over` of input {name!r}", (CHASSIS, "ground"), over)
+        base = self.ground if over == "ground" else CHASSIS
         disc = self._add(f"disc of {name}", (inner, centre))
         self._hinge(f"axle of {name}", carrier, disc, inner, centre)
-        self._across(f"level of {name}", CHASSIS, disc, ((up, level),))
-        self._over(name, CHASSIS, lowest, disc, lowest, up)
+        self._across(f"level of {name}", base, disc, ((up, level),))
+        self._over(name, base, lowest, disc, lowest, up)
+
+    @cached_property
+    def ground(self) -> str:
+        """The body that stands to the chassis as the ground does: each input that moves the car takes it from
+        one body to the next, turns before displacements."""
+        moving = [(n, given) for n, given in self.of["inputs"].items() if {"turns", "moves"} & {*given}]
+        body, place = CHASSIS, self.named[CHASSIS][0]
+        for name, given in sorted(moving, key=lambda one: "moves" in one[1]):
+            turned = "turns" in given
+            at = given["about"] if turned else place
+            _one_of(f"the point of input {name!r}", self.points, at)
+            _one_of(f"`along` of input {name!r}", self.directions, given["along"])
+            ground = self._add(f"ground of {name}", (at,))
+            x, y, z = frame_about(self.directions[given["along"]])
+            # The car goes along z as the ground sees it, or turns about it.
+            self._meet(f"place of {ground}", ground, at, body, at, (x, y, z) if turned else (x, y))
+            self._across(f"axes of {ground}", ground, body, ((x, z), (y, z)), ((z, z),))
+            if turned:
+                row = self._row(name, "turn", ground, body, x, (NOTHING, -y))
+                self.inputs.append(Input(row, name, 1.0, 0.0, moves=True))
+            else:
+                self._across(f"axes of {ground}", ground, body, ((x, y),), ((x, x),))
+                self._over(name, ground, self.points[at], body, self.points[at], z, moves=True)
+            body = ground
+        return body
 
     def _distance(self, name: str, given: Mapping[str, Any]) -> None:
         _one_of(f"a point of input {name!r}", self.points, *given["distance"])

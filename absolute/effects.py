@@ -16,7 +16,7 @@ the plane of a horizontal h and up through c, the knuckle's points move about th
     c - (v . up / w . a) h + (v . h / w . a) up,    a = h x up.
 
 To add a number of places, add it to `ANGLES` or to `LENGTHS`; one of velocities, which has no gradients, to
-`OF_VELOCITIES`; one of both wheels of an axle to `AXLE_EFFECTS`.
+`OF_VELOCITIES` or `OF_RACK`; one of both wheels of an axle to `AXLE_EFFECTS`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -38,6 +38,8 @@ Number = Callable[[Motion], Dual]
 OUTBOARD, REARWARD, UP = 0, 1, 2
 # As much of a velocity may be rounding at the largest condition number that is not refused.
 ROUNDING = EPS / SMALLEST_RCOND
+# Of the knuckle, rad for a travel of the rack by the wheel's radius, that rounding does not tell from none.
+LEAST_TURN = 1e-9
 
 
 @dataclass(frozen=True)
@@ -91,12 +93,26 @@ def mechanical_trail(motion: Motion) -> Dual:
     return (rearward * spin_outboard - outboard * spin_rearward) / hypot(spin_outboard, spin_rearward)
 
 
+def camber_by_arcsine(motion: Motion) -> Dual:
+    """-asin of the upward part of the unit spin axis, by the part of it that is level."""
+    outboard, rearward, up = _along(motion, "wheel_axis")
+    return arctan2(-up, hypot(outboard, rearward))
+
+
+def toe_by_arcsine(motion: Motion) -> Dual:
+    """Asin of the forward part of the unit spin axis, by the part of it in the plane across the car."""
+    outboard, rearward, up = _along(motion, "wheel_axis")
+    return arctan2(-rearward, hypot(outboard, up))
+
+
 ANGLES: Mapping[str, Number] = {
     "camber": angle("wheel_axis", UP, OUTBOARD, -1.0),
     "kingpin": angle("steering_axis", OUTBOARD, UP, -1.0),
     "toe": angle("wheel_axis", REARWARD, OUTBOARD, -1.0),
     "caster": angle("steering_axis", REARWARD, UP),
     "steer_angle": steer_angle,
+    "camber_by_arcsine": camber_by_arcsine,
+    "toe_by_arcsine": toe_by_arcsine,
 }
 LENGTHS: Mapping[str, Number] = {
     "travel": travel,
@@ -127,7 +143,7 @@ def instant_centre(h: int, component: int, sense: float = 1.0) -> Callable[[Moti
     """How far the instant centre in the plane of h and up is from c, along h or up; no number at infinity."""
 
     def of(motion: Motion) -> Array:
-        velocity, spin = _contact_velocity(motion), _slope_of_turn(motion)
+        velocity, spin = _contact_velocity(motion), _spin(motion, "travel")
         axes = motion.corner.axes
         turn = np.cross(axes[h], axes[UP]) @ spin
         turn = np.where(np.abs(turn) <= ROUNDING * _speed(motion, velocity), 0.0, turn)
@@ -154,8 +170,99 @@ def anti_drive(motion: Motion) -> Array:
     return _anti(motion, _slope(motion, velocity, "travel"), "drive_share")
 
 
+def arm_roll_centre_height(motion: Motion) -> Array:
+    """As `roll_centre_height`, of the arms alone: the knuckle turns about its steering axis as well, by as
+    much as leaves a pure rotation.
+
+    With u the velocity of the axis' lower point and w the spin of the knuckle, (w + f k) . u = 0. Not a
+    number where u is square to the axis k.
+    """
+    lower, _ = motion.corner.ends("steering_axis")
+    k = motion.line(*motion.corner.ends("steering_axis")).value
+    u, w = _slope(motion, _from_centre(motion, lower), "travel"), _spin(motion, "travel")
+    turn = w - k * _ratio((w * u).sum(axis=0), (k * u).sum(axis=0))
+    arm = motion.line(lower, _centre(motion)).value + contact(motion).value
+    outboard, _, up = motion.corner.axes @ (u + np.cross(turn, arm, axis=0))
+    return _contact_place(motion)[OUTBOARD].value * _ratio(outboard, up)
+
+
+def damper_per_wheel(motion: Motion) -> Array:
+    """What the damper is shortened by for each mm of travel; not a number where the wheel does not travel."""
+    shortened, risen = (_slope(motion, of(motion), "travel") for of in (LENGTHS["damper_length"], travel))
+    return -_ratio(shortened, risen)
+
+
+def spring_force(motion: Motion) -> Array:
+    """Rate times what the spring is shorter than free, N: it pushes its ends apart."""
+    rate, free = needed(motion.corner.car, "spring_rate", "spring_free_length")
+    return rate * (free - LENGTHS["damper_length"](motion).value)
+
+
+def wheel_rate(motion: Motion) -> Array:
+    """What a constant motion ratio makes of the spring's rate at the wheel, N/mm."""
+    rate, _ = needed(motion.corner.car, "spring_rate", "spring_free_length")
+    return np.asarray(rate * damper_per_wheel(motion) ** 2)
+
+
+def screw_pitch(motion: Motion) -> Array:
+    """How far the knuckle goes along its screw axis for a radian about it, mm, as the rack moves."""
+    w, v = _screw(motion)
+    return np.asarray((w * v).sum(axis=0) / (w * w).sum(axis=0))
+
+
+def of_screw(number: Callable[[Motion, Array, Array], Array]) -> Callable[[Motion], Array]:
+    """A number of the screw axis, by its direction, upward, and the way from it to the wheel centre.
+
+    Of a turn w and a velocity v of the wheel centre that way is v x w / w^2, but for its part along the axis.
+    """
+
+    def of(motion: Motion) -> Array:
+        w, v = _screw(motion)
+        square = (w * w).sum(axis=0)
+        axis, off = (motion.corner.axes @ of for of in (w, np.cross(v, w, axis=0) / square))
+        return number(motion, axis * np.sign(axis[UP]), off)
+
+    return of
+
+
+def _level_with(axis: Array, point: Array) -> Array:
+    """To a point from the place of an axis that is as high; `point` from any place of it."""
+    return point - axis * (point[UP] / axis[UP])
+
+
+def _at_ground(motion: Motion, axis: Array, off: Array) -> Array:
+    return _level_with(axis, off + motion.components(contact(motion)).value)
+
+
+def _trail(motion: Motion, axis: Array, off: Array) -> Array:
+    outboard, rearward, _ = _at_ground(motion, axis, off)
+    spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis").value
+    level = np.hypot(spin_outboard, spin_rearward)
+    return np.asarray((rearward * spin_outboard - outboard * spin_rearward) / level)
+
+
+OF_SCREW: Mapping[str, tuple[str, Callable[[Motion, Array, Array], Array]]] = {
+    "screw_kingpin": ("rad", lambda motion, axis, off: np.arctan2(-axis[OUTBOARD], axis[UP])),
+    "screw_caster": ("rad", lambda motion, axis, off: np.arctan2(axis[REARWARD], axis[UP])),
+    "screw_kingpin_offset": ("mm", lambda *of: _at_ground(*of)[OUTBOARD]),
+    "screw_scrub_radius": ("mm", lambda *of: np.hypot(*_at_ground(*of)[:UP])),
+    "screw_mechanical_trail": ("mm", _trail),
+    "screw_castor_offset": ("mm", lambda *of: _at_ground(*of)[REARWARD]),
+    "screw_kingpin_offset_at_wheel": ("mm", lambda motion, *of: _level_with(*of)[OUTBOARD]),
+    "screw_hub_trail": ("mm", lambda motion, *of: -_level_with(*of)[REARWARD]),
+}
+OF_RACK: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
+    **{name: (unit, of_screw(number)) for name, (unit, number) in OF_SCREW.items()},
+    "screw_pitch": ("mm/rad", screw_pitch),
+}
 OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
     "roll_centre_height": ("mm", roll_centre_height),
+    "arm_roll_centre_height": ("mm", arm_roll_centre_height),
+    "damper_per_wheel": ("mm/mm", damper_per_wheel),
+    "wheel_per_damper": ("mm/mm", lambda motion: _ratio(1.0, damper_per_wheel(motion))),
+    "spring_force": ("N", spring_force),
+    "wheel_force": ("N", lambda motion: spring_force(motion) * damper_per_wheel(motion)),
+    "wheel_rate": ("N/mm", wheel_rate),
     "front_view_swing_arm": ("mm", instant_centre(OUTBOARD, OUTBOARD, -1.0)),
     "front_view_centre_height": ("mm", instant_centre(OUTBOARD, UP)),
     "side_view_swing_arm": ("mm", instant_centre(REARWARD, REARWARD)),
@@ -171,8 +278,9 @@ def _wheel_effects() -> Iterator[tuple[str, Effect]]:
             yield name, Effect(unit, _value(number))
             yield f"{name}_by_travel", Effect(f"{unit}/mm", _by_travel(number), "travel")
             yield f"{name}_by_rack", Effect(f"{unit}/mm", _by_rack(number), "rack")
-    for name, (unit, value) in OF_VELOCITIES.items():
-        yield name, Effect(unit, value, "travel")
+    for by, table in (("travel", OF_VELOCITIES), ("rack", OF_RACK)):
+        for name, (unit, value) in table.items():
+            yield name, Effect(unit, value, by)
 
 
 def _value(number: Number) -> Callable[[Motion], Array]:
@@ -318,14 +426,28 @@ def _contact_velocity(motion: Motion) -> Array:
     return _slope(motion, motion.components(velocity), "travel")
 
 
-def _slope_of_turn(motion: Motion) -> Array:
+def _from_centre(motion: Motion, point: str) -> Dual:
+    """How a point of the knuckle moves, (3, N): as the wheel centre does, and the arm from there turns."""
+    centre = _centre(motion)
+    return motion.moved(centre) + motion.riding(motion.corner.carrier, motion.line(centre, point))
+
+
+def _screw(motion: Motion) -> tuple[Array, Array]:
+    """Spin of the knuckle and velocity of the wheel centre with the rack, (3, N); not numbers where it does
+    not turn as the rack moves, or about no line that leads up."""
+    w, v = _spin(motion, "rack"), _slope(motion, motion.moved(_centre(motion)), "rack")
+    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST_TURN
+    return np.where(turns, w, np.nan), v
+
+
+def _spin(motion: Motion, by: str) -> Array:
     """w, (3, N), in the frame of the points."""
-    return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, "travel"))]
+    return motion.spin(motion.corner.carrier)[..., motion.by.index((motion.part, by))]
 
 
 def _speed(motion: Motion, velocity: Array) -> Array:
     """|w| + |v| / size of the mechanism, (N,): what rounding of either is measured by."""
-    turning = np.linalg.norm(_slope_of_turn(motion), axis=0)
+    turning = np.linalg.norm(_spin(motion, "travel"), axis=0)
     return np.asarray(turning + np.linalg.norm(velocity, axis=0) / motion.mechanism.drawing.size)
 
 

@@ -40,7 +40,8 @@ class Input:
     Attributes:
         value: name of the value, which several rows may take; mm or rad.
         drawn: the value in the drawing.
-        steers: whether it is the travel of a slide.
+        steers: how many mm a slide travels for a unit of the value; 0 where it drives none.
+        moves: whether it moves the whole car.
     """
 
     row: Row
@@ -48,7 +49,8 @@ class Input:
     factor: float
     drawn: float
     cosine: bool = False
-    steers: bool = False
+    steers: float = 0.0
+    moves: bool = False
 
 
 @dataclass(frozen=True)
@@ -206,8 +208,9 @@ class Model:
             DescriptionError: there is none, or another; `what` needs it.
         """
         others = tuple(f"{other}." for other in self.corners if other != part)
-        own = {drive.value: drive.steers for drive in self.inputs if not drive.value.startswith(others)}
-        found = [value for value, steers in own.items() if steers == (by == "rack")]
+        holding = (drive for drive in self.inputs if not drive.moves)
+        own = {drive.value: drive.steers for drive in holding if not drive.value.startswith(others)}
+        found = [value for value, steers in own.items() if bool(steers) == (by == "rack")]
         if len(found) != 1:
             kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
             raise DescriptionError(

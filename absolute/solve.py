@@ -134,7 +134,7 @@ class Assembled:
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects, model)
         by = inputs_of(asked, model)
-        driving = {name: law for name, law in inputs.items() if name not in model.turns}
+        driving = {n: law for n, law in inputs.items() if n not in model.turns or n in model.values}
         series = input_series(model.values, driving)
         carried, turns = chassis_series(chassis, len(series)), turnings(model, inputs, len(series))
         # Inputs that take the same value have a column each.
@@ -175,7 +175,9 @@ class Assembled:
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
         named = np.array([drive.value for drive in self.model.inputs])
-        units = np.array([mechanism.targets(series[:, 0], 1.0 * (named == value))[1] for value in by])
+        # Of a slide by its travel, whatever the value that drives it.
+        unit_of = np.array([1.0 / drive.steers if drive.steers else 1.0 for drive in self.model.inputs])
+        units = np.array([mechanism.targets(series[:, 0], unit_of * (named == value))[1] for value in by])
         for found in through(mechanism, self._drawn, series[:, 0]):
             count, bodies = found.origin.shape[:2]
             moving, residual = np.zeros((count, 2, bodies, 2, 3)), found.residual

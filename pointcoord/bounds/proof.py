@@ -236,7 +236,7 @@ def _slopes(
         rate, still = (
             value.like(np.full(value.middle.shape, float(r))) for r in (drive.input == driven, 0.0)
         )
-        known[place] = drive.enclosed((value, rate, still), mechanism.drawing)[1]
+        known[place] = drive.travel.enclosed((value, rate, still), mechanism.drawing)[1]
     rates = [with_known(poses.groups.together(slopes), mechanism.map.unknowns, known)]
     opened = shifted(mechanism.topology, way) if isinstance(way, ByGap) else None
     coordinates = enclosed_coordinates(mechanism, poses, rates, unsolved, (), opened)

@@ -97,6 +97,11 @@ def ratio(x: S, y: S) -> S:
         return np.asarray(x / y)
 
 
+def reciprocal(x: P) -> P:
+    """1 / x."""
+    return enclosure.quotient(Enclosed.of(1.0), x) if isinstance(x, Enclosed) else np.asarray(1.0 / x)
+
+
 def arctangent(x: P) -> P:
     """atan(x), rad."""
     return enclosure.angle(x, Enclosed.of(1.0)) if isinstance(x, Enclosed) else np.asarray(np.arctan(x))
@@ -105,6 +110,12 @@ def arctangent(x: P) -> P:
 def positive(x: P) -> NDArray[np.bool_]:
     """Where a number is above 0."""
     return np.asarray((x.middle if isinstance(x, Enclosed) else x) > 0.0)
+
+
+def sign_of(x: P) -> P:
+    """1 where a number is above 0, -1 elsewhere."""
+    signs = np.where(positive(x), 1.0, -1.0)
+    return Enclosed.of(signs) if isinstance(x, Enclosed) else signs
 
 
 def chosen(where: NDArray[np.bool_], one: P, other: P) -> P:

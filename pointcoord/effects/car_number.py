@@ -38,8 +38,10 @@ SUCH_AS = {
     "centre_of_gravity_height": "500.0",
     "brake_share": "0.6",
     "drive_share": "1.0",
+    "spring_rate": "30.0",
+    "spring_free_length": "350.0",
 }
-LENGTHS = ("wheelbase", "centre_of_gravity_height")
+LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
 KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide"}
 
 

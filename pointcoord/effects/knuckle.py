@@ -1,14 +1,18 @@
 """How what is fixed in the knuckle moves along a way: places, and directions.
 
 Of three points p_0, p_1, p_2 of the knuckle with e1 = p_1 - p_0 and e2 = p_2 - p_0, a vector that is fixed in
-it is a e1 + b e2 + c e1 x e2 with constant a, b, c; so its derivative is a e1' + b e2' + c (e1 x e2)'.
+it is a e1 + b e2 + c n, n = e1 x e2, with constant a, b, c; so its derivative is a e1' + b e2' + c n'. Of
+the angular velocity w it is w x the vector, so that
+
+    2 |n|^2 w = (e2 x n) x e1' + (n x e1) x e2' + n x n'.
 """
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
-from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, times
+from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, reciprocal, times
 from pointcoord.effects.corner import Corner, View
 from pointcoord.linkage.car_axes import Direction
 
@@ -26,16 +30,37 @@ def velocity_at(corner: Corner[Dual[Any]], place: Any) -> Any:
 
 def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
     """The derivative of a vector that is fixed in the knuckle."""
-    view = corner.seen
-    base, first, second = (view.points[name] for name in view.of.role("knuckle")[:3])
-    e1, e2 = first - base, second - base
-    normal = cross(e1, e2)
+    e1, e2, normal = _frame(corner)
     n = normal.value
     square = dot(n, n)
     a = ratio(dot(cross(vector, e2.value), n), square)
     b = ratio(dot(cross(e1.value, vector), n), square)
     c = ratio(dot(vector, n), square)
     return times(a, e1.slope) + times(b, e2.slope) + times(c, normal.slope)
+
+
+def angular_velocity(corner: Corner[Dual[Any]]) -> Any:
+    """The turn of the knuckle along the way, rad per unit of the input."""
+    e1, e2, normal = _frame(corner)
+    n = normal.value
+    twice = cross(cross(e2.value, n), e1.slope) + cross(cross(n, e1.value), e2.slope) + cross(n, normal.slope)
+    square = dot(n, n)
+    return times(reciprocal(square + square), twice)
+
+
+def _frame(corner: Corner[Dual[Any]]) -> tuple[Dual[Any], Dual[Any], Dual[Any]]:
+    view = corner.seen
+    base, first, second = (view.points[name] for name in view.of.role("knuckle")[:3])
+    e1, e2 = first - base, second - base
+    return e1, e2, cross(e1, e2)
+
+
+def at_rest(view: View[Dual[Any]]) -> View[Any]:
+    """What is seen, without derivatives."""
+    points = {name: place.value for name, place in view.points.items()}
+    return View(
+        view.of, points, partial(component, view), view.up.value, view.outboard.value, view.radius.value
+    )
 
 
 def component(view: View[Dual[Any]], vector: Any, direction: Direction) -> Any:

@@ -7,7 +7,9 @@ from collections.abc import Mapping
 from pointcoord.effects.acceleration import ACCELERATION
 from pointcoord.effects.ackermann import ACKERMANN
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.angles_by_arcsine import ANGLES_BY_ARCSINE
 from pointcoord.effects.anti_features import ANTI_FEATURES
+from pointcoord.effects.arm_roll_centre import ARM_ROLL_CENTRE
 from pointcoord.effects.axle import AXLE
 from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
@@ -18,8 +20,11 @@ from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.instant_centres import INSTANT_CENTRES
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.loads import LOADS
+from pointcoord.effects.motion_ratio import MOTION_RATIO
 from pointcoord.effects.position import POSITION
 from pointcoord.effects.roll_centre import ROLL_CENTRE
+from pointcoord.effects.screw_axis import SCREW_AXIS
+from pointcoord.effects.spring import SPRING
 from pointcoord.effects.steer_angle import STEER_ANGLE
 from pointcoord.effects.steering_axis import STEERING_AXIS
 from pointcoord.effects.toe import TOE
@@ -30,7 +35,17 @@ from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 ALWAYS: tuple[Effect, ...] = (POSITION,)
 """What every motion reports."""
 
-_ANGLES_AND_DIMENSIONS = (CAMBER, WHEEL_ANGLES, TOE, STEER_ANGLE, CASTER, WHEEL_TRAVEL, STEERING_AXIS, DAMPER)
+_ANGLES_AND_DIMENSIONS = (
+    CAMBER,
+    WHEEL_ANGLES,
+    TOE,
+    ANGLES_BY_ARCSINE,
+    STEER_ANGLE,
+    CASTER,
+    WHEEL_TRAVEL,
+    STEERING_AXIS,
+    DAMPER,
+)
 
 EFFECTS: Mapping[str, Effect] = {
     effect.name: effect
@@ -40,7 +55,11 @@ EFFECTS: Mapping[str, Effect] = {
         KNUCKLE_RATES,
         *_ANGLES_AND_DIMENSIONS,
         *(gradients(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),
+        SCREW_AXIS,
+        MOTION_RATIO,
+        SPRING,
         ROLL_CENTRE,
+        ARM_ROLL_CENTRE,
         INSTANT_CENTRES,
         ANTI_FEATURES,
         AXLE,
@@ -86,6 +105,7 @@ READ_FIRST = (
     "half_track_change",
     "recession",
     "roll_centre_height",
+    "arm_roll_centre_height",
     "track",
     "axle_roll_centre_height",
     "axle_roll_centre_offset",
@@ -97,7 +117,9 @@ READ_FIRST = (
     "kingpin_offset",
     "mechanical_trail",
     "damper_length",
-    "damper_length_by_travel",
+    "damper_per_wheel",
+    "spring_force",
+    "wheel_rate",
 )
 """The numbers that a table shows unless others are asked for, as far as a car has them."""
 

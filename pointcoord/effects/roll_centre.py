@@ -5,8 +5,7 @@ right angles to v meets the car's middle plane, through the user's origin, at
 
     (c . outboard) (v . outboard) / (v . up)
 
-above c. Lotus' own rule, which is not published, gives the same to 0.08 mm; the instant centres of the arms
-give up to 7 mm else where the wheel steers as it travels.
+above c. Lotus' own rule, which is not published, gives the same to 0.08 mm.
 """
 
 from __future__ import annotations
@@ -21,9 +20,13 @@ from pointcoord.effects.knuckle import component, contact_place, velocity_at
 
 def roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
     """Of the point in the middle plane above the contact point."""
-    view, place = corner.seen, contact_place(corner)
-    velocity = velocity_at(corner, place)
-    far = component(view, corner.origin.value + place, "outboard")
+    return middle_plane_height(corner, velocity_at(corner, contact_place(corner)))
+
+
+def middle_plane_height(corner: Corner[Dual[Any]], velocity: Any) -> Any:
+    """The same of any velocity of the contact point."""
+    view = corner.seen
+    far = component(view, corner.origin.value + contact_place(corner), "outboard")
     return far * ratio(component(view, velocity, "outboard"), component(view, velocity, "up"))
 
 

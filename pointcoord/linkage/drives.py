@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.numerics.double_double import Pair, pair_quotient, two_product
+from pointcoord.numerics.double_double import Pair, pair_product, pair_quotient, two_product
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine_and_sine
@@ -170,6 +170,11 @@ class Drive(ABC):
     def pushes(self) -> str:
         """The point that it slides, inboard of what is linked to it; empty if it slides none."""
         return ""
+
+    @property
+    def travel(self) -> Drive:
+        """What drives the coordinate by a travel, mm, where the input stands for one; else this itself."""
+        return self
 
     @property
     @abstractmethod
@@ -365,6 +370,57 @@ class TravelAlong(Drive):
 
     def drawn(self, drawing: Drawing) -> Array:
         return self.line.foot(drawing)
+
+
+@dataclass(frozen=True)
+class Steered(Drive):
+    """The turn of a steering wheel whose pinion makes a travel, per_turn / 2 pi of it; rad.
+
+    Attributes:
+        of: the travel. per_turn: mm of it for a whole turn.
+    """
+
+    of: Travel | TravelAlong
+    per_turn: float
+
+    unit = "rad"
+    exact = False
+
+    @property
+    def coordinate(self) -> str:  # type: ignore[override]
+        """The travel's."""
+        return self.of.coordinate
+
+    @property
+    def input(self) -> str:  # type: ignore[override]
+        """Called as the travel's."""
+        return self.of.input
+
+    @property
+    def travel(self) -> Drive:
+        return self.of
+
+    @property
+    def pushes(self) -> str:
+        return self.of.pushes
+
+    @property
+    def sign(self) -> str:
+        """As that of its travel, unless that is per turn the other way."""
+        return f"{'' if self.per_turn > 0.0 else 'against '}{self.of.sign}"
+
+    def scale(self, drawing: Drawing) -> Pair:
+        """The travel's, times per_turn / 2 pi."""
+        turn = np.asarray(TURN[0]), np.asarray(TURN[1])
+        ratio = pair_quotient(_exactly(np.asarray(self.per_turn)), turn)
+        return pair_product(ratio, self.of.scale(drawing))
+
+    def drawn(self, drawing: Drawing) -> Array:
+        return self.of.drawn(drawing)
+
+    def extremes(self, drawing: Drawing) -> tuple[Array, Array]:
+        """The travel's."""
+        return self.of.extremes(drawing)
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,10 @@ GAP = "gap"
 
 @dataclass(frozen=True)
 class ByInput:
-    """By one input, rad or mm; by nothing where it is none of the part that is solved for."""
+    """By one input, rad or mm; by mm of its travel where it stands for one.
+
+    By nothing where it is none of the part that is solved for.
+    """
 
     input: str
 
@@ -68,16 +71,16 @@ def way_slopes(mechanism: Mechanism, y: Array, ways: Sequence[Way]) -> list[Arra
 def _known_slopes(mechanism: Mechanism, y: Array, way: Way) -> Array:
     """The known coordinates' part of dy/dq, (N, known)."""
     topology, unknowns = mechanism.topology, mechanism.map.unknowns
+    known = np.zeros_like(y[:, unknowns:])
     if isinstance(way, ByInput):
         if way.input not in topology.required_inputs:
-            return np.zeros_like(y[:, unknowns:])
-        values = mechanism.input_values(y[:, unknowns:])
-        series = {
-            one: np.stack([value, np.full_like(value, one == way.input)], axis=-1)
-            for one, value in values.items()
-        }
-        return mechanism.known_series(series)[:, 1]
-    known = np.zeros_like(y[:, unknowns:])
+            return known
+        value = mechanism.input_values(y[:, unknowns:])[way.input]
+        series = np.stack([value, np.ones_like(value)], axis=-1)
+        for drive, place in zip(topology.drives, topology.driven, strict=True):
+            if drive.input == way.input:
+                known[:, place - unknowns] = drive.travel.series(series, mechanism.drawing)[:, 1]
+        return known
     if isinstance(way, ByLength):
         known[:, length_coordinate(topology, way.rod) - unknowns] = 1.0
     elif way.point in topology.chassis:

@@ -118,14 +118,22 @@ class Topology:
         others = tuple(f"{other}." for other in self.sides if other != part)
         return tuple(
             name
-            for name in self.required_inputs
+            for name in self.holding_inputs
             if (name in steering) == (way == "by_rack") and not name.startswith(others)
         )
 
     @cached_property
     def required_inputs(self) -> tuple[str, ...]:
-        """Inputs that must be given."""
+        """Inputs that must be given: those that drive a coordinate.
+
+        What moves the chassis is among them where a height over the ground is driven.
+        """
         return tuple(dict.fromkeys(drive.input for drive in self.drives))
+
+    @property
+    def holding_inputs(self) -> tuple[str, ...]:
+        """Those of them that hold a freedom of the mechanism."""
+        return tuple(name for name in self.required_inputs if name not in self.chassis_inputs)
 
     @cached_property
     def turning(self) -> tuple[str, ...]:
@@ -140,7 +148,7 @@ class Topology:
     @property
     def inputs(self) -> tuple[str, ...]:
         """Every input that may be given."""
-        return (*self.required_inputs, *self.chassis_inputs)
+        return tuple(dict.fromkeys((*self.required_inputs, *self.chassis_inputs)))
 
     @property
     def chassis_inputs(self) -> tuple[str, ...]:

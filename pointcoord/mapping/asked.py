@@ -57,6 +57,8 @@ def columns_of(
         np.stack([np.broadcast_to(state[name], shape).reshape(count) for name in domain.free], axis=-1)
         for state in arrays
     ]
+    # What is held moves the chassis as well, where a height over the ground is driven.
+    arrays[0] = {**{name: np.asarray(value) for name, value in held.items()}, **arrays[0]}
     named = (name for name in topology.chassis_inputs if any(name in state for state in arrays))
     laws = {
         name: [np.broadcast_to(state.get(name, np.zeros(())), shape).reshape(count) for state in arrays]
@@ -92,7 +94,7 @@ def checked_ranges(mechanism: Mechanism, ranges: Ranges) -> dict[str, tuple[floa
     if not isinstance(ranges, Mapping):
         raise MapError("ranges", f"is a {type(ranges).__name__}", "a pair of numbers by input")
     for name in ranges:
-        if name in topology.chassis_inputs:
+        if name in topology.chassis_inputs and name not in topology.required_inputs:
             allowed = "no range: it moves the whole chassis, whatever it is"
             raise MapError(f"ranges[{name!r}]", "is given", allowed)
         if name not in topology.required_inputs:

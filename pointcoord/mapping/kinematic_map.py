@@ -375,7 +375,8 @@ def kinematic_map(
     Args:
         scene: whose suspension; the laws of its inputs and its instants are not looked at.
         ranges: the lower and the upper end of each input that drives it, rad or mm; one whose ends are the
-            same is held there. What moves the chassis has none: it may be anything.
+            same is held there. What moves the chassis has none, for it may be anything, unless a height over
+            the ground is driven.
         tolerance: largest proven bound of a position, mm, on every patch, in the chassis' frame and near the
             mechanism: what a far origin rounds comes to it.
         halvings: how often the range of an input is halved at most, towards places where assemblies end.

@@ -137,7 +137,7 @@ def _inputs(structure: Structure) -> None:
             _body(structure, body, place)
         for slide in one.named("slide"):
             if slide not in structure.slides:
-                raise no_such("slide", slide, structure.slides, (*place, "travel"))
+                raise no_such("slide", slide, structure.slides, (*place, one.kind))
         for point in one.named("point"):
             _point(structure, point, place)
         try:

@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS, car_directions
-from pointcoord.linkage.drives import Drive
+from pointcoord.linkage.drives import Drive, Travel, TurnedBy
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism.inputs import CHASSIS, Ends, Moves, Turn, Turns
+from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Ends, Moves, Turn, Turns
 from pointcoord.mechanism.structure import Slide, Structure
 
 Array = NDArray[np.float64]
@@ -177,7 +178,7 @@ def compiled(
     structure: Structure,
     driven: Collection[str],
     choices: Choices,
-    wheel_radius: float | None = None,
+    lengths: Mapping[str, float] | None = None,
     puts_in_place: bool = False,
 ) -> Topology:
     """The topology of a structure whose inputs are driven.
@@ -185,10 +186,10 @@ def compiled(
     Args:
         driven: names of inputs; those that move the chassis may be among them.
         choices: what of the bodies stands for them.
-        wheel_radius: mm; needed where the height of a contact point is driven.
+        lengths: that driven inputs need beside the points, by name, mm.
         puts_in_place: whether closing a drawing moves points on purpose.
     """
-    return _Compiler(structure, tuple(driven), choices, wheel_radius).topology(puts_in_place)
+    return _Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,7 @@ class _Compiler:
     structure: Structure
     driven: tuple[str, ...]
     choices: Choices
-    wheel_radius: float | None
+    lengths: Mapping[str, float]
 
     def topology(self, puts_in_place: bool) -> Topology:
         """All of it."""
@@ -217,7 +218,11 @@ class _Compiler:
             for name in names
             if name not in solved and name not in chassis
         }
-        constraints = [*self._bodies(solved), *self._points_in_bodies(solved), *self._slides()]
+        constraints: list[Constraint] = [
+            *self._bodies(solved),
+            *self._points_in_bodies(solved),
+            *self._slides(),
+        ]
         drives: list[Drive] = []
         for name, one in structure.inputs.items():
             rows, own = one.made(name, self) if name in self.driven else ([], [])
@@ -246,8 +251,9 @@ class _Compiler:
             bodies={body: triangles[body] for body in structure.knuckles.values()},
             carried=carried,
             directions=known,
-            constraints=tuple(constraints),
-            drives=tuple(drives),
+            # Several heights may be over one ground.
+            constraints=tuple(dict.fromkeys(constraints)),
+            drives=tuple(dict.fromkeys(drives)),
             roles=roles,
             sides=structure.sides,
             rods=structure.rods,
@@ -275,6 +281,49 @@ class _Compiler:
                         (found[slide], name),
                     )
         return found
+
+    @cached_property
+    def ground(self) -> tuple[Ground, list[Drive]]:
+        """The ground as the driven chassis sees it, and what drives it.
+
+        Raises:
+            MechanismError: the chassis is turned about a point that it does not carry.
+        """
+        chassis, before = self.structure.bodies[CHASSIS], "up"
+        turns, moves, made = list[TurnedBack](), list[tuple[str, str]](), list[Drive]()
+        driven = [(name, one) for name, one in self.structure.inputs.items() if name in self.driven]
+        for name, one in reversed(driven):
+            if isinstance(one, Turns):
+                if one.about not in chassis:
+                    raise MechanismError(
+                        f"{name} turns the chassis about {one.about}, which it does not carry, and a height "
+                        f"over the ground is driven; allowed: about one of {', '.join(chassis)}",
+                        (name, one.about),
+                    )
+                pair = f"cosine of {name}", f"sine of {name}"
+                turns.append(TurnedBack(name, before, one.along, one.about, *pair))
+                made += [TurnedBy(place, name, quarter) for quarter, place in enumerate(pair)]
+                before = turns[-1].name
+            elif isinstance(one, Moves):
+                value = f"value of {name}"
+                moves.append((value, one.along))
+                made.append(Travel(value, name, chassis[0], chassis[0], one.along, False))
+        return Ground(tuple(turns), (Displaced(tuple(moves)),) if moves else ()), made
+
+    def length(self, name: str, input: str) -> float:
+        """A length that an input needs, mm.
+
+        Raises:
+            MechanismError: the scene does not say it.
+        """
+        if name not in self.lengths:
+            what, usual = LENGTHS[name]
+            raise MechanismError(
+                f"input {input!r} is {what}, and the mechanism has no {name}; allowed: {name} in mm, such as "
+                f"{name} = {usual}",
+                (input,),
+            )
+        return self.lengths[name]
 
     def shared(self, body: str, other: str) -> tuple[str, ...]:
         return self.structure.shared(body, other)

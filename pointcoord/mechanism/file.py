@@ -101,7 +101,7 @@ class MechanismFile:
         driven: Collection[str] | None = None,
         points: Mapping[str, Place] | None = None,
         axes: Mapping[str, Place] | None = None,
-        wheel_radius: float | None = None,
+        lengths: Mapping[str, float] | None = None,
     ) -> Topology:
         """The linkage of a car, made once for all that are alike.
 
@@ -110,21 +110,22 @@ class MechanismFile:
             points: as drawn, mm. They say which points are there, and which stand for a body; by order of
                 the file unless given.
             axes: `up` and `right` of the car.
-            wheel_radius: mm.
+            lengths: what inputs may need beside the points, by name, mm.
         """
         whole = self.structures[closure]
         structure = whole if points is None else whole.drawn_with(points)
         there = dict.fromkeys(structure.points, BY_ORDER) if points is None else points
-        along = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+        along, given = axes or {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}, lengths or {}
         if driven is None:
-            driven = self._first_driven(structure, closure, there, along, wheel_radius)
+            driven = self._first_driven(structure, closure, there, along, given)
         own = tuple(name for name in structure.inputs if name in driven)
         choices = choices_of(structure, own, there, along)
-        radius = wheel_radius if any(structure.inputs[n].kind == "contact" for n in own) else None
-        key = closure, own, tuple(structure.points), choices.key, radius
+        needed = {structure.inputs[name].length for name in own}
+        given = {name: length for name, length in given.items() if name in needed}
+        key = closure, own, tuple(structure.points), choices.key, tuple(given.items())
         if key not in self._compiled:
             named = f"{self.name}, {closure}" if closure != AS_DRAWN else self.name
-            topology = compiled(structure, own, choices, radius, closure != AS_DRAWN)
+            topology = compiled(structure, own, choices, given, closure != AS_DRAWN)
             # What a drawing may leave out stays known by name: messages say what stands in for what.
             self._compiled[key] = replace(topology, name=named, stand_ins=whole.stand_ins)
         topology = self._compiled[key]
@@ -140,16 +141,16 @@ class MechanismFile:
         closure: str,
         points: Mapping[str, Place],
         axes: Mapping[str, Place],
-        wheel_radius: float | None,
+        lengths: Mapping[str, float],
     ) -> tuple[str, ...]:
-        """The first inputs of the file that hold every freedom; contact heights with a radius only.
+        """The first inputs of the file that hold every freedom, of those whose lengths are given.
 
         One is passed over that drives, however the car is drawn, what those before it hold.
         """
         holding = [
             name
             for name, one in structure.inputs.items()
-            if not one.moves_the_chassis and (one.kind != "contact" or wheel_radius is not None)
+            if not one.moves_the_chassis and (not one.length or one.length in lengths)
         ]
         if self.freedoms(closure) <= 0:
             drawn = len({*points.values()}) > 1
@@ -157,7 +158,7 @@ class MechanismFile:
         taken: tuple[str, ...] = ()
         for name in holding:
             tried = (*taken, name)
-            topology = compiled(structure, tried, choices_of(structure, tried, points, axes), wheel_radius)
+            topology = compiled(structure, tried, choices_of(structure, tried, points, axes), lengths)
             free = topology.layout.unknowns - len(topology.labels)
             if free >= 0 and not topology.fighting:
                 taken = tried

@@ -155,8 +155,8 @@ def settled(topology: Topology, points: Mapping[str, Place], axes: Mapping[str, 
 
 
 def _words(topology: Topology, found: Freedoms, fighting: bool) -> str:
-    driven = ", ".join(topology.required_inputs) or "none"
-    count = len(topology.required_inputs)
+    driven = ", ".join(topology.holding_inputs) or "none"
+    count = len(topology.holding_inputs)
     words = [f"{topology.name} with {count} driven input{'' if count == 1 else 's'} ({driven})"]
     if fighting:
         words.append(f"has inputs that fight at the drawing: {', '.join(found.redundant)}")

@@ -11,6 +11,7 @@ from pointcoord.linkage import drives
 from pointcoord.linkage.constraints import turn
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
+from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF, Ground
 from pointcoord.linkage.constraints.in_body import Normal
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
@@ -19,7 +20,12 @@ from pointcoord.linkage.drives import Drive
 from pointcoord.mechanism.faults import TableFault, known_keys, no_such
 from pointcoord.wording import shown
 
-CHASSIS = "chassis"
+LENGTHS = {
+    "wheel_radius": ("the height of the wheel's contact point", 300.0),
+    "rack_per_turn": ("the turn of a steering wheel", 50.0),
+}
+"""The lengths that inputs may need beside the points: what such an input is, and a usual one, mm."""
+CHASSIS: Literal["chassis"] = "chassis"
 
 
 def _once(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -64,9 +70,12 @@ Made = tuple[list[Constraint], list[Drive]]
 class Compiled(Protocol):
     """What an input is made with."""
 
+    def length(self, name: str, input: str) -> float:
+        """A length that the scene says beside its points and that an input needs, mm."""
+
     @property
-    def wheel_radius(self) -> float | None:
-        """Of the scene, mm."""
+    def ground(self) -> tuple[Ground, list[Drive]]:
+        """The ground as the driven chassis sees it, and what drives it."""
 
     def shared(self, body: str, other: str) -> tuple[str, ...]:
         """Points of two bodies, as the first lists them."""
@@ -83,16 +92,18 @@ class Input(BaseModel):
 
     Attributes:
         unit: of its values.
+        length: of those that the scene says beside its points, the name of the one that it needs.
         moves_the_chassis: whether it moves the whole car, so that it holds no freedom of the mechanism.
     """
 
     model_config = ConfigDict(frozen=True)
     unit: ClassVar[str] = "mm"
+    length: ClassVar[str] = ""
     moves_the_chassis: ClassVar[bool] = False
 
     @property
     def kind(self) -> str:
-        """arm, turn, travel, height, contact, distance, moves or turns."""
+        """arm, turn, travel, steers, height, contact, distance, moves or turns."""
         return type(self).__name__.lower()
 
     @property
@@ -188,14 +199,30 @@ class Travel(Input):
     travel: SlideNames
 
     def made(self, name: str, of: Compiled) -> Made:
-        found: dict[str, Drive] = {}
-        for line in map(of.driven_line, self.travel):
-            if line.head in DIRECTIONS:
-                drive: Drive = drives.Travel(line.place, name, line.origin, line.point, line.head)
-            else:
-                drive = drives.TravelAlong(line.place, name, line)
-            found.setdefault(line.place, drive)  # several along one direction of the car have one travel
-        return [], list(found.values())
+        return [], [*_travels(name, self.travel, of)]
+
+
+class Steers(Input):
+    """The turn of a steering wheel, whose pinion makes the travel of slides."""
+
+    unit = "rad"
+    length = "rack_per_turn"
+    steers: SlideNames
+
+    def made(self, name: str, of: Compiled) -> Made:
+        per_turn = of.length(self.length, name)
+        return [], [drives.Steered(travel, per_turn) for travel in _travels(name, self.steers, of)]
+
+
+def _travels(name: str, slides: Names, of: Compiled) -> list[drives.Travel | drives.TravelAlong]:
+    found: dict[str, drives.Travel | drives.TravelAlong] = {}
+    for line in map(of.driven_line, slides):
+        if line.head in DIRECTIONS:
+            along = drives.Travel(line.place, name, line.origin, line.point, line.head)
+            found.setdefault(line.place, along)  # several along one direction of the car have one travel
+        else:
+            found.setdefault(line.place, drives.TravelAlong(line.place, name, line))
+    return list(found.values())
 
 
 class Height(Input):
@@ -216,9 +243,11 @@ class Height(Input):
 
 
 class Contact(Input):
-    """The height of a wheel's contact point."""
+    """The height of a wheel's contact point, in the chassis' frame or over the ground."""
 
+    length = "wheel_radius"
     contact: Pair
+    over: Literal["chassis", "ground"] = CHASSIS
 
     @property
     def directions(self) -> tuple[str, ...]:
@@ -226,9 +255,9 @@ class Contact(Input):
 
     def made(self, name: str, of: Compiled) -> Made:
         value, (inner, centre) = f"value of {name}", self.contact
-        assert of.wheel_radius is not None  # the scene is refused without
-        rows = ContactHeight(inner, centre, "up", value, of.wheel_radius)
-        return [rows], [drives.Travel(value, name, centre, centre, "up", False)]
+        ground, moves = of.ground if self.over == "ground" else (CHASSIS_ITSELF, [])
+        rows = ContactHeight(inner, centre, value, of.length(self.length, name), ground)
+        return [*ground.constraints, rows], [drives.Travel(value, name, centre, centre, "up", False), *moves]
 
 
 class Distance(Input):
@@ -261,9 +290,10 @@ class Turns(Input):
 
 
 KINDS: Mapping[str, type[Input]] = {
-    kind.__name__.lower(): kind for kind in (Arm, Turn, Travel, Height, Contact, Distance, Moves, Turns)
+    kind.__name__.lower(): kind
+    for kind in (Arm, Turn, Travel, Steers, Height, Contact, Distance, Moves, Turns)
 }
-TELLING = ("angle", "travel", "height", "contact", "distance", "moves", "turns")
+TELLING = ("angle", "travel", "steers", "height", "contact", "distance", "moves", "turns")
 
 
 def input_of(table: object) -> object:

@@ -21,8 +21,9 @@ AXES = {
 }
 """Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
 
-OF_THE_WHEEL = ("wheel_radius",)
-OF_THE_CAR = ("wheelbase", "centre_of_gravity_height")
+OF_THE_WHEEL = ("wheel_radius", "rack_per_turn")
+# By what power of the unit of length each goes.
+OF_THE_CAR = {"wheelbase": 1, "centre_of_gravity_height": 1, "spring_free_length": 1, "spring_rate": -1}
 
 
 def in_directions(mechanism: dict[str, Any]) -> dict[str, Any]:
@@ -66,7 +67,7 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
         if isinstance(points, Mapping):
             lengthy["points"] = _times(factor, points)
         if isinstance(car, Mapping):
-            lengthy["car"] = {n: _times(factor, v) if n in OF_THE_CAR else v for n, v in car.items()}
+            lengthy["car"] = {n: _times(factor ** OF_THE_CAR.get(n, 0), v) for n, v in car.items()}
         if isinstance(loads, Mapping):
             lengthy["loads"] = _moments(factor, loads)
         content["mechanism"] = {**mechanism, **lengthy}

@@ -32,7 +32,7 @@ from pointcoord.mechanism.file import (
     whole_tables,
 )
 from pointcoord.mechanism.freedoms import free_directions
-from pointcoord.mechanism.inputs import CHASSIS
+from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.csv_table import beside, read_in
@@ -41,6 +41,7 @@ from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, says_drawn, swee
 from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
+    NotZero,
     Number,
     Part,
     PlainTable,
@@ -133,7 +134,8 @@ class CarPart(Part):
     """What the whole car is like, for the effects that ask for it.
 
     `axle` says which one the wheel is of. Lengths are in mm, the height of the centre of gravity above the
-    drawn ground. Of all that brakes or drives the car, the shares are those of this axle.
+    drawn ground. Of all that brakes or drives the car, the shares are those of this axle. The spring stands
+    between the damper's ends; its rate is in N/mm.
     """
 
     axle: Literal["front", "rear"] | None = None
@@ -141,6 +143,8 @@ class CarPart(Part):
     centre_of_gravity_height: Positive | None = None
     brake_share: Share | None = None
     drive_share: Share | None = None
+    spring_rate: Positive | None = None
+    spring_free_length: Positive | None = None
 
     @property
     def numbers(self) -> dict[str, float]:
@@ -181,6 +185,7 @@ class MechanismPart(Part):
     up: Vector = (0.0, 0.0, 1.0)
     right: Vector = (0.0, 1.0, 0.0)
     wheel_radius: Positive | None = None
+    rack_per_turn: NotZero | None = None
     car: CarPart | None = None
     loads: dict[str, LoadPart] = Field(default_factory=dict)
     points: dict[str, Vector]
@@ -342,7 +347,8 @@ class MechanismPart(Part):
             driven: names of the inputs that are driven, chassis motions among them; only these are given.
         Returns:
             Bodies, rods, slides, inputs and roles by name, every point as drawn (mm), the car's axes, its
-            side, the wheel's radius (mm, or None), what is given of the whole car, and the loads (N, N mm).
+            side, the wheel's radius and the rack's travel per turn (mm, or None), what is given of the
+            whole car, and the loads (N, N mm).
         """
         structure = self.structure
         return {
@@ -353,6 +359,7 @@ class MechanismPart(Part):
             "right": list(self.right),
             "side": self.side,
             "wheel_radius": self.wheel_radius,
+            "rack_per_turn": self.rack_per_turn,
             "car": {} if self.car is None else self.car.model_dump(exclude_none=True),
             "loads": {part: {n: list(v) for n, v in load} for part, load in self.loads.items()},
         }
@@ -361,8 +368,14 @@ class MechanismPart(Part):
     def topology(self) -> Topology:
         """The linkage that its points are put on."""
         return self.file.topology(
-            self.closure, self.driven, self.points, {"up": self.up, "right": self.right}, self.wheel_radius
+            self.closure, self.driven, self.points, {"up": self.up, "right": self.right}, self._lengths
         )
+
+    @property
+    def _lengths(self) -> dict[str, float]:
+        """What inputs may need beside the points, as far as it is given."""
+        given = {name: getattr(self, name) for name in LENGTHS}
+        return {name: length for name, length in given.items() if length is not None}
 
     def drawn_inputs(self, driven: Collection[str]) -> dict[str, float]:
         """The values at which inputs are drawn, if these are driven; rad or mm.
@@ -372,7 +385,7 @@ class MechanismPart(Part):
         """
         directions = {"up": self.up, "right": self.right}
         known = [name for name in self.structure.inputs if name in driven]
-        topology = self.file.topology(self.closure, known, self.points, directions, self.wheel_radius)
+        topology = self.file.topology(self.closure, known, self.points, directions, self._lengths)
         mechanism = build_mechanism(topology, dict(self.points), directions)
         coordinates = mechanism.drawn[mechanism.map.unknowns :]
         return {name: float(value) + 0.0 for name, value in mechanism.input_values(coordinates).items()}
@@ -540,11 +553,6 @@ class Scene(Part):
             if name not in known:
                 hint = MOVES.get(name) or meant(name, known)
                 raise ValueError(f"no input is called {shown(name)}{hint}; allowed: {', '.join(known)}")
-            if known[name].kind == "contact" and self.mechanism.wheel_radius is None:
-                raise ValueError(
-                    f"input {name!r} is the height of the wheel's contact point, and the mechanism has no "
-                    "wheel_radius; allowed: wheel_radius in mm, such as wheel_radius = 300.0"
-                )
         self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Self, SupportsFloat
 
 import numpy as np
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -67,6 +68,12 @@ def _own_list(value: object) -> object:
     return tuple(value)
 
 
+def _not_zero(value: float) -> float:
+    if value == 0.0:
+        raise ValueError("is 0; allowed: a number that is not 0")
+    return value
+
+
 def _own_table(value: object) -> object:
     """A table of plain data, with tuples for its lists."""
     if isinstance(value, Mapping):
@@ -78,6 +85,7 @@ AS_LIST = BeforeValidator(_own_list)
 Text = Annotated[str, Field(strict=True)]
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False), BeforeValidator(_own_number)]
 Positive = Annotated[Number, Field(gt=0.0)]
+NotZero = Annotated[Number, AfterValidator(_not_zero)]
 Share = Annotated[Number, Field(ge=0.0, le=1.0)]
 Whole = Annotated[int, Field(strict=True), BeforeValidator(_own_whole)]
 Vector = Annotated[tuple[Number, Number, Number], AS_LIST]

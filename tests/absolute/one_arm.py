@@ -22,6 +22,8 @@ CAR: dict[str, Any] = {
     "centre_of_gravity_height": 520.0,
     "brake_share": 0.65,
     "drive_share": 0.4,
+    "spring_rate": 27.5,
+    "spring_free_length": 640.0,
 }
 # A left wheel.
 DRAWN = {
@@ -47,7 +49,9 @@ BY_TRAVEL = (
     *(f"{view}_view_{number}" for view in ("front", "side") for number in ("swing_arm", "centre_height")),
     "anti_brake",
     "anti_drive",
+    "arm_roll_centre_height",
 )
+OF_DAMPER = ("damper_per_wheel", "wheel_per_damper", "spring_force", "wheel_force", "wheel_rate")
 # Roll about a point of the chassis, and pitch about another: axes forward and left.
 TURNS = {"roll": ("forward", (-1, 0, 0), "damper_top"), "pitch": ("left", (0, -1, 0), "stop")}
 
@@ -123,7 +127,9 @@ def written(effect: str, given: Mapping[str, float]) -> float:
     """An effect at values of the inputs that are not 0."""
     with mp.workdps(DIGITS):
         values = {name: mpf(given.get(name, 0.0)) for name in ("turn", "steer", *TURNS)}
-        name, _, by = effect.partition("_by_")
+        name, by = effect, ""
+        if effect.endswith(("_by_travel", "_by_rack")):
+            name, _, by = effect.rpartition("_by_")
 
         def number(name: str, **moved: Any) -> Any:
             there = values | moved
@@ -136,6 +142,14 @@ def written(effect: str, given: Mapping[str, float]) -> float:
 
         if not by and name in BY_TRAVEL:
             return float(_by_travel(values, number("contact_travel"))[name])
+        if effect in OF_DAMPER:
+            length, rise = (
+                diff(lambda t, n=n: number(n, turn=t), values["turn"]) for n in ("damper_length", "travel")
+            )
+            ratio, rate = -length / rise, mpf(CAR["spring_rate"])
+            force = rate * (CAR["spring_free_length"] - number("damper_length"))
+            of_damper = (ratio, 1 / ratio, force, force * ratio, rate * ratio**2)
+            return float(dict(zip(OF_DAMPER, of_damper, strict=True))[effect])
         if by == "rack":
             return float(diff(lambda s: number(name, steer=s), values["steer"]))
         if not by:
@@ -157,6 +171,16 @@ def _by_travel(values: Mapping[str, Any], rise: Any) -> dict[str, Any]:
 
     front, side, side_at_centre = (hinge_in_plane(*at) for at in ((c, 0), (c, 1), (centre, 1)))
 
+    def about_no_axle() -> Vector:
+        """How c goes where the arm turns about its steering axis too, so that it goes along no line."""
+        lower, upper = (place(p, values) for p in ROLES["steering_axis"])
+        hinge, axis = end - pivot, upper - lower
+        up = cross(hinge, lower - pivot)
+        w = hinge - axis * (dot(hinge, up) / dot(axis, up))
+        return up + cross(w, c - lower)
+
+    arms = about_no_axle()
+
     def anti(share: str, steepness: Any) -> Any:
         height = CAR["centre_of_gravity_height"] - rise
         return -100 * mpf(CAR[share]) * steepness * CAR["wheelbase"] / height
@@ -164,6 +188,7 @@ def _by_travel(values: Mapping[str, Any], rise: Any) -> dict[str, Any]:
     return {
         # From c along the normal of v in the front view until y = 0.
         "roll_centre_height": c[1] * v[1] / v[2],
+        "arm_roll_centre_height": c[1] * arms[1] / arms[2],
         "front_view_swing_arm": front[1],
         "front_view_centre_height": front[2],
         "side_view_swing_arm": side[0],

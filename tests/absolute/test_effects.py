@@ -11,7 +11,9 @@ from shipped import EPS, Motion, shipped
 import absolute
 from absolute.dual import arctan2, constant
 
-EFFECTS = tuple(absolute.EFFECTS)
+# The carriage does not turn the arm, which has no screw axis by it.
+EFFECTS = tuple(name for name in absolute.EFFECTS if not name.startswith("screw_"))
+LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
 POSES: tuple[dict[str, float], ...] = (
     {},
     {"turn": 0.2, "steer": 15.0},
@@ -28,7 +30,9 @@ OFF = 10 * 40 * EPS * 800.0
 def tolerance(name: str) -> float:
     if "_view_" in name:
         return 50.0 * OFF
-    return {"mm": OFF, "%": 5.0 * OFF}.get(absolute.EFFECTS[name].unit, OFF / 100.0)
+    # A spring gives 27.5 N for each mm.
+    units = {"mm": OFF, "%": 5.0 * OFF, "N": 27.5 * OFF, "N/mm": 27.5 * OFF / 100.0}
+    return units.get(absolute.EFFECTS[name].unit, OFF / 100.0)
 
 
 def assert_close(found: dict[str, float], wanted: dict[str, float], times: float = 1.0) -> None:
@@ -58,14 +62,13 @@ def test_a_mirrored_scaled_moved_or_turned_car_has_the_same_numbers(values: dict
             {**values, "steer": scale * values.get("steer", 0.0)},
             points,
             wheel_radius=scale * RADIUS,
-            car=CAR | {name: scale * CAR[name] for name in ("wheelbase", "centre_of_gravity_height")},
+            car=CAR | {name: scale * CAR[name] for name in LENGTHS},
         )
-        units = {
-            name: {"mm": scale, "rad/mm": 1.0 / scale}.get(absolute.EFFECTS[name].unit, 1.0) for name in here
-        }
+        by = {"mm": scale, "N": scale, "rad/mm": 1.0 / scale}
+        units = {name: by.get(absolute.EFFECTS[name].unit, 1.0) for name in here}
         assert_close({name: value / units[name] for name, value in scaled.items()}, here, 2)
     # The roll centre's plane goes through the origin, so it may not move sideways. Places are rounded anew.
-    others = tuple(name for name in EFFECTS if name != "roll_centre_height")
+    others = tuple(name for name in EFFECTS if not name.endswith("roll_centre_height"))
     for shift, names in (((500.0, 0.0, -300.0), EFFECTS), ((100.0, 700.0, 50.0), others)):
         moved = solved(names, values, {name: np.add(point, shift) for name, point in DRAWN.items()})
         assert_close(moved, {name: here[name] for name in names}, 4)

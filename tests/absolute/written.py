@@ -7,7 +7,7 @@ of its axle, the wheel's lowest point by two directions in its plane. Axes x rea
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from mpmath import atan2, cos, matrix, mpf, sin, sqrt
+from mpmath import asin, atan2, cos, matrix, mpf, sin, sqrt
 
 Vector = Any
 Place = Callable[[str], Vector]
@@ -52,6 +52,8 @@ def numbers(
         "camber": atan2(-spin[2], out * spin[1]),
         "toe": -heading,
         "steer_angle": -out * heading,
+        "camber_by_arcsine": -asin(spin[2] / sqrt(dot(spin, spin))),
+        "toe_by_arcsine": -asin(spin[0] / sqrt(dot(spin, spin))),
         "travel": (still(hub) - drawn(hub))[2],
     }
     if "damper" in roles:

@@ -70,6 +70,8 @@ def make_scene() -> Callable[..., Scene]:
                         "centre_of_gravity_height": 500.0,
                         "brake_share": 0.6,
                         "drive_share": 0.3,
+                        "spring_rate": 30.0,
+                        "spring_free_length": 600.0,
                     },
                     "up": tuple(np.asarray(up, float).tolist()),
                     "right": tuple(np.asarray(right, float).tolist()),

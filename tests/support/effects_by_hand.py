@@ -267,6 +267,73 @@ def _anti_features(car: Car) -> Numbers:
     return {"load_share": found}
 
 
+def _angles_by_arcsine(car: Car) -> Numbers:
+    """By the unit spin axis, whose parts up and forward are sines."""
+    spin, forward = car.line(car.wheel_axis), cross(car.up, car.right)
+    size = mp.sqrt(dot(spin, spin))
+    camber, toe = -mp.asin(dot(spin, car.up) / size), mp.asin(dot(spin, forward) / size)
+    return {"wheel": {"camber_by_arcsine": [camber], "toe_by_arcsine": [toe]}}
+
+
+def _screw_axis(car: Car) -> Numbers:
+    """By the place at each height where the knuckle moves along its turn: v + w x (p - W) = pitch w.
+
+    Seen along the turn, the wheel centre goes on a circle about that place.
+    """
+    turn, centre = car.driven_turn, car.places[car.wheel_axis[1]]
+    square, moved = dot(turn, turn), car.moving[car.wheel_axis[1]]
+    pitch = dot(turn, moved) / square
+    across = plus(moved, turn, -pitch)
+    place = plus(centre, cross(turn, across), 1 / square)
+    upper = plus(place, turn if dot(turn, car.up) > 0 else plus((mpf(0),) * 3, turn, -1), 1000)
+    points = {name: [p] for name, p in {**car.places, "screw lower": place, "screw upper": upper}.items()}
+    other = replace(car, points=points, steering_axis=("screw lower", "screw upper"))
+    angles = {
+        "kingpin": _wheel_angles(other)["wheel"]["kingpin"],
+        "caster": _caster(other)["wheel"]["caster"],
+    }
+    return {
+        "wheel": {f"screw_{name}": number for name, number in angles.items()},
+        "dimension": {f"screw_{name}": n for name, n in _steering_axis(other)["dimension"].items()},
+        "screw_pitch": {"screw_pitch": [pitch]},
+    }
+
+
+def _motion_ratio(car: Car) -> Numbers:
+    """By differences of the damper's length and of the travel."""
+    length = _slopes(_damper, car)["damper_length"]
+    ratio = -length / _slopes(_wheel_travel, car)["travel"]
+    return {"dimension_gradient": {"damper_per_wheel": [ratio], "wheel_per_damper": [1 / ratio]}}
+
+
+def _spring(car: Car) -> Numbers:
+    """A linear spring between the damper's ends; the wheel's work is the damper's."""
+    ratio = _motion_ratio(car)["dimension_gradient"]["damper_per_wheel"][0]
+    rate, free = car.data["spring_rate"], car.data["spring_free_length"]
+    force = rate * (free - _damper(car)["dimension"]["damper_length"][0])
+    return {
+        "spring_force": {"spring_force": [force], "wheel_force": [force * ratio]},
+        "wheel_rate": {"wheel_rate": [rate * ratio**2]},
+    }
+
+
+def _arm_roll_centre(car: Car) -> Numbers:
+    """The motion of both ball joints by a turn about a line: where planes square to their ways meet.
+
+    These planes, through the ball joints, are those of the arms; c goes square to the line, about it.
+    """
+    lower, upper = (car.places[name] for name in car.steering_axis)
+    one, two = _going(car, lower), _going(car, upper)
+    along, contact = cross(one, two), car.contact(car.places)
+    # A place of the line: on both planes, and at right angles to it from the origin.
+    rows = mp.matrix([[*one], [*two], [*along]])
+    place = tuple(mp.lu_solve(rows, mp.matrix([dot(one, lower), dot(two, upper), mpf(0)])))
+    velocity = cross(along, plus(contact, place, -1))
+    out = dot(plus(contact, car.origin), car.outboard)
+    height = out * dot(velocity, car.outboard) / dot(velocity, car.up)
+    return {"dimension": {"arm_roll_centre_height": [height]}}
+
+
 PER_MM = {"wheel": "angle_gradient", "dimension": "dimension_gradient"}
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
@@ -281,7 +348,12 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "wheel_travel": _wheel_travel,
     "steering_axis": _steering_axis,
     "damper": _damper,
+    "angles_by_arcsine": _angles_by_arcsine,
+    "screw_axis": _screw_axis,
+    "motion_ratio": _motion_ratio,
+    "spring": _spring,
     "roll_centre": _roll_centre,
+    "arm_roll_centre": _arm_roll_centre,
     "instant_centres": _instant_centres,
     "anti_features": _anti_features,
 }
@@ -289,6 +361,7 @@ OF_THE_CAR = (
     "camber",
     "wheel_angles",
     "toe",
+    "angles_by_arcsine",
     "steer_angle",
     "caster",
     "wheel_travel",

@@ -9,6 +9,7 @@ from pointcoord.effects.registry import ANGLES
 Array = NDArray[np.float64]
 
 LENGTHWISE = {name for name, angle in ANGLES.items() if {angle.sine, angle.cosine} & {"forward", "rearward"}}
+LENGTHWISE |= {"toe_by_arcsine", "screw_caster"}
 
 
 def forward(motion: Motion) -> Array:

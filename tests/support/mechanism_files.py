@@ -69,6 +69,7 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
         "right": list(right),
         "side": part.get("side", "left"),
         "wheel_radius": part.get("wheel_radius"),
+        "rack_per_turn": part.get("rack_per_turn"),
         "car": dict(part.get("car", {})),
         "loads": {},
     }

@@ -37,6 +37,8 @@ FRONT_AXLE = {
     "centre_of_gravity_height": 540,
     "brake_share": Fraction(5, 8),
     "drive_share": Fraction(1, 4),
+    "spring_rate": Fraction(63, 2),
+    "spring_free_length": 720,
 }
 OFF_AXIS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
 

@@ -143,9 +143,9 @@ def scales(numbers: Numbers) -> dict[str, float]:
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
     push = hardest + fastest * (fastest / size)
-    units = {"rad": 1.0, "mm": size, "rad/mm": 1.0 / size, "mm/mm": 1.0, "%": 1.0, "N": 1.0}
+    lengths = {"mm": size, "mm/rad": size, "rad/mm": 1.0 / size}
     return {
-        **{q.name: units[q.unit] for q in QUANTITIES.values() if q.unit in units},
+        **{q.name: lengths.get(q.unit, 1.0) for q in QUANTITIES.values()},
         "position": float(np.abs(corners).max()),
         "velocity": fastest,
         "acceleration": push,

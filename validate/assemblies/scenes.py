@@ -56,7 +56,7 @@ def counts(name: str) -> Iterator[SceneCount]:
 def _ways_to_hold(scene: Scene) -> list[tuple[str, ...]]:
     """The scene's own inputs, and then another one in place of that which is no travel of a slide."""
     known = scene.mechanism.structure.inputs
-    steering = tuple(name for name in scene.inputs if known[name].kind == "travel")
+    steering = tuple(name for name in scene.inputs if known[name].named("slide"))
     own = [name for name in scene.inputs if name not in steering and not known[name].moves_the_chassis]
     if len(own) != 1:
         return [(*own, *steering)]

@@ -64,7 +64,7 @@ def moved(base: Car, moves: Moves) -> Car:
     first = {
         slide: together[0]
         for one in base.structure.inputs.values()
-        if isinstance(together := dict(one.table).get("travel"), tuple) and len(together) > 1
+        if len(together := one.named("slide")) > 1
         for slide in together
     }
     travels: dict[str, float] = {}

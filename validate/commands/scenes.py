@@ -95,7 +95,7 @@ def _mechanism(part: MechanismPart) -> list[str]:
     lines = [f"bodies: {'; '.join(bodies(structure))}", "joints:"]
     lines += [f"  {joint}" for joint in joints(structure)]
     lines.append(
-        f"freedoms: {count}, held by {', '.join(topology.required_inputs) or 'no input'}"
+        f"freedoms: {count}, held by {', '.join(topology.holding_inputs) or 'no input'}"
         + (f"; could be driven as well: {', '.join(others)}" if others else "")
     )
     left_out = topology.left_labels

@@ -51,7 +51,7 @@ class AbsoluteCoordinates:
             effects, loads = effects_in(scene, model)
             solved = absolute.solve(
                 model,
-                {n: law for n, law in problem.laws.items() if n not in part.topology.chassis_motion},
+                driving(model, part, problem.laws),
                 chassis=chassis_motion(part, problem.laws),
                 rates=plan_effects(scene.effects).derivative > 0,
                 effects=effects,
@@ -72,6 +72,12 @@ def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> F
         for quantity in asked
     }
     return Found({"position": solved.position, **numbers}, solved.accuracy)
+
+
+def driving(model: absolute.Model, part: MechanismPart, laws: Mapping[str, Array]) -> dict[str, Array]:
+    """The laws that the model itself takes: of a displacement of the chassis where heights hang on it."""
+    moves = part.topology.chassis_motion.keys() - {*model.values}
+    return {name: law for name, law in laws.items() if name not in moves}
 
 
 def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pointcoord import Scene
+from pointcoord.effects.loads import LOADS
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import QUANTITIES
 
@@ -27,7 +28,7 @@ def asked_of_the_car(scene: Scene) -> tuple[str, ...]:
 
 def is_force(quantity: str) -> bool:
     """Whether it is one of what loads make."""
-    return QUANTITIES[quantity].unit == "N"
+    return QUANTITIES[quantity] in LOADS.quantities
 
 
 def per_second(quantity: str) -> int:

@@ -328,7 +328,7 @@ class _Held:
         """
         local = local_places(self.design, places, known)
         count = len(next(iter(places.values())))
-        read = self.design.mechanism.unknown_of(local, float)
+        read = self.design.mechanism.unknown_of(local, known.numbers, float)
         values = drawn = np.array([np.broadcast_to(x, count) for x in read], dtype=float)
         matrix = jacobian_of(list(values), known.numbers, known.equations)
         for _ in range(MOST_STEPS):
@@ -357,7 +357,7 @@ class _Held:
         for first, (name, (x, y, z)) in enumerate(local.items()):
             i = 3 * first
             points[name] = Dual(x, off[i]), Dual(y, off[i + 1]), Dual(z, off[i + 2])
-        read = self.design.mechanism.unknown_of(points, float)
+        read = self.design.mechanism.unknown_of(points, known.numbers, float)
         shape = (len(off), len(matrix))
         slopes = np.array([np.broadcast_to(slope_of(x), shape) for x in read])
         return np.asarray(np.abs(np.einsum("nij,jkn->nik", matrix, slopes)).sum(axis=-1))

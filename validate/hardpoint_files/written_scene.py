@@ -10,7 +10,7 @@ from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
-from pointcoord.effects.car_number import DIMENSION
+from pointcoord.effects.angle import Angle
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import SceneError
 from pointcoord.mechanism import mechanism_file
@@ -86,9 +86,9 @@ def scene_of(
     driven = required_inputs(source, kind, tables, places)
     content["inputs"] = {name: {"constant": 1.0} for name in driven}
     scene = Scene.from_mapping(content, source)
-    # Angles and rates; what is made of the wheel's radius or a damper a table seldom says.
-    had = [EFFECTS[e] for e in scene.mechanism.effects if EFFECTS[e].quantities != (DIMENSION,)]
-    plain = [effect for effect in had if not effect.way]
+    # Angles of lines, and rates; what is made of the wheel's radius or a damper a table seldom says.
+    had = [EFFECTS[effect] for effect in scene.mechanism.effects]
+    plain = [e for e in had if all(isinstance(number, Angle) for number in getattr(e, "numbers", ()))]
     parts = {e.name for e in plain for o in plain if e.own_names and {*e.own_names} < {*o.own_names}}
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 

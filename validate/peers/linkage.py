@@ -164,7 +164,7 @@ class Linkage:
                 least, most, words = BETWEEN[driven.kind]
                 value = law[:, 0]
                 _require(driven.input, law, np.asarray((value >= least) & (value <= most)), words)
-            found.append(law if driven.is_angle else law / self.unit)
+            found.append(law if driven.is_angle else law * (driven.per_input / self.unit))
         return Inputs(np.stack(found, axis=1), laws, self.plain)
 
 

@@ -46,7 +46,7 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     there = known.equations.points_of(centre)
     fixed, off = known.mechanism.fixed, (arb(0, width),) * 3
     near = {name: place if name in fixed else plus(place, off) for name, place in there.items()}
-    values = known.mechanism.unknown_of(near, as_ball)
+    values = known.mechanism.unknown_of(near, known.numbers, as_ball)
     room = [abs(value - number).upper() for number, value in zip(centre, values, strict=True)]
     matrix = known.matrix(centre)
     inverse = middle_inverse(matrix)

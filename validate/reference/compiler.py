@@ -40,7 +40,7 @@ from validate.reference.vectors import Scalar, Vector, across, cross, dot, each,
 CHASSIS = "chassis"
 Table = Mapping[str, Vector]
 Exact = Callable[[Fraction], Scalar]
-Reader = Callable[[Table, Sequence[Scalar], Exact], Sequence[Scalar]]
+Reader = Callable[[Table, Sequence[Scalar], Exact, Sequence[Scalar]], Sequence[Scalar]]
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Compiler:
             self.row(name, dot(gap, gap) - dot(drawn, drawn))
 
     def unknowns(self, count: int, read: Reader, length: bool = False) -> list[Polynomial]:
-        """New ones; `read` gives their values from points and the unknowns before them."""
+        """New ones; `read` gives their values from points, the unknowns before them and the numbers w."""
         first = len(self.lengths)
         self.lengths += [length] * count
         self.readers.append(read)
@@ -184,7 +184,7 @@ class Compiler:
 
         cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / gg)
 
-        def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+        def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
             r = minus(points[seen], points[a])
             return [dot(r, each(exact, cosine)), dot(r, each(exact, sine))]
 
@@ -210,7 +210,7 @@ class Compiler:
         # Rows that give 1 with one, two and the normal, each 0 with the others.
         duals = [times(g, 1 / area) for g in (cross(two, normal), cross(normal, one), normal)]
 
-        def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+        def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
             a, b = minus(points[i], points[j]), minus(points[k], points[m])
             rows, g = tuple(zip(a, b, cross(a, b), strict=True)), [each(exact, dual) for dual in duals]
             return [dot(row, column) for column in zip(*g, strict=True) for row in rows]
@@ -255,7 +255,7 @@ class Compiler:
     ) -> Polynomial:
         shorter = times(line, 1 / dot(along, along))
 
-        def read(points: Table, unknown: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+        def read(points: Table, unknown: Sequence[Scalar], exact: Exact, *_: object) -> list[Scalar]:
             now = each(exact, shorter) if body == CHASSIS else at(shorter, unknown, exact)
             return [dot(minus(points[point], points[through]), now)]
 

@@ -49,9 +49,10 @@ class Known:
     def driven_at(self, name: str, rate: arb) -> Known:
         """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
         zero = arb(0)
-        numbers: list[Jet] = []
-        for one, drive in self.mechanism.drives.items():
-            numbers += drive.numbers(Jet(self.inputs[one].value, rate if one == name else zero, zero))
+        inputs = {
+            one: Jet(jet.value, rate if one == name else zero, zero) for one, jet in self.inputs.items()
+        }
+        numbers = [w for drive in self.mechanism.drives.values() for w in drive.numbers(inputs)]
         return replace(self, numbers=numbers, chassis=self.chassis.still())
 
     def handed(self, unknown: Sequence[arb]) -> bool:
@@ -215,14 +216,14 @@ class Design:
     def known(self, driven: Driven) -> Known:
         """What the equations take as given, as jets of balls at the present precision, local."""
         inputs = {name: balls(jet) for name, jet in driven.items()}
-        numbers = [w for name, drive in self.mechanism.drives.items() for w in drive.numbers(inputs[name])]
+        numbers = [w for drive in self.mechanism.drives.values() for w in drive.numbers(inputs)]
         return self._known(numbers, inputs)
 
     def known_as_drawn(self) -> Known:
         """The same at rest at the inputs that the car is drawn at, the chassis in its place."""
         drives, zero = self.mechanism.drives, arb(0)
         drawn = {name: drive.input_of(drive.drawn()) for name, drive in drives.items()}
-        numbers = [Jet(w, zero, zero) for drive in drives.values() for w in drive.drawn()]
+        numbers = [Jet(w, zero, zero) for w in self.mechanism.drawn_numbers]
         return self._known(numbers, {name: Jet(drawn.get(name, zero), zero, zero) for name in self.inputs})
 
     def _known(self, numbers: Sequence[Jet], inputs: Mapping[str, Jet]) -> Known:
@@ -232,7 +233,8 @@ class Design:
     def drawn_unknown(self) -> list[arb]:
         """The unknowns of the points as drawn, exact numbers: what they do not meet is theirs to close."""
         places = {name: ball_vector(p) for name, p in self.table.items()}
-        return [arb(number).mid() for number in self.mechanism.unknown_of(places, as_ball)]
+        unknown = self.mechanism.unknown_of(places, self.mechanism.drawn_numbers, as_ball)
+        return [arb(number).mid() for number in unknown]
 
 
 @lru_cache(maxsize=256)
@@ -304,8 +306,8 @@ def _chosen(mechanism: Mechanism, table: Mapping[str, Vector]) -> tuple[int, ...
         return tuple(range(size))
     from scipy.linalg import qr  # few mechanisms need it, and it takes long to import
 
-    drawn = [float(x) for x in mechanism.unknown_of({n: ball_vector(p) for n, p in table.items()}, as_ball)]
-    numbers = [float(w) for drive in mechanism.drives.values() for w in drive.drawn()]
+    places, w = {n: ball_vector(p) for n, p in table.items()}, mechanism.drawn_numbers
+    drawn, numbers = [float(x) for x in mechanism.unknown_of(places, w, as_ball)], [float(x) for x in w]
     every = equations_in(mechanism, range(rows), float)
     matrix = np.zeros((rows, size))
     for i, j, entry in every.jacobian(drawn, numbers):

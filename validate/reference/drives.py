@@ -4,9 +4,12 @@ r"""Kinds of input: the rows that say them, the numbers w that these take, and w
     angle from the drawing    g1 w1 - g2 w2 = 0,                w1 = sin(theta), w2 = cos(theta) / |n|,
                               g1 = R e . R' e,  g2 = R e . R' (n x e),  n along the hinge, e across it
     travel of a slide         s = w                             w = travel / length of the slide's line
+    turn of a steering wheel  s = w                             travel = rack_per_turn angle / (2 pi)
     height of a point         P . direction = w
     contact height            (centre - s up) . direction = w,  s^2 + (r m / l)^2 = r^2,
                               m = (centre - inner) . up, l their distance, r the wheel's radius
+    the same over the ground  centre . g + w4 - s = w5,  m = (centre - inner) . g,  g = (w1, w2, w3) and w4
+                              such that a place p of the chassis is p . g + w4 high when the car is moved
     distance of two points    |P - Q|^2 = w,                    w = distance^2
 
 All lengths are local (see `design`), and so is the drawing.
@@ -17,14 +20,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from flint import arb
 
+from validate.reference.chassis import ChassisMotion
 from validate.reference.compiler import CHASSIS, Compiler, Exact, Table
 from validate.reference.directions import directed
 from validate.reference.errors import BadInputError
-from validate.reference.exact import as_ball
+from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
@@ -35,14 +40,16 @@ class Drive:
     """An input of a mechanism.
 
     Attributes:
-        numbers: the numbers w of the input's value, rad or mm, as a jet of balls.
+        numbers: the numbers w of the values of the inputs that it reads, rad or mm, as jets of balls.
+        reads: the input itself, and those besides that its numbers hang on.
         drawn: these numbers as drawn.
         input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
         required: whether it must be given; else it rests at zero.
         turns: whether it is an angle of any number of turns.
     """
 
-    numbers: Callable[[Jet], Sequence[Jet]]
+    numbers: Callable[[Mapping[str, Jet]], Sequence[Jet]]
+    reads: tuple[str, ...]
     drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
     required: bool = True
@@ -78,7 +85,9 @@ def _angle(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
-    return Drive(lambda value: [value.sin_cos()[1] * as_ball(d2).sqrt()], lambda: [as_ball(height)], angle)
+    return _own(
+        name, lambda value: [value.sin_cos()[1] * as_ball(d2).sqrt()], lambda: [as_ball(height)], angle
+    )
 
 
 def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -92,11 +101,7 @@ def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) 
     products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
     if on != CHASSIS:  # each is quadratic itself, and so an unknown
         for i, product in enumerate(tuple(products)):
-
-            def read(_: Table, values: Any, exact: Exact, product: Polynomial = product) -> list[Scalar]:
-                return [product.at(values, exact)]
-
-            (products[i],) = compiler.unknowns(1, read)
+            (products[i],) = compiler.unknowns(1, partial(_of_unknowns, product))
             compiler.row(name, products[i] - product)
     sine, cosine = compiler.number(), compiler.number()
     compiler.row(name, products[0] * sine - products[1] * cosine)
@@ -107,7 +112,8 @@ def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) 
         sin, cos = value.sin_cos()
         return [sin, cos * (1 / as_ball(nn).sqrt())]
 
-    return Drive(
+    return _own(
+        name,
         numbers,
         lambda: [arb(0), 1 / as_ball(nn).sqrt()],
         lambda w: arb.atan2(w[0], w[1] * as_ball(nn).sqrt()),
@@ -115,24 +121,56 @@ def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) 
     )
 
 
+def _of_unknowns(
+    one: Polynomial, _: Table, unknown: Sequence[Scalar], exact: Exact, *__: object
+) -> list[Scalar]:
+    return [one.at(unknown, exact)]
+
+
 def _travel(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    return _slid(compiler, name, spec["travel"], lambda: arb(1))
+
+
+def _steers(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+    given = compiler.plain.get("rack_per_turn")
+    if given is None:
+        raise BadInputError("rack_per_turn", None, f"a number of mm, which inputs.{name} needs")
+    return _slid(compiler, name, spec["steers"], lambda: travel_per_radian(compiler.plain))
+
+
+def travel_per_radian(plain: Mapping[str, Any]) -> arb:
+    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm.
+
+    Raises:
+        BadInputError: rack_per_turn is no number other than 0.
+    """
+    per_turn = as_fraction(plain["rack_per_turn"], "rack_per_turn")
+    if per_turn == 0:
+        raise BadInputError("rack_per_turn", plain["rack_per_turn"], "a number of mm other than 0")
+    return as_ball(per_turn) / (2 * arb.pi())
+
+
+def _slid(compiler: Compiler, name: str, slides: Sequence[str], per_input: Callable[[], arb]) -> Drive:
+    """Slides that go `per_input` mm per mm or rad of the input, a ball at the present precision."""
     drawn, lengths, unit = [], [], compiler.unit
-    for slide in spec["travel"]:
+    for slide in slides:
         shares, along, squared = compiler.lines[slide]
         compiler.row(name, shares[0] - compiler.number())
         told = compiler.plain["slides"][slide]
         off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
+    per_input()
 
     def numbers(value: Jet) -> list[Jet]:
-        local = value * as_ball(1 / unit)
+        local = value * (per_input() * as_ball(1 / unit))
         return [local * (1 / as_ball(squared).sqrt()) for squared in lengths]
 
-    return Drive(
+    return _own(
+        name,
         numbers,
         lambda: [as_ball(one) for one in drawn],
-        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt(),
+        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(),
         required=False,
     )
 
@@ -141,7 +179,7 @@ def _height(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     along = directed(compiler.plain, spec.get("along", "up"))
     drawn = dot(compiler.table[spec["height"]], along)
     compiler.row(name, dot(compiler.place(spec["height"]), along) - compiler.number())
-    return _risen(compiler.unit, lambda: as_ball(drawn))
+    return _risen(name, compiler.unit, lambda: as_ball(drawn))
 
 
 def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -156,22 +194,91 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         raise BadInputError(f"the distance from {inner} to {centre}", 0, "more than 0")
     share2 = r * r / l2
 
-    def read(points: Table, _: Sequence[Scalar], exact: Exact) -> list[Scalar]:
+    over = spec.get("over", CHASSIS)
+    if over not in (CHASSIS, "ground"):
+        raise BadInputError(f"inputs.{name}: over", over, "'chassis' or 'ground'")
+
+    def drawn() -> arb:
+        return as_ball(high) - as_ball(r * r - m * m * share2).sqrt()
+
+    if over == "ground":
+        return _over_ground(compiler, name, (inner, centre), (r * r, share2), drawn)
+
+    def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
         lean = dot(minus(points[centre], points[inner]), each(exact, up))
         return [root(exact(r * r) - lean * lean * exact(share2))]
 
     (drop,) = compiler.unknowns(1, read, length=True)
+    compiler.positive.append(drop)
     lean = dot(minus(compiler.place(centre), compiler.place(inner)), up)
     if isinstance(lean, Polynomial):
         compiler.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
-    compiler.positive.append(drop)
     compiler.row(name, dot(compiler.place(centre), up) - drop - compiler.number())
-    return _risen(compiler.unit, lambda: as_ball(high) - as_ball(r * r - m * m * share2).sqrt())
+    return _risen(name, compiler.unit, drawn)
 
 
-def _risen(unit: Fraction, drawn: Callable[[], arb]) -> Drive:
-    """An input that counts, in mm, from the drawing on."""
+def _over_ground(
+    compiler: Compiler,
+    name: str,
+    axis: tuple[str, str],
+    disc: tuple[Fraction, Fraction],
+    drawn: Callable[[], arb],
+) -> Drive:
+    """A contact height along the true up, which the chassis' inputs turn in the chassis' frame.
+
+    Args:
+        disc: r^2 and (r / l)^2.
+    """
+    (inner, centre), (square, share) = axis, disc
+    up, plain, first = directed(compiler.plain, "up"), compiler.plain, compiler.numbers
+    x, y, z, lift, level = (compiler.number() for _ in range(5))
+    seen = (x, y, z)
+
+    def read(points: Table, _: Sequence[Scalar], exact: Exact, numbers: Sequence[Scalar]) -> list[Scalar]:
+        a, b, c = numbers[first : first + 3]
+        lean = dot(minus(points[centre], points[inner]), (a, b, c))
+        return [lean, root(exact(square) - lean * lean * exact(share))]
+
+    lean, drop = compiler.unknowns(2, read, length=True)
+    compiler.positive.append(drop)
+    compiler.row(f"lean of {name}", lean - dot(minus(compiler.place(centre), compiler.place(inner)), seen))
+    compiler.row(f"contact of {name}", drop * drop + lean * lean * share - square)
+    compiler.row(name, dot(compiler.place(centre), seen) + lift - drop - level)
+    moving = tuple(n for n, spec in plain["inputs"].items() if {"moves", "turns"} & {*spec})
+
+    def numbers(inputs: Mapping[str, Jet]) -> list[Jet]:
+        chassis = ChassisMotion.of(plain, compiler.table, compiler.unit, inputs, as_ball)
+        zero = Jet(arb(0), arb(0), arb(0))
+        nowhere, upward = (zero, zero, zero), each(as_ball, up)
+        ways = ([zero + int(i == k) for i in range(3)] for k in range(3))
+        ground = [zero + dot(chassis.turned((a, b, c)), upward) for a, b, c in ways]
+        risen = inputs[name] * as_ball(1 / compiler.unit) + drawn()
+        return [*ground, zero + dot(chassis.moved(nowhere), upward), risen]
+
     return Drive(
+        numbers,
+        (name, *moving),
+        lambda: [*each(as_ball, up), arb(0), drawn()],
+        lambda w: (w[4] - drawn()) * as_ball(compiler.unit),
+    )
+
+
+def _own(
+    name: str,
+    numbers: Callable[[Jet], Sequence[Jet]],
+    drawn: Callable[[], Sequence[arb]],
+    input_of: Callable[[Sequence[arb]], arb],
+    required: bool = True,
+    turns: bool = False,
+) -> Drive:
+    """An input whose numbers hang on its own value alone."""
+    return Drive(lambda inputs: numbers(inputs[name]), (name,), drawn, input_of, required, turns)
+
+
+def _risen(name: str, unit: Fraction, drawn: Callable[[], arb]) -> Drive:
+    """An input that counts, in mm, from the drawing on."""
+    return _own(
+        name,
         lambda value: [value * as_ball(1 / unit) + drawn()],
         lambda: [drawn()],
         lambda w: (w[0] - drawn()) * as_ball(unit),
@@ -183,7 +290,8 @@ def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     unit, drawn = compiler.unit, minus(compiler.table[one], compiler.table[two])
     apart, d2 = minus(compiler.place(one), compiler.place(two)), dot(drawn, drawn)
     compiler.row(name, dot(apart, apart) - compiler.number())
-    return Drive(
+    return _own(
+        name,
         lambda value: [value * value * as_ball(1 / unit**2)],
         lambda: [as_ball(d2)],
         lambda w: w[0].sqrt() * as_ball(unit),
@@ -193,6 +301,7 @@ def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
 KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {
     "angle": _angle,
     "travel": _travel,
+    "steers": _steers,
     "height": _height,
     "contact": _contact,
     "distance": _distance,

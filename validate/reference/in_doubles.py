@@ -42,10 +42,16 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
     """
     still = np.zeros((count, ORDERS))
     numbers: list[Jet] = []
-    for name, drive in design.mechanism.drives.items():
+    for drive in design.mechanism.drives.values():
+        read = [laws.get(one, still).tolist() for one in drive.reads]
         found = [
-            [floats_of_jet(jet) for jet in drive.numbers(Jet(*(arb(x) for x in law)))]
-            for law in laws.get(name, still).tolist()
+            [
+                floats_of_jet(jet)
+                for jet in drive.numbers(
+                    {n: Jet(*(arb(x) for x in law)) for n, law in zip(drive.reads, now, strict=True)}
+                )
+            ]
+            for now in zip(*read, strict=True)
         ]
         numbers += [Jet(*one) for one in np.array(found).transpose(1, 2, 0)]
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}

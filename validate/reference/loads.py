@@ -69,7 +69,8 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         return _none(f"needs {lack}")
     mechanism, equations, chassis = _held(design), _equations(design, ctx.prec), known.chassis.still()
     places = known.equations.points_of(enclosure)
-    unknown = mechanism.unknown_of(places, as_ball)
+    numbers = [jet.value for jet in known.numbers]
+    unknown = mechanism.unknown_of(places, numbers, as_ball)
     work, scale = [arb(0)] * mechanism.size, arb(0)
     for prefix, (force, moment) in design.loads.items():
         f, m = ball_vector(force), times(ball_vector(moment), as_ball(1 / design.unit))
@@ -83,7 +84,6 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
             moved = chassis.turned(each(slope_of, equations.points_of(pose, [centre])[centre]))
             work[j] += dot(f, plus(moved, cross(turn, spoke))) + dot(m, turn)
         scale += length(f) + length(m)
-    numbers = [jet.value for jet in known.numbers]
     try:
         solved = equations.matrix(unknown, numbers).transpose().solve(column(work)).entries()
     except ZeroDivisionError:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from flint import arb
+
 from validate.reference.compiler import Compiler, Exact, Reader, Table, at
 from validate.reference.drives import Drive, drive_of
 from validate.reference.errors import BadInputError
@@ -56,15 +58,20 @@ class Mechanism:
         constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.places.items())
         return frozenset(name for name, rests in constant if rests)
 
-    def unknown_of(self, points: Table, exact: Exact) -> list[Scalar]:
+    @property
+    def drawn_numbers(self) -> list[arb]:
+        """The numbers w at the drawn inputs, at the present precision."""
+        return [w for drive in self.drives.values() for w in drive.drawn()]
+
+    def unknown_of(self, points: Table, numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
         """The unknowns of assembled points, relative to the chassis, in their kind of number.
 
         Args:
-            exact: a fraction in that kind.
+            numbers: w. exact: a fraction in that kind.
         """
         unknown: list[Scalar] = []
         for read in self.readers:
-            unknown.extend(read(points, unknown, exact))
+            unknown.extend(read(points, unknown, exact, numbers))
         return unknown
 
     def handed(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:

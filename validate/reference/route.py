@@ -167,7 +167,8 @@ def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
         for name, one in drives.items():
             if name in turns:
                 a, b = turns[name]
-                numbers += [jet.value for jet in one.numbers(balls(Jet(a + Fraction(k, count) * (b - a))))]
+                there = balls(Jet(a + Fraction(k, count) * (b - a)))
+                numbers += [jet.value for jet in one.numbers({name: there})]
             else:
                 numbers += [x + (y - x) * k / count for x, y in zip(first[name], last[name], strict=True)]
         between.append(numbers)
@@ -176,8 +177,9 @@ def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
 
 def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
     """The numbers w of each input, of those that are not driven as drawn."""
+    given = {name: balls(driven.get(name, Jet(Fraction(0)))) for name in design.inputs}
     return {
-        name: [jet.value for jet in one.numbers(balls(driven[name]))] if name in driven else [*one.drawn()]
+        name: [jet.value for jet in one.numbers(given)] if name in driven else [*one.drawn()]
         for name, one in design.mechanism.drives.items()
     }
 

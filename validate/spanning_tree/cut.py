@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, count
 from typing import Any, Literal
 
@@ -106,6 +106,8 @@ class Driven:
     Attributes:
         body: that the joint carries.
         drawn: value of the input in the drawing, rad or in the tree's unit.
+        per_input: the mm that a unit of the user's input stands for, of a length; a steering wheel's turn has
+            another than 1.
     """
 
     input: str
@@ -114,6 +116,7 @@ class Driven:
     body: str
     scale: float
     start: float
+    per_input: float = 1.0
 
     @property
     def is_angle(self) -> bool:
@@ -156,7 +159,7 @@ class SpanningTree:
     def told(self, values: Array) -> dict[str, float]:
         """Inputs in rad and mm by name, from one value for each that is driven."""
         return {
-            driven.input: float(value) * (1.0 if driven.is_angle else self.unit)
+            driven.input: float(value) * (1.0 if driven.is_angle else self.unit / driven.per_input)
             for driven, value in zip(self.driven, values, strict=True)
         }
 
@@ -232,6 +235,7 @@ class _Cutter:
         self.origin, self.unit = _measure(located)
         self.drawn = {name: (place - self.origin) / self.unit for name, place in located.items()}
         self.radius = (plain["wheel_radius"] or 0.0) / self.unit
+        self.per_turn = float(plain.get("rack_per_turn") or math.nan)
         self.directions = car_directions(plain)
         self.slides: Mapping[str, Mapping[str, Any]] = plain["slides"]
         self.rods: Mapping[str, Sequence[str]] = plain["rods"]
@@ -519,9 +523,12 @@ class _Cutter:
     def _drives(self) -> Iterator[tuple[str, Mapping[str, Any]]]:
         """Inputs that drive something; one of several slides for each of them."""
         for name, given in self.inputs.items():
-            if "travel" in given and not isinstance(given["travel"], str):
-                yield from ((name, {**given, "travel": slide}) for slide in given["travel"])
-            elif not given.keys().isdisjoint(("angle", "travel", "height", "contact", "distance")):
+            slides = given.get("travel", given.get("steers"))
+            if slides is not None:
+                per_input = self.per_turn / math.tau if "steers" in given else 1.0
+                for slide in [slides] if isinstance(slides, str) else slides:
+                    yield name, {"travel": slide, "per_input": per_input}
+            elif not given.keys().isdisjoint(("angle", "height", "contact", "distance")):
                 yield name, given
 
     def _drive(
@@ -532,11 +539,16 @@ class _Cutter:
         elif "angle" in given:
             self._angle(label, name, given)
         elif "travel" in given:
+            first = len(self.driven)
             self._travel(label, name, self.slides[given["travel"]], given["travel"], hung, taken)
+            self.driven[first:] = [replace(d, per_input=given["per_input"]) for d in self.driven[first:]]
         elif "height" in given:
             p, axis = given["height"], self.directions[given.get("along", "up")]
             still = Place(CHASSIS, self.drawn[p])
             self._height(label, name, "length", (self.points[p], still), axis, CHASSIS, 1.0, 0.0)
+        elif given.get("over", CHASSIS) != CHASSIS:
+            problem = "is a height over the ground, and the tree stands on the chassis"
+            raise CutError(name, problem, "a height over the chassis, or a model that turns the ground")
         elif "contact" in given:
             rim, up = self._contact(label, name, *given["contact"]), self.directions["up"]
             self._height(label, name, "length", (rim, Place(CHASSIS, rim.at)), up, CHASSIS, 1.0, 0.0)

@@ -9,6 +9,7 @@ import numpy as np
 
 from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint, dot
+from pointcoord.linkage.constraints.ground import CHASSIS_ITSELF, Ground
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
@@ -33,17 +34,19 @@ class ContactHeight(Constraint):
 
         a - w . e = 0,    q^2 + a^2 - L^2 = 0,    p_centre . e - (r / L) q - k - rise = 0,
 
-    since the lowest point lies r q / L below the centre. k is the height of the drawing's.
+    since the lowest point lies r q / L below the centre. k is the height of the drawing's. Over the ground e
+    is its up, and the last row has what lifts the chassis besides.
 
     Attributes:
         radius: mm.
+        ground: that the height is over; the chassis' own up unless given.
     """
 
     inner: str
     centre: str
-    direction: str
     rise: str
     radius: float
+    ground: Ground = CHASSIS_ITSELF
 
     @property
     def name(self) -> str:
@@ -66,7 +69,7 @@ class ContactHeight(Constraint):
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         zero, one = layout.zero, (layout.one, layout.zero)
         zeros: Triple = (zero, zero, zero)
-        i, c, e = (layout.vector(name) for name in (self.inner, self.centre, self.direction))
+        i, c, e = (layout.vector(name) for name in (self.inner, self.centre, self.ground.up))
         a, q = (layout.scalar(name) for name in self.slides)
         square, share, drawn = (layout.scalar(name) for name in self.constants)
         rise = layout.scalar(self.rise)
@@ -79,6 +82,7 @@ class ContactHeight(Constraint):
             ),
             (
                 *dot(c, zeros, e, zeros),
+                *self.ground.lifts(layout),
                 Product(-1.0, (share, zero), (q, zero)),
                 Product(-1.0, (drawn, zero), one),
                 Product(-1.0, (rise, zero), one),
@@ -91,7 +95,7 @@ class ContactHeight(Constraint):
         Raises:
             MechanismError: the axis has no length, or is drawn upright.
         """
-        centre, e = drawing.vectors[self.centre], drawing.edge(self.direction)
+        centre, e = drawing.vectors[self.centre], drawing.edge("up")
         square = exact_square(centre, drawing.vectors[self.inner])
         lean = pair_dot(drawing.edge(self.centre, self.inner), e)
         reach2 = pair_sum(square, minus_pair(pair_product(lean, lean)))

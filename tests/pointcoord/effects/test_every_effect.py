@@ -38,6 +38,8 @@ DATA = {
     "centre_of_gravity_height": 511.7,
     "brake_share": 0.37,
     "drive_share": 0.91,
+    "spring_rate": 31.7,
+    "spring_free_length": 823.9,
 }
 TIME = 2.0**-3  # s, a unit of time other than a second
 # What two wheels make is in test_axles, and what loads do in test_loads.
@@ -293,8 +295,9 @@ def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
     for quantity, part, array in parts(effect.evaluate(other)):
         of, before = QUANTITIES[quantity].of, found[quantity][part]
         expected = before if of == "car" else before @ turn.T * (sense if of == "body" else 1.0)
-        if mirrored and part.startswith("steer_angle"):
-            expected = -expected  # what is to the left is to the right in a mirror
+        if mirrored and part.startswith(("steer_angle", "screw_pitch")):
+            # What is to the left is to the right in a mirror, and a right-handed screw is a left-handed one.
+            expected = -expected
         # Turning rounds every coordinate a few times; bodies and lines are up to a thousand times shorter.
         assert np.abs(array - expected).max() <= 1e5 * U * max(1.0, np.abs(before).max())
 
@@ -325,9 +328,8 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     found = EVERY[name].evaluate(poses)
     for quantity, part, array in parts(EVERY[name].evaluate(larger)):
         # Slopes, per mm, are the same.
-        factor = {"mm": scale, "mm/s": scale, "mm/s^2": scale, "rad/mm": 1.0 / scale}.get(
-            QUANTITIES[quantity].unit, 1.0
-        )
+        lengthwise = dict.fromkeys(("mm", "mm/s", "mm/s^2", "mm/rad", "N"), scale)
+        factor = {**lengthwise, "rad/mm": 1.0 / scale}.get(QUANTITIES[quantity].unit, 1.0)
         assert np.array_equal(array, factor * found[quantity][part])
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pointcoord.linkage import constraints
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
+from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
@@ -30,20 +31,24 @@ BODY = Normal("n", "a", "b", "c")
 AXIS = AxisInBody("axis", "a", "b", BODY)
 HELD = OnLine("c", "d", "axis", "axis", "held", "held", axis=AXIS)
 HEIGHT = ScalarProduct("height", ("d", ""), ("e", ""), "drawn height", "travel")
-CONTACT = ContactHeight("a", "d", "e", "travel", 0.3)
+CONTACT = ContactHeight("a", "d", "travel", 0.3)
+BACK = TurnedBack("roll", "up", "e", "o", "travel", "sine")
+BACK_AGAIN = TurnedBack("pitch", BACK.name, "up", "o", "sine", "travel")
+MOVED = Displaced((("travel", "e"), ("sine", "up")))
+OVER_GROUND = ContactHeight("b", "c", "travel", 0.3, Ground((BACK, BACK_AGAIN), (MOVED,)))
 KEPT = ScalarProduct("turn about the line", ("a", "b"), ("c", "d"), "kept product")
 LINKS = (Link("a", "b"), Link("a", "o"))
 FURTHER = PointInBody("d", "body", BODY)
 TURN = Turn("turn", "c", "a", "b", "travel", "sine")
 TURN_ON_BODY = Turn("other turn", "d", "a", "b", "travel", "sine", BODY)
-WITH_CONSTANTS = (AXIS, HELD, HEIGHT, CONTACT, KEPT, FURTHER, TURN, TURN_ON_BODY, *LINKS)
+WITH_CONSTANTS = (AXIS, HELD, HEIGHT, CONTACT, OVER_GROUND, KEPT, FURTHER, TURN, TURN_ON_BODY, *LINKS)
 LAYOUT = Layout(
     moving=("a", "b", "c", "d"),
-    ratios=("place", *CONTACT.slides, *TURN.slides, *TURN_ON_BODY.slides),
+    ratios=("place", *CONTACT.slides, *OVER_GROUND.slides, *TURN.slides, *TURN_ON_BODY.slides),
     chassis=("o",),
-    directions=("e",),
+    directions=("e", "up"),
     driven=("travel", "sine"),
-    vectors=("n", "axis", *TURN_ON_BODY.vectors),
+    vectors=("n", "axis", *TURN_ON_BODY.vectors, *BACK.vectors, *BACK_AGAIN.vectors, *MOVED.vectors),
     constants=tuple(name for constraint in WITH_CONSTANTS for name in constraint.constants),
 )
 
@@ -68,11 +73,33 @@ class Read:
         return np.asarray(a * (self.b - self.a) + b * (self.c - self.a) + c * self.n)
 
 
+def vectors(p: Read, constraint: Constraint) -> list[Array]:
+    return [p.y[list(LAYOUT.vector(name))] for name in constraint.vectors]
+
+
 def contact(p: Read) -> Array:
-    rise, reach = p.scalars(CONTACT.slides)
-    square, share, drawn = p.scalars(CONTACT.constants)
-    height = p.d @ p.e - share * reach - drawn - p.scalar("travel")
-    return np.array([rise - (p.d - p.a) @ p.e, rise**2 + reach**2 - square, height])
+    return lowest(p, CONTACT, p.a, p.d, p.up, 0.0)
+
+
+def contact_over_ground(p: Read) -> Array:
+    (*_, rolled), (*_, pitched), (moved,) = (vectors(p, part) for part in OVER_GROUND.ground.constraints)
+    lift = p.o @ (p.up - rolled) + p.o @ (rolled - pitched) + p.up @ moved
+    return lowest(p, OVER_GROUND, p.b, p.c, pitched, lift)
+
+
+def lowest(p: Read, own: ContactHeight, inner: Array, centre: Array, up: Array, lift: float) -> Array:
+    rise, reach = p.scalars(own.slides)
+    square, share, drawn = p.scalars(own.constants)
+    height = centre @ up + lift - share * reach - drawn - p.scalar("travel")
+    return np.array([rise - (centre - inner) @ up, rise**2 + reach**2 - square, height])
+
+
+def turned_back(p: Read, own: TurnedBack, before: Array, axis: Array) -> Array:
+    across, aside, after = vectors(p, own)
+    cosine, sine = p.scalar(own.cosine), p.scalar(own.sine)
+    # Rodrigues' formula by -a, with before - (axis . before) axis = aside.
+    turned = after - (cosine * aside + (before - aside) + sine * across)
+    return np.concatenate([across - np.cross(before, axis), aside - np.cross(axis, across), turned])
 
 
 def turned(turn: Turn, v: Array, across: Array, along: Array, p: Read) -> Array:
@@ -115,6 +142,10 @@ CASES: list[tuple[Constraint, Callable[[Read], Array]]] = [
     ),
     (HEIGHT, lambda p: np.array([p.d @ p.e - p.scalar(HEIGHT.constants[0]) - p.scalar("travel")])),
     (CONTACT, contact),
+    (OVER_GROUND, contact_over_ground),
+    (BACK, lambda p: turned_back(p, BACK, p.up, p.e)),
+    (BACK_AGAIN, lambda p: turned_back(p, BACK_AGAIN, vectors(p, BACK)[-1], p.up)),
+    (MOVED, lambda p: vectors(p, MOVED)[0] - p.scalar("travel") * p.e - p.scalar("sine") * p.up),
     (
         ScalarProduct("distance", ("a", "d"), ("a", "d"), "", "travel"),
         lambda p: np.array([(p.a - p.d) @ (p.a - p.d) - p.scalar("travel")]),

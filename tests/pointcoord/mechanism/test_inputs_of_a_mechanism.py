@@ -5,7 +5,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from pointcoord import Scene, SceneError, simulate
+from pointcoord import Scene, SceneError, kinematic_map, simulate, solve_poses
 from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.results.motion import Motion
 
@@ -65,6 +65,70 @@ def test_turn_of_the_arm_from_the_drawing_gives_the_motion_of_the_arm_angle() ->
     turn = np.arctan2(there @ np.cross(axis, drawn), there @ drawn - (there @ axis) * (axis @ drawn))
     inputs = {"t": {"angle": "lower_arm", "from": "drawing"}}
     same(ARM, simulate(with_inputs(WISHBONE, inputs, t=law(turn), rack=RACK)), ENDS)
+
+
+MOVES: dict[str, object] = {
+    "heave": {"moves": "chassis", "along": "up"},
+    "shift": {"moves": "chassis", "along": "left"},
+    "roll": {"turns": "chassis", "about": "upper_arm_front", "along": "forward"},
+    "pitch": {"turns": "chassis", "about": "lower_arm_rear", "along": "right"},
+    "yaw": {"turns": "chassis", "about": "rack_centre", "along": "up"},
+}
+OVER_GROUND = {"c": {"contact": ["wheel_axis_inner", "wheel_centre"], "over": "ground"}}
+MOVED = {
+    "heave": {"sine": {"amplitude": 9.0, "angular_frequency": 4.0}},
+    "shift": {"polynomial": [0.0, 5.0]},
+    "roll": {"sine": {"amplitude": 0.06, "angular_frequency": 5.0}},
+    "pitch": {"polynomial": [0.0, 0.03, -0.05]},
+    "yaw": {"polynomial": [0.0, 0.2]},
+}
+
+
+def height_over_ground(place: dict[str, np.ndarray]) -> np.ndarray:
+    """Of the lowest point of the disc, above that of the drawing, of points as they are reported."""
+    axis = place["wheel_centre"] - place["wheel_axis_inner"]
+    lean = axis[..., 2] / np.linalg.norm(axis, axis=-1)
+    drawn = np.array(WISHBONE["points"]["wheel_centre"])[2] - 300.0  # the axis is drawn level
+    return np.asarray(place["wheel_centre"][..., 2] - 300.0 * np.sqrt(1.0 - lean**2) - drawn)
+
+
+def over_ground(**laws: object) -> Scene:
+    part = {**WISHBONE, "wheel_radius": 300.0}
+    return with_inputs(part, {**MOVES, **OVER_GROUND}, c={"polynomial": [0.0, 3.0]}, rack=RACK, **laws)
+
+
+@pytest.mark.parametrize("moved", [(), ("heave", "shift"), ("roll",), ("heave", "roll", "pitch", "yaw")])
+def test_the_contact_point_keeps_its_height_over_the_ground(moved: tuple[str, ...]) -> None:
+    scene = over_ground(**{name: MOVED[name] for name in moved})
+    motion = simulate(scene.model_copy(update={"effects": (*scene.effects, "wheel_travel")}))
+    # Heights of some 500 mm are found from three numbers that round, and the motion is proven to 1e-11 mm.
+    assert np.abs(height_over_ground(motion.position) - 3.0 * motion.times).max() < 1e-10
+    # In the chassis' frame it moves, so that the ground is not the chassis.
+    assert not moved or np.ptp(motion.dimension["contact_travel"] - 3.0 * motion.times) > 1.0
+
+
+def test_a_height_over_the_ground_needs_a_turn_about_a_point_of_the_chassis() -> None:
+    moves = {**MOVES, "roll": {"turns": "chassis", "about": "wheel_centre", "along": "forward"}}
+    part = {**WISHBONE, "wheel_radius": 300.0}
+    laws = {"c": {"constant": 0.0}, "rack": RACK, "roll": MOVED["roll"]}
+    problem = "roll turns the chassis about wheel_centre, which it does not carry"
+    with pytest.raises(SceneError, match=problem):
+        with_inputs(part, {**moves, **OVER_GROUND}, **laws)
+
+
+def test_maps_and_poses_hold_the_height_over_the_ground_too() -> None:
+    scene = over_ground(roll=MOVED["roll"])
+    motion = simulate(scene)
+    inputs = {name: f.series(motion.times, 0)[:, 0] for name, f in scene.functions.items()}
+    same_places = {"poses": solve_poses(scene, inputs).position}
+    ranges = {name: (float(v.min()) - 0.01, float(v.max()) + 0.01) for name, v in inputs.items()}
+    same_places["map"] = kinematic_map(scene, ranges, 1e-6)(inputs).position
+    held = kinematic_map(scene, {**ranges, "roll": (0.05, 0.05)}, 1e-6)
+    at = {name: values[0] for name, values in inputs.items() if name != "roll"}
+    assert abs(float(height_over_ground(held(at).position)) - at["c"]) < 2e-6
+    for name, place in motion.position.items():
+        for other in same_places.values():
+            assert np.abs(other[name] - place).max() < 2e-6  # the map's bound of 1e-6, and a turn
 
 
 def test_the_contact_point_rises_by_its_input() -> None:

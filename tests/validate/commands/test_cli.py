@@ -232,7 +232,7 @@ def test_a_table_has_the_motion_s_numbers_in_degrees_and_mm(tmp_path: Path) -> N
         "wheel_travel [mm]": np.linspace(-50.0, 50.0, 5),
         "camber [deg]": np.degrees(motion.wheel["camber"]),
         "toe_by_travel [deg/mm]": np.degrees(motion.angle_gradient["toe_by_travel"]),
-        "damper_length_by_travel [mm/mm]": motion.dimension_gradient["damper_length_by_travel"],
+        "damper_per_wheel [mm/mm]": motion.dimension_gradient["damper_per_wheel"],
     }
     for name, values in wanted.items():
         assert [float(row[name]) for row in rows] == pytest.approx(values.tolist(), rel=1e-11), name

@@ -17,6 +17,8 @@ CAR = {
     "centre_of_gravity_height": 511.7,
     "brake_share": 0.37,
     "drive_share": 0.91,
+    "spring_rate": 31.7,
+    "spring_free_length": 823.9,
 }
 
 LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}

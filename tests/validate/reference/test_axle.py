@@ -19,13 +19,13 @@ from reference_cars import CARS
 from validate.published.tables import FOLDER
 from validate.reference import BadInputError, Design, Instant, closed_drawing, instants_of, solve_reference
 from validate.reference.dual import Dual
-from validate.reference.effects.car import WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.car import DAMPER, WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import EFFECTS
 
 WITHIN = mpf("1e-55")
 LOTUS_STEERING = FOLDER / "lotus-steering.csv"
-OF_A_WHEEL = tuple(n for n, one in EFFECTS.items() if PAIR not in one.needs and not n.startswith("damper"))
+OF_A_WHEEL = tuple(n for n, one in EFFECTS.items() if {DAMPER, PAIR}.isdisjoint(one.needs))
 TOGETHER = tuple(name for name, one in EFFECTS.items() if PAIR in one.needs)
 
 

@@ -15,7 +15,7 @@ from reference_cars import Inputs, ReferenceCar
 from validate.reference import Instant
 from validate.reference.car_data import LENGTHS
 from validate.reference.dual import Dual, angle
-from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.car import DAMPER, STEERING, WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import Vector, plus
@@ -24,7 +24,7 @@ FRAME = {"up": (0, 0, 1), "right": (0, 1, 0)}
 
 
 # These cars have no damper, and one wheel.
-NAMES = tuple(n for n, one in EFFECTS.items() if not n.startswith("damper") and PAIR not in one.needs)
+NAMES = tuple(n for n, one in EFFECTS.items() if {DAMPER, PAIR}.isdisjoint(one.needs))
 
 
 def solved(car: ReferenceCar, inputs: Inputs) -> Instant:
@@ -40,6 +40,7 @@ def same(one: Instant, other: Instant, scale: int = 1, mirrored: bool = False) -
     assert set(one.effects) == set(other.effects) == set(NAMES)
     factors = {n: mpf(scale) ** -EFFECTS[n].power for n in NAMES}
     turned = {n for n in NAMES if mirrored and n.endswith("_by_rack") != n.startswith("steer_angle")}
+    turned |= {"screw_pitch"} if mirrored else set()
     factors |= {n: -factors[n] for n in turned}
     return all(abs(one.effects[n] - other.effects[n] * factors[n]) <= scale * bound for n in NAMES)
 
@@ -81,8 +82,8 @@ def test_effects_do_not_see_where_the_origin_lies_but_for_the_middle_plane(car: 
     plain, aside = moved((0, 0, 0)), moved((0, 100, 0))
     assert same(plain, moved((-3000, 0, 70)))
     assert not same(plain, aside)
-    height = aside.effect("roll_centre_height")
-    assert same(replace(plain, effects={**plain.effects, "roll_centre_height": height}), aside)
+    heights = {name: aside.effect(name) for name in ("roll_centre_height", "arm_roll_centre_height")}
+    assert same(replace(plain, effects={**plain.effects, **heights}), aside)
 
 
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up

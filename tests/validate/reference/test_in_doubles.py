@@ -30,7 +30,7 @@ HEAVE = "heave"
 def unknowns(car: ReferenceCar, places: dict[str, np.ndarray], still: Known) -> np.ndarray:
     """The unknowns of points, (size, N)."""
     count = len(next(iter(places.values())))
-    read = car.design.mechanism.unknown_of(local_places(car.design, places, still), float)
+    read = car.design.mechanism.unknown_of(local_places(car.design, places, still), still.numbers, float)
     return np.array([np.broadcast_to(x, count) for x in read], dtype=float)
 
 

@@ -20,7 +20,12 @@ Array = NDArray[np.float64]
 def in_bodies(scene: Scene, _: float | None) -> Solve:
     """Poses of rigid bodies in Pinocchio."""
     import absolute
-    from validate.formulations.absolute_coordinates import chassis_motion, effects_in, found_of
+    from validate.formulations.absolute_coordinates import (
+        chassis_motion,
+        driving,
+        effects_in,
+        found_of,
+    )
 
     part, asked = scene.mechanism, asked_numbers(scene)
     model = absolute.compile(part.plain(tuple(scene.inputs)))
@@ -30,8 +35,7 @@ def in_bodies(scene: Scene, _: float | None) -> Solve:
     def solve(instants: Array) -> Answer:
         laws = laws_at(scene, instants)
         chassis = chassis_motion(part, laws)
-        laws = {name: law for name, law in laws.items() if name not in part.topology.chassis_motion}
-        solved = assembled.solve(laws, chassis, moves, effects=effects, loads=loads)
+        solved = assembled.solve(driving(model, part, laws), chassis, moves, effects=effects, loads=loads)
         return Answer(
             asked_of(found_of(solved, asked).numbers, scene), {"newton_steps": int(solved.iterations.sum())}
         )

@@ -11,6 +11,7 @@ from flint import arb, arb_mat
 from validate.reference.car_data import LENGTHS
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
+from validate.reference.drives import travel_per_radian
 from validate.reference.dual import Dual, value_of
 from validate.reference.effects.car import KNUCKLE, LINES, RADIUS, Car, DrawnCar, Frame, lines_of
 from validate.reference.effects.effect import PAIR, RACK, TRAVEL, Effect
@@ -93,10 +94,8 @@ def drivers(design: Design, prefix: str = "") -> dict[str, str]:
     inputs = design.plain["inputs"]
     others = tuple(other for other in design.corners if other != prefix)
     own = [name for name in design.mechanism.drives if not name.startswith(others)]
-    of_kind = {
-        TRAVEL: [name for name in own if "travel" not in inputs[name]],
-        RACK: [name for name in own if "travel" in inputs[name]],
-    }
+    racks = [name for name in own if not inputs[name].keys().isdisjoint(("travel", "steers"))]
+    of_kind = {TRAVEL: [name for name in own if name not in racks], RACK: racks}
     return {along: names[0] for along, names in of_kind.items() if len(names) == 1}
 
 
@@ -150,8 +149,11 @@ def effects_at(
             pose: Sequence[Scalar] = enclosure
             if along is not None:
                 # A slide is driven in the design's own lengths, in which the car's are.
+                driver = drivers(design, prefix)[along]
                 rate = unit if along == RACK else arb(1)
-                driven = known.driven_at(drivers(design, prefix)[along], rate)
+                if "steers" in design.plain["inputs"][driver]:
+                    rate /= travel_per_radian(design.plain)
+                driven = known.driven_at(driver, rate)
                 rates = unknown_rates(enclosure, driven, inverse)
                 pose = [Dual(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
             drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
-from validate.reference.car_data import AXLE, BRAKE_SHARE, DRIVE_SHARE, HEIGHT, WHEELBASE
+from validate.reference.car_data import (
+    AXLE,
+    BRAKE_SHARE,
+    DRIVE_SHARE,
+    FREE_LENGTH,
+    HEIGHT,
+    SPRING_RATE,
+    WHEELBASE,
+)
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL
 from validate.reference.vectors import Scalar
 
@@ -18,17 +26,20 @@ NEEDS = {
     DAMPER: "the role damper",
     KNUCKLE: "the role knuckle, a body that moves",
     RADIUS: "a wheel_radius, mm",
-    TRAVEL: "exactly one driven input that is not the travel of a slide",
-    RACK: "exactly one driven input that is the travel of a slide",
+    TRAVEL: "exactly one driven input that is not the travel of a slide and steers none",
+    RACK: "exactly one driven input that is the travel of a slide or steers one",
     PAIR: "two parts on opposite sides of the car",
     AXLE: "the car's axle, 'front' or 'rear'",
     WHEELBASE: "the car's wheelbase, mm",
     HEIGHT: "the car's centre_of_gravity_height, mm",
     BRAKE_SHARE: "the car's brake_share, 0 to 1",
     DRIVE_SHARE: "the car's drive_share, 0 to 1",
+    SPRING_RATE: "the car's spring_rate, N/mm",
+    FREE_LENGTH: "the car's spring_free_length, mm",
 }
 
-POWERS = {"rad": 0, "mm": 1, "rad/mm": -1, "mm/mm": 0, "%": 0}
+# A force is the rate of a spring, N/mm, times a length.
+POWERS = {"rad": 0, "mm": 1, "rad/mm": -1, "mm/mm": 0, "%": 0, "mm/rad": 1, "N": 1, "N/mm": 0}
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from validate.reference.car_data import AXLE, BRAKE_SHARE, DRIVE_SHARE, HEIGHT, WHEELBASE
+from validate.reference.car_data import (
+    AXLE,
+    BRAKE_SHARE,
+    DRIVE_SHARE,
+    FREE_LENGTH,
+    HEIGHT,
+    SPRING_RATE,
+    WHEELBASE,
+)
 from validate.reference.dual import angle, slope_of, value_of
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car, contact_of
 from validate.reference.effects.effect import RACK, TRAVEL, Effect
@@ -39,6 +47,23 @@ def _caster(car: Car) -> Scalar:
     return angle(-dot(car.steering.along, car.forward), dot(car.steering.along, car.up))
 
 
+def _arcsine(sine: Scalar, unit_squared: Scalar) -> Scalar:
+    """asin(s / l) by atan2(s, sqrt(l^2 - s^2))."""
+    return angle(sine, root(unit_squared - sine * sine))
+
+
+def _camber_by_arcsine(car: Car) -> Scalar:
+    """-asin(n . up), n = a / |a| (Adams/Car)."""
+    a = car.wheel.along
+    return _arcsine(-dot(a, car.up), dot(a, a))
+
+
+def _toe_by_arcsine(car: Car) -> Scalar:
+    """asin(n . forward), n = a / |a| (OptimumK)."""
+    a = car.wheel.along
+    return _arcsine(dot(a, car.forward), dot(a, a))
+
+
 def steer_angle(car: Car) -> Scalar:
     """Toe of a right wheel, minus toe of a left one: positive to the left."""
     ahead = dot(car.wheel.along, car.forward)
@@ -65,10 +90,18 @@ def _recession(car: Car) -> Scalar:
     return dot(minus(car.contact, car.drawn.contact), car.rearward)
 
 
+def _level(off: Vector, k: Vector, up: Vector) -> Vector:
+    """From the point of an axis along k that is as high as a point to it: o - k (o . up) / (k . up).
+
+    Args:
+        off: o, from any point of the axis.
+    """
+    return minus(off, times(k, dot(off, up) / dot(k, up)))
+
+
 def _from_axis(car: Car, point: Vector) -> Vector:
-    """From the steering axis' point at the height of a point to it: p - A - k ((p - A) . up) / (k . up)."""
-    off, k = minus(point, car.steering.start), car.steering.along
-    return minus(off, times(k, dot(off, car.up) / dot(k, car.up)))
+    """From the steering axis' point at the height of a point to it."""
+    return _level(minus(point, car.steering.start), car.steering.along, car.up)
 
 
 def _kingpin_offset(car: Car) -> Scalar:
@@ -86,7 +119,11 @@ def _mechanical_trail(car: Car) -> Scalar:
 
     h is the length of the level part of a (ISO 8855, 7.2.3).
     """
-    offset, a = _from_axis(car, car.contact), car.wheel.along
+    return _ahead(car, _from_axis(car, car.contact), car.wheel.along)
+
+
+def _ahead(car: Car, offset: Vector, a: Vector) -> Scalar:
+    """Of an offset, backward along the level part of the plane of the tyre."""
     out, ahead = dot(a, car.outboard), dot(a, car.forward)
     across = dot(offset, car.outboard) * ahead - dot(offset, car.forward) * out
     return across / root(out * out + ahead * ahead)
@@ -135,6 +172,67 @@ def _roll_centre_height(car: Car) -> Scalar:
     return dot(minus(contact, car.drawn.origin), car.outboard) * dot(v, car.outboard) / dot(v, car.up)
 
 
+def _arm_roll_centre_height(car: Car) -> Scalar:
+    """The same with the turn omega + f k about the steering axis besides, f such that no point of the axis of
+    this motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
+    """
+    lower, k = each(value_of, car.steering.start), each(value_of, car.steering.along)
+    arm = minus(each(value_of, car.contact), lower)
+    omega, centre = _turning(car), each(value_of, car.wheel.end)
+    u = plus(each(slope_of, car.wheel.end), cross(omega, minus(lower, centre)))
+    turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
+    v = plus(u, cross(turn, arm))
+    far = dot(minus(each(value_of, car.contact), car.drawn.origin), car.outboard)
+    return far * dot(v, car.outboard) / dot(v, car.up)
+
+
+def _damper_per_wheel(car: Car) -> Scalar:
+    """-l' / travel'."""
+    return -slope_of(_damper_length(car)) / slope_of(_travel(car))
+
+
+def _wheel_per_damper(car: Car) -> Scalar:
+    """-travel' / l'."""
+    return -slope_of(_travel(car)) / slope_of(_damper_length(car))
+
+
+def _spring_force(car: Car) -> Scalar:
+    """K (l_0 - l)."""
+    data = car.drawn.data
+    return data[SPRING_RATE] * (data[FREE_LENGTH] - value_of(_damper_length(car)))
+
+
+def _wheel_rate(car: Car) -> Scalar:
+    """K (l' / travel')^2."""
+    return car.drawn.data[SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car)
+
+
+# As the rack moves, all else held, the carrier turns with omega about an axis that leads through
+# W + omega x W' / omega^2, and goes along it by omega . W' / omega^2 per radian. Where it does not turn, or
+# omega is level, the quotients are not finite.
+
+
+def _from_screw(car: Car, point: Vector) -> Vector:
+    """From the point of the screw axis at the height of a point to it."""
+    omega, moved = _turning(car), each(slope_of, car.wheel.end)
+    beside = times(cross(omega, moved), 1 / dot(omega, omega))
+    off = minus(minus(each(value_of, point), each(value_of, car.wheel.end)), beside)
+    return _level(off, omega, car.up)
+
+
+def _screw_lean(car: Car, direction: Vector) -> Scalar:
+    """atan2(k . direction, k . up) of the axis k = omega (omega . up), which leads up."""
+    omega = _turning(car)
+    rise = dot(omega, car.up)
+    return angle(dot(omega, direction) * rise, rise * rise)
+
+
+def _screw_pitch(car: Car) -> Scalar:
+    """Omega . W' / omega^2."""
+    omega = _turning(car)
+    return dot(omega, each(slope_of, car.wheel.end)) / dot(omega, omega)
+
+
 # In the plane through c that a level direction h and `up` span, the carrier moves its points as a plane
 # figure. The point c + x h + z up rests in this plane where
 #     v . h - z omega . a = 0,      v . up + x omega . a = 0,      a = h x up.
@@ -176,6 +274,8 @@ ANGLES = (
 
 OF_POSITIONS = (
     *ANGLES,
+    Effect("camber_by_arcsine", "rad", (WHEEL,), _camber_by_arcsine),
+    Effect("toe_by_arcsine", "rad", (WHEEL,), _toe_by_arcsine),
     Effect("steer_angle", "rad", (WHEEL,), steer_angle),
     Effect("travel", "mm", (WHEEL,), _travel),
     Effect("contact_travel", "mm", (WHEEL, RADIUS), _contact_travel),
@@ -218,7 +318,33 @@ def _by_rack(effect: Effect) -> Effect:
 MOVING = (WHEEL, RADIUS, KNUCKLE, TRAVEL)
 _OF_THE_CAR = (*MOVING, AXLE, WHEELBASE, HEIGHT)
 
+STEERED = (WHEEL, RADIUS, KNUCKLE, RACK)
+SPRUNG = (DAMPER, WHEEL, TRAVEL, SPRING_RATE, FREE_LENGTH)
+
+OF_SCREW: tuple[tuple[str, str, Callable[[Car], Scalar]], ...] = (
+    ("kingpin", "rad", lambda car: -_screw_lean(car, car.outboard)),
+    ("caster", "rad", lambda car: -_screw_lean(car, car.forward)),
+    ("kingpin_offset", "mm", lambda car: dot(_from_screw(car, car.contact), car.outboard)),
+    ("scrub_radius", "mm", lambda car: length(_from_screw(car, car.contact))),
+    (
+        "mechanical_trail",
+        "mm",
+        lambda car: _ahead(car, _from_screw(car, car.contact), each(value_of, car.wheel.along)),
+    ),
+    ("castor_offset", "mm", lambda car: -dot(_from_screw(car, car.contact), car.forward)),
+    ("kingpin_offset_at_wheel", "mm", lambda car: dot(_from_screw(car, car.wheel.end), car.outboard)),
+    ("hub_trail", "mm", lambda car: dot(_from_screw(car, car.wheel.end), car.forward)),
+    ("pitch", "mm/rad", _screw_pitch),
+)
+
 OF_MOTION = (
+    *(Effect(f"screw_{name}", unit, STEERED, evaluate, RACK) for name, unit, evaluate in OF_SCREW),
+    Effect("damper_per_wheel", "mm/mm", (DAMPER, WHEEL, TRAVEL), _damper_per_wheel, TRAVEL),
+    Effect("wheel_per_damper", "mm/mm", (DAMPER, WHEEL, TRAVEL), _wheel_per_damper, TRAVEL),
+    Effect("spring_force", "N", SPRUNG, _spring_force, TRAVEL),
+    Effect("wheel_force", "N", SPRUNG, lambda car: _spring_force(car) * _damper_per_wheel(car), TRAVEL),
+    Effect("wheel_rate", "N/mm", SPRUNG, _wheel_rate, TRAVEL),
+    Effect("arm_roll_centre_height", "mm", (*MOVING, STEERING), _arm_roll_centre_height, TRAVEL),
     Effect("roll_centre_height", "mm", MOVING, _roll_centre_height, TRAVEL),
     Effect("front_view_swing_arm", "mm", MOVING, lambda car: -_aside(car, car.outboard), TRAVEL),
     Effect("front_view_centre_height", "mm", MOVING, lambda car: _above(car, car.outboard), TRAVEL),
