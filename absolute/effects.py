@@ -227,7 +227,7 @@ def of_screw(number: Callable[[Motion, Array, Array], Array]) -> Callable[[Motio
 
 def _level_with(axis: Array, point: Array) -> Array:
     """To a point from the place of an axis that is as high; `point` from any place of it."""
-    return point - axis * (point[UP] / axis[UP])
+    return np.asarray(point - axis * (point[UP] / axis[UP]))
 
 
 def _at_ground(motion: Motion, axis: Array, off: Array) -> Array:

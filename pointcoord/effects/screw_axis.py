@@ -86,7 +86,10 @@ SCREW_AXIS = CarNumbers.of(
         _number(one.name, one.words, one.sign, partial(_lean, one.sine, one.cosine), WHEEL, 0)
         for one in (KINGPIN, LEAN_REARWARD)
     ),
-    *(_number(*words, partial(_length, formula), DIMENSION, 1) for *words, formula in LENGTHS),
+    *(
+        _number(name, words, sign, partial(_length, formula), DIMENSION, 1)
+        for name, words, sign, formula in LENGTHS
+    ),
     _number("pitch", "pitch", "where it is a right-handed screw", pitch, PITCH, 1),
     nowhere="the wheel does not turn as the rack moves",
 )

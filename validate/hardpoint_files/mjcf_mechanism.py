@@ -92,7 +92,7 @@ class _Builder:
 
     def _merged(self) -> dict[str, str]:
         """By name of a body in the model, that of ours: without a joint, or welded, several are one."""
-        found = {WORLD: CHASSIS}
+        found: dict[str, str] = {WORLD: CHASSIS}
         for body in self.model.bodies.values():
             found[body.name] = self._named(body.name) if body.joints else found[body.parent]
         for one, other in self.model.welds:

@@ -158,7 +158,8 @@ class Ground:
 
     def lifts(self, layout: Layout) -> Row:
         """By how much places are higher over the ground than along its up from the mechanism's origin."""
-        return tuple(product for part in (*self.turns, *self.moved) for product in part.lifts(layout))
+        parts = (*(one.lifts(layout) for one in self.turns), *(one.lifts(layout) for one in self.moved))
+        return tuple(product for row in parts for product in row)
 
 
 CHASSIS_ITSELF = Ground()
