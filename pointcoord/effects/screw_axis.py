@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from pointcoord.effects.angle import WHEEL
-from pointcoord.effects.arithmetic import Dual, angle, cross, dot, reciprocal, sign_of, times
+from pointcoord.effects.arithmetic import Dual, angle, cross, dot, ratio, reciprocal, sign_of, times
 from pointcoord.effects.car_number import BY_RACK, DIMENSION, CarNumbers, Number
 from pointcoord.effects.caster import LEAN_REARWARD
 from pointcoord.effects.corner import Corner
@@ -42,7 +42,7 @@ def screw_axis(corner: Corner[Dual[Any]]) -> Axis[Any]:
 def pitch(corner: Corner[Dual[Any]]) -> Any:
     """W . v / |w|^2."""
     turn, moved = _twist(corner)
-    return dot(turn, moved) * reciprocal(dot(turn, turn))
+    return ratio(dot(turn, moved), dot(turn, turn))
 
 
 def _twist(corner: Corner[Dual[Any]]) -> tuple[Any, Any]:

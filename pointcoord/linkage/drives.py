@@ -380,21 +380,13 @@ class Steered(Drive):
         of: the travel. per_turn: mm of it for a whole turn.
     """
 
+    coordinate: str
+    input: str
     of: Travel | TravelAlong
     per_turn: float
 
     unit = "rad"
     exact = False
-
-    @property
-    def coordinate(self) -> str:  # type: ignore[override]
-        """The travel's."""
-        return self.of.coordinate
-
-    @property
-    def input(self) -> str:  # type: ignore[override]
-        """Called as the travel's."""
-        return self.of.input
 
     @property
     def travel(self) -> Drive:

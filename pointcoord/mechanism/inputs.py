@@ -211,7 +211,8 @@ class Steers(Input):
 
     def made(self, name: str, of: Compiled) -> Made:
         per_turn = of.length(self.length, name)
-        return [], [drives.Steered(travel, per_turn) for travel in _travels(name, self.steers, of)]
+        travels = _travels(name, self.steers, of)
+        return [], [drives.Steered(one.coordinate, name, one, per_turn) for one in travels]
 
 
 def _travels(name: str, slides: Names, of: Compiled) -> list[drives.Travel | drives.TravelAlong]:

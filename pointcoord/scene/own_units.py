@@ -21,7 +21,7 @@ AXES = {
 }
 """Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
 
-OF_THE_WHEEL = ("wheel_radius", "rack_per_turn")
+OF_THE_MECHANISM = ("wheel_radius", "rack_per_turn")
 # By what power of the unit of length each goes.
 OF_THE_CAR = {"wheelbase": 1, "centre_of_gravity_height": 1, "spring_free_length": 1, "spring_rate": -1}
 
@@ -62,7 +62,7 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
         content["tolerance"] = _times(factor, content["tolerance"])
     mechanism = content.get("mechanism")
     if isinstance(mechanism, Mapping):
-        lengthy = {name: _times(factor, mechanism[name]) for name in OF_THE_WHEEL if name in mechanism}
+        lengthy = {name: _times(factor, mechanism[name]) for name in OF_THE_MECHANISM if name in mechanism}
         points, car, loads = (mechanism.get(name) for name in ("points", "car", "loads"))
         if isinstance(points, Mapping):
             lengthy["points"] = _times(factor, points)

@@ -686,8 +686,8 @@ def _lengths(mechanism: object) -> tuple[str, ...]:
         return ()
     try:
         content = MechanismPart.completed(dict(mechanism))
-        keys = dict.fromkeys(TABLES) | {"type": None} | content
-        file = _file_of({name: keys[name] for name in ("type", *TABLES)})
+        keys = dict.fromkeys(TABLES) | {"type": None, "title": ""} | content
+        file = _file_of({name: keys[name] for name in ("type", "title", *TABLES)})
     except (SceneError, TableFault):
         return ()
     closure = content.get("closure", "drawn")

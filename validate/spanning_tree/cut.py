@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import combinations, count
 from typing import Any, Literal
 
@@ -539,9 +539,7 @@ class _Cutter:
         elif "angle" in given:
             self._angle(label, name, given)
         elif "travel" in given:
-            first = len(self.driven)
-            self._travel(label, name, self.slides[given["travel"]], given["travel"], hung, taken)
-            self.driven[first:] = [replace(d, per_input=given["per_input"]) for d in self.driven[first:]]
+            self._travel(label, name, given["travel"], given["per_input"], hung, taken)
         elif "height" in given:
             p, axis = given["height"], self.directions[given.get("along", "up")]
             still = Place(CHASSIS, self.drawn[p])
@@ -581,11 +579,12 @@ class _Cutter:
         self,
         label: str,
         name: str,
-        slide: Mapping[str, Any],
         slide_name: str,
+        per_input: float,
         hung: Sequence[Joint],
         taken: list[_Edge],
     ) -> None:
+        slide = self.slides[slide_name]
         body, p, axis = slide["body"], slide["points"][0], self._line(slide)[0]
         through, size = self.drawn[slide["through"]], float(axis @ axis)
         drawn = float((self.drawn[p] - through) @ axis) / size
@@ -600,11 +599,10 @@ class _Cutter:
                     # Its coordinate counts from the reference pose.
                     scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
                     start = float((ends[0].at - through) @ axis)
-                    self.driven.append(
-                        Driven(name, "length", drawn, joint.body, scale * size, -scale * start)
-                    )
+                    along = scale * size, -scale * start
+                    self.driven.append(Driven(name, "length", drawn, joint.body, *along, per_input))
                     return
-        self._height(label, name, "length", ends, axis, body, size, drawn)
+        self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
 
     def _height(
         self,
@@ -616,6 +614,7 @@ class _Cutter:
         of: str,
         size: float,
         drawn: float,
+        per_input: float = 1.0,
     ) -> None:
         """Drive along . (first - second) = size x f(input), along a direction of the body `of`."""
         first, second = ends
@@ -628,7 +627,7 @@ class _Cutter:
             self.loops.append(Loop(name, carried, second))
             base = Place(carried.body, first.at)
         end = self._slide(label, base, axis)
-        self.driven.append(Driven(name, kind, drawn, end.body, size / long, -start / long))
+        self.driven.append(Driven(name, kind, drawn, end.body, size / long, -start / long, per_input))
         self.loops.append(Loop(name, self._slides(f"{label} beside", end, across(axis)), first))
 
     def _contact(self, label: str, name: str, inner: str, centre: str) -> Place:

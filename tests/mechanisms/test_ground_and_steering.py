@@ -1,0 +1,142 @@
+"""Cars that move over wheels on the ground, and steering wheels: every mechanics against the reference."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from pointcoord import Scene, SceneError, simulate
+from validate.adjudication.reference_solution import reference_solution
+from validate.comparison.compare import compare_solutions
+from validate.formulations.protocol import FormulationError
+from validate.formulations.registry import formulation
+
+WISHBONE = Scene.load("double-wishbone").model_dump(exclude_none=True)["mechanism"]
+TIME = {"start": 0.0, "stop": 1.0, "samples": 4}
+RATES = ("velocity", "acceleration", "knuckle_rates")
+
+
+def on_the_ground(part: str) -> dict[str, Any]:
+    return {"contact": [f"{part}.wheel_axis_inner", f"{part}.wheel_centre"], "over": "ground"}
+
+
+def axle() -> Scene:
+    """An axle that rolls, pitches, heaves and steers; the left wheel goes up a kerb."""
+    wheel = {"mechanism": "double_wishbone"}
+    return Scene.from_mapping(
+        {
+            "effects": [*RATES, "wheel_angles", "toe", "wheel_travel", "wheel_travel_by_travel", "axle"],
+            "mechanism": {
+                "bodies": {"chassis": ["roll_axis", "pitch_axis"]},
+                "parts": {
+                    "left": {**wheel, "side": "left", "mirrored": True},
+                    "right": {**wheel, "side": "right"},
+                },
+                "inputs": {
+                    "left.ground": on_the_ground("left"),
+                    "right.ground": on_the_ground("right"),
+                    "rack": {"travel": ["left.rack", "right.rack"]},
+                    "roll": {"turns": "chassis", "about": "roll_axis", "along": "forward"},
+                    "pitch": {"turns": "chassis", "about": "pitch_axis", "along": "right"},
+                    "heave": {"moves": "chassis", "along": "up"},
+                },
+                "wheel_radius": 270.0,
+                "points": {
+                    **WISHBONE["points"],
+                    "roll_axis": (0.0, 0.0, -10.0),
+                    "pitch_axis": (900.0, 0.0, 40.0),
+                },
+            },
+            "inputs": {
+                "left.ground": {"polynomial": [0.0, 8.0]},
+                "right.ground": {"constant": 0.0},
+                "rack": {"polynomial": [0.0, 6.0, 3.0]},
+                "roll": {"sine": {"amplitude": 0.04, "angular_frequency": 2.0}},
+                "pitch": {"polynomial": [0.0, 0.015, -0.01]},
+                "heave": {"sine": {"amplitude": 7.0, "angular_frequency": 3.0}},
+            },
+            "time": TIME,
+        }
+    )
+
+
+def steered(per_turn: float | None, effects: tuple[str, ...] = (*RATES, "toe", "toe_by_rack")) -> Scene:
+    """A double wishbone by its steering wheel; without its travel per turn by the rack itself."""
+    inputs = {"wheel_travel": {"height": "wheel_centre"}, "rack": {"travel": "rack"}}
+    laws: dict[str, Any] = {
+        "wheel_travel": {"polynomial": [0.0, 9.0]},
+        "rack": {"polynomial": [0.0, 8.0, 4.0]},
+    }
+    tables = {
+        n: v
+        for n, v in Scene.load("double-wishbone").mechanism.plain(()).items()
+        if n in ("bodies", "rods", "roles")
+    }
+    slide = {"point": "tie_rod_inner", "through": "rack_centre", "along": "left"}
+    part = {"side": "right", "points": WISHBONE["points"], **tables, "slides": {"rack": slide}}
+    part["stand_ins"] = {"rack_centre": "tie_rod_inner"}
+    if per_turn is not None:
+        inputs["rack"] = {"steers": "rack"}
+        laws["rack"] = {"polynomial": [2.0 * np.pi / per_turn * c for c in (0.0, 8.0, 4.0)]}
+        part["rack_per_turn"] = per_turn
+    return Scene.from_mapping(
+        {
+            "effects": effects,
+            "mechanism": {"title": "wishbone", **part, "inputs": inputs},
+            "inputs": laws,
+            "time": TIME,
+        }
+    )
+
+
+@pytest.mark.parametrize("who", ["pointcoord", "pointcoord-newton", "absolute"])
+@pytest.mark.parametrize("scene", [axle(), steered(44.0), steered(-51.5)], ids=["axle", "wheel", "reversed"])
+def test_all_numbers_are_the_references_within_what_is_claimed(who: str, scene: Scene) -> None:
+    outcome = compare_solutions(scene, formulation(who).solve(scene), reference_solution(scene), "here")
+    assert not outcome.disagreements, outcome.disagreements
+    assert all(row.share <= 1.0 for row in outcome.rows if row.verdict != "not given")
+    assert {row.quantity for row in outcome.rows} >= {
+        "position",
+        "velocity",
+        "acceleration",
+        "angular_velocity",
+    }
+
+
+@pytest.mark.parametrize("who", ["relative", "mujoco", "exudyn"])
+def test_trees_of_joints_are_steered_and_refuse_the_ground(who: str) -> None:
+    scene = steered(-51.5, (*RATES, "toe"))
+    outcome = compare_solutions(scene, formulation(who).solve(scene), reference_solution(scene), "here")
+    assert not outcome.disagreements, outcome.disagreements
+    assert all(row.share <= 1.0 for row in outcome.rows)
+    with pytest.raises(FormulationError, match=r"left\.ground is a height over the ground"):
+        formulation(who).solve(axle())
+
+
+@pytest.mark.parametrize("per_turn", [44.0, -51.5])
+def test_a_steering_wheel_gives_the_motion_and_the_gradients_of_its_rack(per_turn: float) -> None:
+    by_wheel, by_rack = simulate(steered(per_turn)), simulate(steered(None))
+    off = by_wheel.proof(rates=True).proven, by_rack.proof(rates=True).proven
+    for quantity, channel in by_rack.numbers.items():
+        for name, array in channel.items():
+            # The angles are rounded by some units, of which the car makes as much of its rates.
+            allowed = off[0][quantity][name] + off[1][quantity][name] + 1e-13 * np.abs(array).max()
+            assert (np.abs(by_wheel.numbers[quantity][name] - array) <= allowed).all(), (quantity, name)
+
+
+def test_a_steering_wheel_needs_the_travel_of_a_turn() -> None:
+    content = steered(44.0).model_dump(exclude_none=True)
+    for wrong, words in (
+        (None, "has no rack_per_turn; allowed: rack_per_turn in mm"),
+        (0.0, "rack_per_turn.*not 0"),
+    ):
+        part = {**content["mechanism"], "rack_per_turn": wrong}
+        with pytest.raises(SceneError, match=words):
+            Scene.from_mapping({**content, "mechanism": part})
+    metres = {**content, "units": "m"}
+    metres["mechanism"] = {**content["mechanism"], "rack_per_turn": 0.044}
+    metres["mechanism"]["points"] = {n: tuple(1e-3 * x for x in p) for n, p in WISHBONE["points"].items()}
+    metres["inputs"] = {**content["inputs"], "wheel_travel": {"constant": 0.009}}
+    found = Scene.from_mapping(metres)
+    assert found.mechanism.rack_per_turn == pytest.approx(44.0, rel=1e-15)
+    assert found.inputs["rack"] == Scene.from_mapping(content).inputs["rack"]
