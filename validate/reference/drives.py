@@ -160,7 +160,7 @@ def _slid(compiler: Compiler, name: str, slides: Sequence[str], per_input: Calla
         off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
-    per_input()
+    per_input()  # what it refuses is refused here
 
     def numbers(value: Jet) -> list[Jet]:
         local = value * (per_input() * as_ball(1 / unit))
