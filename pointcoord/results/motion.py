@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+# Rows of a table in a notebook.
+SHOWN = 11
+
 
 @dataclass(frozen=True, repr=False)
 class Motion(Samples):
@@ -54,6 +57,25 @@ class Motion(Samples):
         noted = f"; {count} note{'s' if count > 1 else ''}" if count else ""
         part = "" if self.status.complete else "part of a "
         return f"<{part}Motion by {self.method}: {self._span}; {self._quantities}{noted}>"
+
+    def _repr_html_(self) -> str:
+        """Numbers of the car, or places of points where it has none, at some of the instants."""
+        # Imported here: only notebooks ask for it.
+        from pointcoord.results.html_table import html_table
+        from pointcoord.results.named_columns import columns
+
+        picked = np.unique(
+            np.linspace(0, len(self.times) - 1, min(SHOWN, len(self.times))).round().astype(int)
+        )
+        of_the_car = {
+            name for name, channel in self.numbers.items() if channel.quantity.of == "car" and channel
+        }
+        wanted = ("time", *(of_the_car or ("position",)))
+        found = {
+            name: each[picked] for name, each in columns(self) if name.split(".")[0].split(" ")[0] in wanted
+        }
+        rows = ([f"{value:.7g}" for value in row] for row in zip(*found.values(), strict=True))
+        return html_table(repr(self), found, rows)
 
     @property
     def unit(self) -> float:

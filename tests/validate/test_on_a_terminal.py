@@ -126,3 +126,17 @@ def test_a_table_is_columns_of_text() -> None:
         "  a          1.5  agrees",
         "  long one    10  no",
     ]
+
+
+def test_a_wide_table_is_shown_in_bands_that_fit_and_have_the_inputs_each() -> None:
+    shown = on_terminal([*PROGRAM, "table", "wheel-travel", "--rows", "3"], columns=90)
+    lines = shown.replace("\r", "").splitlines()
+    # What is positive is said in words, which may be folded.
+    assert max(len(line) for line in lines if ": positive" not in line) <= 90
+    heads = [line for line in lines if line.startswith("wheel_travel [mm]")]
+    assert len(heads) > 2
+    # Every number once, as in a pipe.
+    names = [word for line in heads for word in line.split() if not word.startswith("[")]
+    whole = run("table", "wheel-travel", "--rows", "3").stdout.splitlines()[0].split()
+    once = [name for name in names if name != "wheel_travel"]
+    assert once == [word for word in whole if not word.startswith("[") and word != "wheel_travel"]

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import shutil
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, PointcoordError, Scene, SweepError, solve_poses
+from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
+from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
@@ -28,7 +31,7 @@ from validate.curves.numbers import Number, numbers_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
-from validate.output.table import Table, csv_of
+from validate.output.table import Table, csv_of, is_terminal
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
@@ -47,6 +50,10 @@ every combination of values of inputs, and the other inputs stay where the scene
 
   --grid wheel_travel=-50:50:11 --grid rack=-30:30:7
 
+Other programs mean other numbers by the same names: --convention adams has Adams/Car's camber,
+optimumk OptimumK's toe, with what is positive there. Columns keep our names, with a minus
+before one that counts the other way.
+
 What is out of reach has no numbers and says why; then it ends with 3."""
 
 OPTIONS = f"""\
@@ -56,6 +63,7 @@ OPTIONS = f"""\
 --grid INPUT=VALUES  a row for every combination of values instead, in mm or rad; may be given again
 --number NAME  a column, by its name; may be given again
 --all  every number of the car that there is
+--convention NAME  what names mean: {", ".join(CONVENTIONS)}; iso if not given
 {QUIET}"""
 
 
@@ -65,23 +73,39 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.grid and given(options, "--rows"):
         raise UsageError("--rows is about a way of the inputs; leave it out with --grid")
     scene, name = load_scene(options.scene), name_of(options.scene)
-    chosen = chosen_numbers(options.number, options.all, scene, name)
-    scene = asking_for(scene, chosen)
+    signs = _chosen(options, scene, name)
+    scene = asking_for(scene, [*signs])
     numbers = {number.path[-1]: number for number in numbers_of(scene) if len(number.path) < 3}
+    read = [numbers[number] for number in signs]
     if options.grid:
-        return _on_grid(scene, [numbers[one] for one in chosen], options, target, console)
+        return _on_grid(scene, read, signs, options, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
-    columns = [numbers[one] for one in (*driven, *chosen)]
+    columns = [*(numbers[one] for one in driven), *read]
 
     def write(motion: Motion) -> str:
         rows = options.rows or min(ROWS, len(motion.times))
         first, last = motion.times[0], motion.times[-1]
         samples = motion.at(np.linspace(first, last, rows)) if len(motion.times) > 1 else motion
         values = [one.shown(motion, samples) for one in columns]
-        console.put(target, _text(columns, values, target), "the table")
+        console.put(target, _text(columns, values, signs, target), "the table")
         return "the table"
 
     return solved(scene, target, options, console, write)
+
+
+def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> dict[str, int]:
+    """The columns beside the inputs: our numbers by the convention, with their signs."""
+    if options.convention not in CONVENTIONS:
+        raise UnknownName("convention", options.convention, CONVENTIONS)
+    convention = CONVENTIONS[options.convention]
+    if options.number:
+        counted = dict(map(convention.number, options.number))
+        return {number: counted[number] for number in chosen_numbers([*counted], False, scene, name)}
+    if options.all and convention.means:
+        raise UsageError("--all is every number by our names; leave --convention out with it")
+    first = chosen_numbers(None, options.all, scene, name)
+    there = set(chosen_numbers(None, True, scene, name))
+    return {number: sign for number, sign in map(convention.number, first) if number in there}
 
 
 def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name: str) -> list[str]:
@@ -125,7 +149,12 @@ def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
 
 
 def _on_grid(
-    scene: Scene, columns: Sequence[Number], options: argparse.Namespace, target: str | None, console: Console
+    scene: Scene,
+    columns: Sequence[Number],
+    signs: Mapping[str, int],
+    options: argparse.Namespace,
+    target: str | None,
+    console: Console,
 ) -> ExitStatus:
     """A row for each combination of values; status 3 where one of them is out of reach."""
     axes = _axes(scene, options.grid)
@@ -144,7 +173,7 @@ def _on_grid(
     every = [*(inputs[n] for n in axes), *columns]
     turned = [np.degrees(v) if c.unit.startswith("rad") else v for c, v in zip(every, values, strict=True)]
     reasons = {row: str(error) for row, error in poses.failures.items()}
-    console.put(target, _text(every, turned, target, reasons), "the table")
+    console.put(target, _text(every, turned, signs, target, reasons), "the table")
     if not reasons:
         return ExitStatus.AGREE
     first = min(reasons)
@@ -179,29 +208,37 @@ def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
 def _text(
     columns: Sequence[Number],
     values: Sequence[Array],
+    signs: Mapping[str, int],
     target: str | None,
     reasons: Mapping[int, str] | None = None,
 ) -> str:
     """Numbers, angles in degrees: CSV, or text with what is positive.
 
     Args:
+        signs: of numbers by name, -1 of what is to count the other way.
         reasons: why there are none in a row, of a grid.
     """
-    head = tuple(f"{one.path[-1]} [{one.unit_shown()}]" for one in columns)
-    lines = [tuple(line) for line in zip(*(each.tolist() for each in values), strict=True)]
+    ways = [signs.get(one.path[-1], 1) for one in columns]
+    minus = ["-" if way < 0 else "" for way in ways]
+    head = tuple(f"{m}{one.path[-1]} [{one.unit_shown()}]" for m, one in zip(minus, columns, strict=True))
+    counted = (way * each for way, each in zip(ways, values, strict=True))
+    lines = [tuple(line) for line in zip(*(each.tolist() for each in counted), strict=True)]
     if target is not None and Path(target).suffix == ".csv":
         if reasons is None:
             return csv_of(head, lines)
-        told = ((*line, reasons.get(row, "")) for row, line in enumerate(lines))
-        return csv_of((*head, "why there is none"), told)
+        every = ((*line, reasons.get(row, "")) for row, line in enumerate(lines))
+        return csv_of((*head, "why there is none"), every)
     digits = [DIGITS[one.unit_shown()] for one in columns]
     table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
     # The wheels of an axle share a line.
     told_signs = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
-    signs = [f"{number}: positive {sign}" for number, sign in told_signs.items()]
+    told = [f"{number}: positive {sign}" for number, sign in told_signs.items()]
     if target is not None:
-        return "\n".join([table.markdown, "", *(f"- {sign}" for sign in signs), ""])
-    return "\n".join([table.text, "", *signs, ""])
+        return "\n".join([table.markdown, "", *(f"- {sign}" for sign in told), ""])
+    kept = sum(not one.of_the_car for one in columns)
+    # Lines that a terminal would fold cannot be read down.
+    bands = table.bands(shutil.get_terminal_size().columns, kept) if is_terminal(sys.stdout) else [table]
+    return "\n".join([*(line for band in bands for line in (band.text, "")), *told, ""])
 
 
 def _rounded(value: float, digits: int) -> str:
@@ -211,6 +248,13 @@ def _rounded(value: float, digits: int) -> str:
 
 COMMANDS = {
     "table": Command(
-        DESCRIPTION, OPTIONS, run, {"--number": {"action": "append"}, "--grid": {"action": "append"}}
+        DESCRIPTION,
+        OPTIONS,
+        run,
+        {
+            "--number": {"action": "append"},
+            "--grid": {"action": "append"},
+            "--convention": {"default": "iso"},
+        },
     )
 }

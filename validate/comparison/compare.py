@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.results.html_table import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
@@ -155,6 +156,21 @@ class Outcome:
         first, second = (solution.formulation for solution in self.solutions)
         counts = (counted(sum(row.verdict == v for row in self.rows), v) for v in _verdicts(self.rows))
         return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
+
+    def _repr_html_(self) -> str:
+        """Every row, as a notebook shows it."""
+        head = ("quantity", "name", "largest difference", "tolerance", "verdict")
+        rows = (
+            (
+                row.quantity,
+                row.name,
+                f"{row.difference:.1e} {row.unit}",
+                f"{row.tolerance:.1e} {row.unit}",
+                row.verdict,
+            )
+            for row in self.rows
+        )
+        return html_table(repr(self), head, rows)
 
 
 def counted(count: int, verdict: str) -> str:

@@ -11,18 +11,21 @@ from typing import Any
 from pointcoord import Scene
 from pointcoord.drawing_stands import Standing
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.car_number import BY_TRAVEL
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import SceneError
 from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.faults import TableFault
-from pointcoord.mechanism.file import MechanismFile
+from pointcoord.mechanism.file import AS_DRAWN, MechanismFile
+from pointcoord.mechanism.inputs import Height
 from pointcoord.mechanism.structure import CLOSING
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
 from validate.toml_written import key_of, value_of
 
-# Part of the way from the drawing to the nearer end of the driven input that the bounce takes: far from where
-# links lie in line, and still some 50 mm of wheel travel of a road car.
+# mm of wheel travel up and down, where both ends are far enough: far from where links lie in line.
+TRAVEL, FAR_ENOUGH = 30.0, 40.0
+# Else part of the way from the drawing to the nearer end of the input that moves the wheel.
 PART = 0.25
 # A sine of nearly one period. No instant is one at which the input turns, an odd multiple of pi / 12 s: its
 # rate is rounding alone there, and a comparison of rates would test nothing.
@@ -83,7 +86,7 @@ def scene_of(
         "inputs": {},
         "time": {"start": 0.0, "stop": 0.0, "samples": 1},
     }
-    driven = required_inputs(source, kind, tables, places)
+    driven = driven_inputs(source, kind, tables, places)
     content["inputs"] = {name: {"constant": 1.0} for name in driven}
     scene = Scene.from_mapping(content, source)
     # Angles of lines, and rates; what is made of the wheel's radius or a damper a table seldom says.
@@ -93,21 +96,34 @@ def scene_of(
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
 
-def required_inputs(
+def driven_inputs(
     source: str, kind: str, tables: Mapping[str, Any] | None, places: Mapping[str, Sequence[float]]
 ) -> tuple[str, ...]:
-    """The first inputs that hold every freedom."""
-    if tables is None:
-        return mechanism_file(kind).topology().required_inputs
+    """The first inputs that hold every freedom, with the travel of the wheel for what moves it."""
+    drawn = None if tables is None else {name: (x, y, z) for name, (x, y, z) in places.items()}
     try:
-        drawn = {name: (x, y, z) for name, (x, y, z) in places.items()}
-        return MechanismFile.of(tables, kind).topology(points=drawn).required_inputs
+        file = mechanism_file(kind) if tables is None else MechanismFile.of(tables, kind)
+        topology = file.topology(points=drawn)
+        others = topology.driven_along(BY_TRAVEL)
+        heights = {
+            one.height: name
+            for name, one in file.structures[AS_DRAWN].inputs.items()
+            if isinstance(one, Height)
+        }
+        if len(others) != 1 or topology.wheel_centre not in heights:
+            return topology.required_inputs
+        travel = heights[topology.wheel_centre]
+        return tuple(travel if name in others else name for name in topology.required_inputs)
     except TableFault as fault:
         raise SceneError(source, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
 
 
 def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
-    """A bounce about the drawing, with the others held as drawn, well within what the linkage reaches."""
+    """A bounce about the drawing, with the others held as drawn, well within what the linkage reaches.
+
+    The wheel travels 30 mm up and down; where the linkage reaches less than 40 mm, or what moves it is no
+    travel, it is a quarter of the way to the nearer end.
+    """
     laws: dict[str, tuple[Mapping[str, Any], str]] = {}
     drives = drawn.mechanism.topology.drives
     for drive in drives:
@@ -117,9 +133,12 @@ def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
             laws[name] = {"constant": here}, f"{unit}, as drawn"
             continue
         low, high = (end.value for end in stands.reach[name])
-        amplitude = floor(1e4 * PART * min(here - low, high - here)) / 1e4
+        nearer = min(here - low, high - here)
+        whole = unit == "mm" and nearer >= FAR_ENOUGH
+        amplitude = TRAVEL if whole else floor(1e4 * PART * nearer) / 1e4
         sine = {"amplitude": amplitude, "angular_frequency": FREQUENCY, "offset": here}
-        words = f"{unit}; it reaches {low:.4f} to {high:.4f}, and this takes a quarter of the shorter way"
+        words = f"{unit}; it reaches {low:.4f} to {high:.4f}"
+        words += "" if whole else ", and this takes a quarter of the shorter way"
         laws[name] = {"sine": sine}, words
     moved = {
         "inputs": {name: law for name, (law, _) in laws.items()},

@@ -5,6 +5,7 @@ A map is TOML:
     independent = "bump"          # the column that the others are given over; found by itself where it can be
     rolling_radius = 270.0        # mm; for travel.contact only
     solve_for = "arm_angle"       # the input that a travel is reached by; found by itself
+    convention = "adams"          # whose numbers have the names: adams, optimumk, lotus; iso if not said
 
     [held]                        # what is the same in every row; inputs that nothing is said of: as drawn
     rack = 0.0
@@ -41,6 +42,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pointcoord import Scene, SceneError
+from pointcoord.effects.conventions import CONVENTIONS, Convention, ConventionName
 from pointcoord.mechanism.faults import fault_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
@@ -99,6 +101,7 @@ class MapSaid(BaseModel):
     independent: str | None = None
     rolling_radius: Number = math.nan
     solve_for: str = ""
+    convention: ConventionName = "iso"
     held: dict[str, Number] = {}
     columns: dict[str, ColumnSaid] = {}
 
@@ -410,7 +413,16 @@ class _Map:
         return found is not None and found.kind == "number" and not taken and bool(self.unit_of(column))
 
     def _named(self, name: str) -> Meaning | None:
-        return named(name, self.meanings)
+        """Its meaning; of a name that is no whole one of ours, by the convention."""
+        found = named(name, self.meanings)
+        if found is None or found.kind != "number" or name in self.meanings:
+            return found
+        meant_by, _ = self._convention.number(found.name)
+        return found if meant_by == found.name else named(meant_by, self.meanings)
+
+    @property
+    def _convention(self) -> Convention:
+        return CONVENTIONS[self.said.convention]
 
     def series(self) -> list[Series]:
         """Every column that means something, in our units; derivatives after what they are by."""
@@ -474,7 +486,7 @@ class _Map:
         factor = self._factor(column, meaning)
         # A derivative is by its own column, which goes the other way than ours where the map says so.
         by = {one.words: self._part(name).sign for name, one in self.meant_by.items() if one is not None}
-        sign = part.sign * by.get(meaning.per, 1)
+        sign = part.sign * by.get(meaning.per, 1) * self._counted(column, meaning)
         theirs, steps = self.columns.values[i], self.columns.steps[i]
         with np.errstate(over="ignore"):
             values = factor * (sign * theirs + part.offset)
@@ -490,6 +502,14 @@ class _Map:
         off = 0.5 * factor * np.broadcast_to(printed, values.shape)
         told = part.printed is not None
         return Series(column, meaning, values, off, part.definition, factor, part.accuracy, told)
+
+    def _counted(self, column: str, meaning: Meaning) -> int:
+        """-1 of what the convention counts the other way, where the map says no sign or whole name."""
+        part = self._part(column)
+        if part.is_ in self.meanings or column in self.meanings or "sign" in part.model_fields_set:
+            return 1
+        signs = dict(map(self._convention.number, self._convention.means))
+        return signs.get(meaning.name, 1)
 
     def _factor(self, column: str, meaning: Meaning) -> float:
         allowed, said = allowed_units(meaning.unit), self.unit_of(column)

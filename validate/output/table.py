@@ -11,7 +11,7 @@ import os
 import re
 import shutil
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import zip_longest
 from textwrap import wrap
@@ -103,6 +103,33 @@ class Table:
                 )
                 found.append((" " * self.indent + gap.join(pads)).rstrip())
         return found
+
+    def bands(self, room: int, kept: int) -> list[Table]:
+        """Tables of as many columns as there is room for, each with the first columns of this one.
+
+        Args:
+            kept: how many columns stand in each; a band has one more at least.
+        """
+        widths = [
+            max(map(len, (name, *(row[i] for row in self.texts)))) + 2 for i, name in enumerate(self.head)
+        ]
+        left = self.indent + sum(widths[:kept]) - 2
+        found: list[list[int]] = []
+        for i in range(kept, len(self.head)):
+            if not found or left + sum(widths[j] for j in (*found[-1], i)) > room:
+                found.append([])
+            found[-1].append(i)
+        if len(found) < 2:
+            return [self]
+        chosen = [(*range(kept), *band) for band in found]
+        return [
+            replace(
+                self,
+                head=tuple(self.head[i] for i in band),
+                rows=tuple(tuple(row[i] for i in band) for row in self.rows),
+            )
+            for band in chosen
+        ]
 
     @property
     def markdown(self) -> str:

@@ -1,7 +1,7 @@
 """Hardpoints of other programs become the car that they are, or a line that says why not."""
 
 from collections.abc import Mapping
-from math import cos, degrees, radians, sin
+from math import cos, degrees, radians, sin, tau
 from pathlib import Path
 
 import numpy as np
@@ -95,15 +95,24 @@ def test_the_bounce_begins_at_the_drawing_and_stays_far_within_reach(tmp_path: P
         imported(tmp_path, chrono("macpherson", STRUT.mechanism.points, -1)),
     ):
         stands, motion = standing(found.scene), simulate(found.scene)
-        law = found.scene.inputs["arm_angle"].sine
+        law = found.scene.inputs["wheel_travel"].sine
         assert law is not None
-        low, high = (end.value for end in stands.reach["arm_angle"])
-        nearer = min(high - stands.inputs["arm_angle"], stands.inputs["arm_angle"] - low)
-        assert 0.24 * nearer < law.amplitude <= 0.25 * nearer
-        np.testing.assert_allclose(
-            motion.position["wheel_centre"][0], drawn(found)["wheel_centre"], rtol=0, atol=1e-9
-        )
-        assert np.ptp(motion.position["wheel_centre"][:, 2]) > 50.0
+        assert law.amplitude == 30.0
+        assert min(abs(end.value) for end in stands.reach["wheel_travel"]) > 40.0
+        height = motion.position["wheel_centre"][:, 2] - drawn(found)["wheel_centre"][2]
+        assert height[0] == pytest.approx(0.0, abs=1e-9)
+        # 43 samples of a period: one lies within 1/84 of it from each end.
+        assert 30.0 * cos(tau / 84) <= min(height.max(), -height.min()) <= 30.0 + 1e-9
+
+
+def test_a_car_that_reaches_less_bounces_a_quarter_of_the_way(tmp_path: Path) -> None:
+    small = {name: (0.14 * x, 0.14 * y, 0.14 * z) for name, (x, y, z) in WISHBONE.mechanism.points.items()}
+    found = imported(tmp_path, lotus_report(small), unit="mm")
+    law = found.scene.inputs["wheel_travel"].sine
+    nearer = min(abs(end.value) for end in standing(found.scene).reach["wheel_travel"])
+    assert law is not None
+    assert nearer < 40.0
+    assert 0.24 * nearer < law.amplitude <= 0.25 * nearer
 
 
 @pytest.mark.parametrize(("camber", "toe"), [("", ""), ("-1.5", "0.25")])

@@ -1,0 +1,59 @@
+"""What other programs and standards mean by a number's name, where they do not mean ours.
+
+A convention changes no number: it says which of ours carries the name, and whether it counts the other way.
+What a scene gives and what is compared has one meaning, so that two people who write "camber" mean the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from pointcoord.effects.gradients import WAYS
+
+ConventionName = Literal["iso", "paper", "lotus", "optimumk", "adams"]
+
+
+@dataclass(frozen=True)
+class Convention:
+    """Names that mean others of our numbers.
+
+    Attributes:
+        words: whose it is.
+        means: by name, our number of that meaning; a minus before it where it counts the other way.
+    """
+
+    words: str
+    means: Mapping[str, str] = field(default_factory=dict)
+
+    def number(self, name: str) -> tuple[str, int]:
+        """Our number of a name, which may be a part's or a gradient's, and its sign.
+
+        >>> CONVENTIONS["optimumk"].number("left.toe_by_travel")
+        ('left.toe_by_arcsine_by_travel', -1)
+        """
+        part, dot, own = name.rpartition(".")
+        way = next((f"_{way}" for way in WAYS if own.endswith(f"_{way}")), "")
+        plain = own.removesuffix(way)
+        meant = self.means.get(plain, plain)
+        return f"{part}{dot}{meant.removeprefix('-')}{way}", -1 if meant.startswith("-") else 1
+
+
+CONVENTIONS: Mapping[ConventionName, Convention] = {
+    "iso": Convention("ISO 8855, and ours"),
+    "paper": Convention("Attia's paper, eqs. 16 and 17"),
+    # The trail that Lotus prints as mechanical is this one times the cosine of the caster.
+    "lotus": Convention(
+        "Lotus Suspension Analysis",
+        {
+            "travel": "contact_travel",
+            "scrub_radius": "kingpin_offset",
+            "mechanical_trail": "castor_offset",
+            "damper_per_wheel": "wheel_per_damper",
+        },
+    ),
+    "optimumk": Convention("OptimumK", {"toe": "-toe_by_arcsine", "damper_per_wheel": "wheel_per_damper"}),
+    "adams": Convention("Adams/Car's turning tables", {"camber": "camber_by_arcsine"}),
+}
+"""By name."""

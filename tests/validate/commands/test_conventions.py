@@ -1,0 +1,96 @@
+"""Names mean what Adams/Car, OptimumK and Lotus mean by them where a table or a map says so."""
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from curve_files import compared, verdicts
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate
+from validate.cli import main
+
+Array = NDArray[np.float64]
+CAR = Scene.load("double-wishbone")
+UP, FORWARD = 2, 0  # of its axes; x points rearward
+
+
+def spin_axis() -> tuple[Array, Array]:
+    """Times and the unit vector from the inner point to the wheel centre."""
+    motion = simulate(CAR)
+    n = motion.position["wheel_centre"] - motion.position["wheel_axis_inner"]
+    return motion.times, n / np.linalg.norm(n, axis=1)[:, None]
+
+
+def camber_of_adams() -> Array:
+    return -np.degrees(np.arcsin(spin_axis()[1][:, UP]))
+
+
+def toe_of_optimumk() -> Array:
+    """+ out: minus the arcsine of what points forward."""
+    return np.degrees(np.arcsin(spin_axis()[1][:, FORWARD]))
+
+
+@pytest.mark.parametrize(
+    ("convention", "number", "heading", "defined"),
+    [
+        ("adams", "camber", "camber_by_arcsine [deg]", camber_of_adams),
+        ("optimumk", "toe", "-toe_by_arcsine [deg]", toe_of_optimumk),
+    ],
+)
+def test_a_table_has_the_number_that_a_program_means(
+    convention: str, number: str, heading: str, defined: Callable[[], Array], tmp_path: Path
+) -> None:
+    path = tmp_path / "car.csv"
+    rows = ("--rows", str(len(CAR.instants)))
+    said = ("--number", number, "--convention", convention)
+    assert main(["table", "double-wishbone", *said, *rows, "-o", str(path), "--quiet"]) == 0
+    found = [float(row[heading]) for row in csv.DictReader(path.read_text().splitlines())]
+    # Both from the same points, in degrees: some roundings of 57.
+    np.testing.assert_allclose(found, defined(), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("convention", "column", "defined"),
+    [("adams", "camber", camber_of_adams), ("optimumk", "toe", toe_of_optimumk)],
+)
+def test_a_map_reads_a_column_as_its_program_means_it(
+    convention: str, column: str, defined: Callable[[], Array]
+) -> None:
+    times, _ = spin_axis()
+    rows = [f"{time!r},{value:.6f}" for time, value in zip(times.tolist(), defined().tolist(), strict=True)]
+    text = "\n".join([f"time [s],{column} [deg]", *rows, ""])
+    as_said = verdicts(compared(text, {"convention": convention}, CAR))
+    assert set(as_said.values()) == {"agrees"}
+    # Without it the column means ours, from which it is hundredths of a degree away, or a sign.
+    assert set(verdicts(compared(text, {}, CAR)).values()) == {"disagrees"}
+    # What is said of the column goes before: a sign, or a whole name of ours.
+    for part in ({"sign": -1 if convention == "adams" else 1}, {"is": f"wheel.{column}"}):
+        said = {"convention": convention, "columns": {column: part}}
+        assert set(verdicts(compared(text, said, CAR)).values()) == {"disagrees"}
+
+
+def test_lotus_means_the_contact_point_by_travel_and_the_offset_by_scrub_radius(tmp_path: Path) -> None:
+    path = tmp_path / "car.csv"
+    assert main(["table", "double-wishbone", "--convention", "lotus", "-o", str(path), "--quiet"]) == 0
+    names = path.read_text().splitlines()[0]
+    assert "contact_travel [mm]" in names
+    assert ",travel [mm]" not in names
+    assert names.count("kingpin_offset [mm]") == 1
+    assert "scrub_radius" not in names
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--convention", "bmw"), "no convention named 'bmw'; there are: iso, paper, lotus, optimumk, adams"),
+        (("--convention", "adams", "--all"), "--all is every number by our names"),
+    ],
+)
+def test_what_is_no_convention_is_said(
+    words: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["table", "double-wishbone", *words]) == 2
+    assert told in capsys.readouterr().err
