@@ -279,7 +279,8 @@ def corner_of(poses: Poses, wheel: Wheel) -> Corner[Array]:
 
     drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
     car = {name: np.array(number) for name, number in axes.car.items()}
-    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), mechanism.origin, car)
+    origin = _beside(mechanism.origin, shape)
+    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), origin, car)
 
 
 def _beside(place: Array, dimensions: int) -> Array:

@@ -123,7 +123,7 @@ READ_FIRST = (
 )
 """The numbers that a table shows unless others are asked for, as far as a car has them."""
 
-RANKED_FIRST = ("camber", "toe", "caster", "half_track_change", "kingpin_offset")
+RANKED_FIRST = ("camber", "toe", "toe_by_travel", "caster", "half_track_change", "kingpin_offset")
 """The numbers whose hardpoints are ranked unless others are asked for, as far as a car has them."""
 
 ANGLES: Mapping[str, Angle] = {

@@ -21,6 +21,8 @@ from pointcoord.numerics.newton import implicit_rate
 
 Array = NDArray[np.float64]
 
+# Poses at a time: of as many as stay in a cache where they are summed.
+POSES = 4096
 GAP = "gap"
 """What the gap itself is called among the points that move along one."""
 
@@ -54,6 +56,40 @@ class ByGap:
 
 
 Way = ByInput | ByLength | ByGap
+
+
+def moved_along(
+    mechanism: Mechanism, y: Array, ways: Sequence[Way]
+) -> tuple[dict[str, Array], list[dict[str, Array]]]:
+    """Every point of poses, and its derivative along each way, mm and mm per rad, mm or unit.
+
+    Args:
+        y: (N, size), or of a batch of cars (cars, N, size). Points have its shape, with 3 for the last.
+    """
+    if y.ndim > 2:
+        # A car for each pose, for so many cars at a time that their matrices stay small.
+        count = max(1, POSES // y.shape[1])
+        parts = [
+            moved_along(
+                mechanism.taken(np.repeat(np.arange(low, low + len(some)), y.shape[1])),
+                some.reshape(-1, y.shape[-1]),
+                ways,
+            )
+            for low in range(0, len(y), count)
+            for some in [y[low : low + count]]
+        ]
+        shape = (*y.shape[:-1], 3)
+        tables = list(zip(*([places, *slopes] for places, slopes in parts), strict=True))
+        joined = [
+            {name: np.concatenate([part[name] for part in table]).reshape(shape) for name in table[0]}
+            for table in tables
+        ]
+        return joined[0], joined[1:]
+    unit = mechanism.unit[..., None]
+    places = {name: place * unit for name, place in mechanism.places(y).items()}
+    places[GAP] = np.zeros((len(y), 3))
+    slopes = way_slopes(mechanism, y, ways)
+    return places, [point_slopes(mechanism, y, s, way) for way, s in zip(ways, slopes, strict=True)]
 
 
 def way_slopes(mechanism: Mechanism, y: Array, ways: Sequence[Way]) -> list[Array]:
@@ -122,7 +158,8 @@ def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dic
     found = {name: series[..., list(layout.vector(name))] for name in (*topology.chassis, *topology.moving)}
     for name, carriers in topology.carried.items():
         found[name] = carried_series(mechanism.carrier_weights[name], *(found[c] for c in carriers))
-    moved = {name: each[..., 1, :] * mechanism.unit for name, each in found.items()}
+    unit = mechanism.unit[..., None]
+    moved = {name: each[..., 1, :] * unit for name, each in found.items()}
     if isinstance(way, ByGap):
-        moved[GAP] = np.broadcast_to(np.eye(3)[way.axis] * mechanism.unit, (len(y), 3))
+        moved[GAP] = np.broadcast_to(np.eye(3)[way.axis] * unit, (len(y), 3))
     return moved

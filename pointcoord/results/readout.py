@@ -15,7 +15,7 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import GAP, Way, point_slopes, way_slopes
+from pointcoord.linkage.slopes import Way, moved_along
 from pointcoord.results.samples import Channel, Samples
 from pointcoord.results.table import State, Table, triples, vectors
 
@@ -132,7 +132,7 @@ class Readout:
         Args:
             states: those that are reported have their places in the table too, and may be views of it.
             rows: a table or some columns of one, shape (..., height, N).
-            y: the coordinates, (N, size), where an effect takes derivatives by an input.
+            y: the coordinates, (..., N, size), where an effect takes derivatives by an input.
         """
         in_chassis, slopes = states[0], {} if y is None else self.slopes(laws, y)
         if not self.chassis.centres.keys().isdisjoint(laws):
@@ -174,15 +174,13 @@ class Readout:
 
     def slopes(self, laws: Laws, y: Array) -> Slopes:
         """By way, the derivatives of positions along it, after the turns of the chassis and before."""
-        found: dict[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = {}
         ways = self.plan.ways(self.mechanism.topology)
         held = {name: [law[0], np.zeros_like(law[0])] for name, law in laws.items()}
-        places = {name: place * self.mechanism.unit for name, place in self.mechanism.places(y).items()}
-        places[GAP] = np.zeros((len(y), 3))
-        for way, slope in zip(ways, way_slopes(self.mechanism, y, ways), strict=True):
-            slopes = point_slopes(self.mechanism, y, slope, way)
-            found[way] = self.chassis.turned_by(held, [places, slopes])[1], slopes
-        return found
+        places, every = moved_along(self.mechanism, y, ways)
+        return {
+            way: (self.chassis.turned_by(held, [places, slopes])[1], slopes)
+            for way, slopes in zip(ways, every, strict=True)
+        }
 
     def added(self, laws: Laws) -> list[Array | None]:
         """By time derivative, what reporting adds to every point; None where that is zero."""

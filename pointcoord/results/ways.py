@@ -164,13 +164,31 @@ class ByChain(SolvedScene):
         return CloseInstants(self, self.chain)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """Sums of their series; the instants lie side by side in memory."""
-        mechanism = self.readout.mechanism
-        known = mechanism.known_series({name: f.series(instants, 0) for name, f in self.functions.items()})
+        """Sums of their series, of designs (designs, N, size); the instants lie side by side in memory."""
+        mechanism, segments = self.readout.mechanism, self.chain.segments
         wanted = min(derivatives, self.readout.plan.derivative)
-        found = list(evaluate(self.chain, [s.coefficients for s in self.chain.segments], instants, wanted))
-        found[0][:, mechanism.map.unknowns :] = known[:, 0]
+        unknowns = mechanism.map.unknowns
+        if isinstance(box := segments[0], Box):
+            size = unknowns + self._known(instants).shape[-1]
+            found = [np.zeros((len(box.coefficients), len(instants), size)) for _ in range(wanted + 1)]
+            for each, powers in zip(found, box.powers(instants, wanted + 1), strict=True):
+                each[..., :unknowns] = powers.T @ box.coefficients
+        else:
+            found = list(evaluate(self.chain, [s.coefficients for s in segments], instants, wanted))
+        found[0][..., unknowns:] = self._known(instants)
         return found
+
+    def _known(self, instants: Array) -> Array:
+        """The known coordinates, (..., N, known)."""
+        mechanism = self.readout.mechanism
+        laws = {name: law.series(instants, 0) for name, law in self.functions.items()}
+        if mechanism.drawn.ndim == 1:
+            return mechanism.known_series(laws)[:, 0]
+        # A car for each pose: all have the same laws.
+        cars, count = len(mechanism.drawn), len(instants)
+        each = mechanism.taken(np.repeat(np.arange(cars), count))
+        known = each.known_series({name: np.tile(law, (cars, 1)) for name, law in laws.items()})
+        return known[:, 0].reshape(cars, count, -1)
 
     def summed(self, instants: Array) -> list[Summed]:
         """How `coordinates` sums each derivative at instants."""

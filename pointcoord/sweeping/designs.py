@@ -7,7 +7,7 @@ designs it has.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,7 +23,7 @@ from pointcoord.wording import shown
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-AXES = "xyz"
+AXES = ("x", "y", "z")
 # Grids of more designs are a slip: at a microsecond each of 100 instants they would take a day.
 MOST = 10**9
 
@@ -177,21 +177,34 @@ def _coordinates(
     return found
 
 
+def coordinates_named(name: str, points: Collection[str]) -> tuple[str, ...]:
+    """The coordinates that a name means: one such as lower_ball_joint.z, or all three of a point.
+
+    Raises:
+        UnknownName: no point or axis is called so.
+    """
+    # A point of a part has a dot in its own name.
+    if name in points:
+        return tuple(f"{name}.{axis}" for axis in AXES)
+    point, _, axis = name.rpartition(".")
+    if point not in points:
+        raise UnknownName("point", point if point and axis in AXES else name, points)
+    if axis not in AXES:
+        raise UnknownName(f"axis of {point}", axis, AXES)
+    return (name,)
+
+
 def _split(name: str, numbers: ArrayLike, topology: Topology) -> dict[str, Array]:
     """Values of a point or of a coordinate by coordinate."""
-    point, dot, axis = name.partition(".")
-    if point not in topology.points:
-        raise UnknownName("point", point, topology.points)
-    if dot and (len(axis) != 1 or axis not in AXES):
-        raise UnknownName(f"axis of {point}", axis, AXES)
+    named = coordinates_named(name, topology.points)
     try:
         values = np.array(numbers, dtype=float)
     except (TypeError, ValueError):
         raise SweepError(name, f"is {shown(numbers)}", "numbers") from None
-    if dot:
+    if len(named) == 1:
         if values.ndim > 1:
             raise SweepError(name, f"has the shape {values.shape}", "a number for each design, (D,)")
         return {name: values}
     if values.shape[-1:] != (3,) or values.ndim > 2:
         raise SweepError(name, f"has the shape {values.shape}", "three numbers for each design, (D, 3)")
-    return {f"{name}.{axis}": values[..., i] for i, axis in enumerate(AXES)}
+    return {coordinate: values[..., i] for i, coordinate in enumerate(named)}

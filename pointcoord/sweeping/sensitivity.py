@@ -22,7 +22,7 @@ from pointcoord.results.read_only import ReadOnly
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.sweeping.designs import Designs
+from pointcoord.sweeping.designs import Designs, coordinates_named
 from pointcoord.sweeping.sweep import sweep
 
 Array = NDArray[np.float64]
@@ -32,7 +32,6 @@ STEP = 1e-3
 PLACES = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
 FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
-AXES = "xyz"
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     """Derivatives of the numbers of the car that a scene's effects give, at its instants.
 
     Args:
-        numbers: by their names; all that the scene asks for unless given. Gradients have none here.
+        numbers: by their names; all that the scene asks for unless given.
         coordinates: such as lower_ball_joint.z, or a point's name for all three; all hardpoints unless given.
     Raises:
         SceneError, SweepError: as `sweep`.
@@ -120,7 +119,4 @@ def _scalars(numbers: Mapping[str, Channel]) -> Iterator[tuple[str, Array]]:
 def _coordinates(scene: Scene, asked: Sequence[str]) -> tuple[str, ...]:
     """Coordinates by name, those of a point that is named whole in their order."""
     points = scene.mechanism.points
-    found = []
-    for name in asked or points:
-        found.extend([name] if "." in name and name not in points else [f"{name}.{axis}" for axis in AXES])
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(one for name in asked or points for one in coordinates_named(name, points)))

@@ -87,10 +87,6 @@ class Course:
         """
         scene = Scene.checked(designs.scene, designs.scene.title or "scene")
         plan = plan_effects(scene.effects, None, scene.unreported_points)
-        for effect in plan.computed:
-            if effect.way:
-                problem = f"has {effect.name!r}, and a sweep takes no derivatives by an input"
-                raise SceneError(scene.title or "scene", "effects", problem, "effects without gradients")
         return cls(designs, scene, plan, scene.mechanism.axes)
 
     @cached_property

@@ -87,8 +87,7 @@ def _chosen(named: Sequence[str] | None, scene: Scene, name: str) -> list[str]:
     known = chosen_numbers(named, True, scene, name)
     if named:
         return known
-    plain = [one for one in known if (number := number_called(one)) and not number.way]
-    return [one for own in RANKED_FIRST for one in plain if one.rpartition(".")[2] == own] or plain
+    return [one for own in RANKED_FIRST for one in known if one.rpartition(".")[2] == own] or known
 
 
 def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -> dict[str, float]:
@@ -124,7 +123,7 @@ def _text(
     if ending == ".csv":
         return csv_of(head, zip(names, *(column.tolist() for column in columns), strict=True))
     shown = len(names) if ending else min(ROWS, len(names))
-    rows = [(names[i], *(f"{column[i]:.5f}" for column in columns)) for i in range(shown)]
+    rows = [(names[i], *(f"{round(column[i], 5) + 0.0:.5f}" for column in columns)) for i in range(shown)]
     made = Table(
         (f"by {tolerance:g} mm of each", "standard deviation", f"of {DESIGNS} designs", "worst case"),
         tuple(

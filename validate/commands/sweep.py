@@ -22,6 +22,7 @@ from pointcoord import (
     grid_of,
     sweep_blocks,
 )
+from pointcoord.sweeping.designs import coordinates_named
 from pointcoord.toml_text import read_file
 from validate.commands.usage import (
     INSTANTS,
@@ -198,9 +199,8 @@ def _read(text: str, scene: Scene) -> _Vary:
     what = f"--vary {shown(text)}"
     coordinate, _, values = text.partition("=")
     coordinate, offsets, values = coordinate.strip(), not values.startswith("="), values.removeprefix("=")
-    if coordinate and "." not in coordinate:
-        designs_of(scene, {coordinate: np.zeros(3)})  # a point that is none says so
-        raise SweepError(what, "names no coordinate", ", ".join(f"{coordinate}.{axis}" for axis in "xyz"))
+    if len(meant := coordinates_named(coordinate, scene.mechanism.topology.points)) > 1:
+        raise SweepError(what, "names no coordinate", ", ".join(meant))
     kind, _, size = values.partition(":")
     if kind.strip() in KINDS:
         spread = finite(what, [size], EXAMPLES)

@@ -36,7 +36,8 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares, lsq_linear
 from scipy.special import ndtri, stdtrit
 
-from pointcoord import PointcoordError, Scene, UnknownName, designs_of
+from pointcoord import PointcoordError, Scene, designs_of
+from pointcoord.sweeping.designs import coordinates_named
 from validate.errors import UsageError
 from validate.fitting.curves import Curves
 from validate.measured.mapping import Measured
@@ -319,7 +320,7 @@ def _notes(curves: Curves, start: Found) -> tuple[str, ...]:
 
 
 def _place(scene: Scene, coordinate: str) -> float:
-    point, _, axis = coordinate.partition(".")
+    point, _, axis = coordinate.rpartition(".")
     return float(scene.mechanism.points[point]["xyz".index(axis)])
 
 
@@ -337,14 +338,7 @@ def free_coordinates(scene: Scene, free: Sequence[str]) -> tuple[str, ...]:
         every = {f"{name}.{axis}": 0.0 for name in topology.required_points for axis in "xyz"}
         going = designs_of(scene, offsets=every).following
         free = [name for name in drawn if name not in going]
-    found: list[str] = []
-    for name in free:
-        point, dot, axis = name.partition(".")
-        if point not in drawn:
-            raise UnknownName("point", point, tuple(drawn))
-        if dot and (len(axis) != 1 or axis not in "xyz"):
-            raise UnknownName(f"axis of {point}", axis, tuple("xyz"))
-        found += [name] if dot else [f"{name}.{axis}" for axis in "xyz"]
+    found = [coordinate for name in free for coordinate in coordinates_named(name, drawn)]
     twice = next((name for name in found if found.count(name) > 1), "")
     if twice:
         raise UsageError(f"--free: {twice} is there twice; allowed: each coordinate once")

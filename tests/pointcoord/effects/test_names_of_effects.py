@@ -30,8 +30,11 @@ def own_files() -> dict[Path, str]:
 
 
 OWN = own_files()
-# Kinds of effects may name the quantity that all of their kind give.
-KINDS = {PACKAGE / "effects" / f"{name}.py" for name in ("gradients", "angle", "car_number", "registry")}
+# Kinds of effects may name the quantity that all of their kind give; conventions are about names.
+KINDS = {
+    PACKAGE / "effects" / f"{name}.py"
+    for name in ("gradients", "angle", "car_number", "conventions", "registry")
+}
 NAMES = {
     *EFFECTS,
     *(quantity.name for effect in EFFECTS.values() for quantity in effect.quantities),

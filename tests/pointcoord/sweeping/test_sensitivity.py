@@ -63,6 +63,22 @@ def test_another_model_of_the_moved_cars_gives_the_same(coordinate: str) -> None
     assert max(np.abs(list(largest.values()))) > 1e-4
 
 
+def test_bump_steer_has_the_derivatives_that_another_model_of_the_moved_cars_has() -> None:
+    scene = Scene.load("wheel-travel").model_copy(update={"effects": ("toe_by_travel",)})
+    found = sensitivity(scene, ["toe_by_travel"], ["tie_rod_outer.z"])
+    step, values = 0.05, []
+    for sign in (1.0, -1.0):
+        points = dict(scene.mechanism.points)
+        x, y, z = points["tie_rod_outer"]
+        points["tie_rod_outer"] = (x, y, z + sign * step)
+        moved = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+        values.append(formulation("absolute").solve(moved).numbers["angle_gradient"]["toe_by_travel"])
+    middle = (values[0] - values[1]) / (2.0 * step)
+    # A central difference leaves out f''' h^2 / 6, of a slope of an angle that changes with 60 mm and more.
+    assert np.abs(found.derivatives["toe_by_travel"][0] - middle).max() <= step**2 / 60.0**4 + 1e-12
+    assert np.abs(middle).max() > 1e-5
+
+
 def test_spreads_are_what_independent_coordinates_and_the_worst_of_them_make() -> None:
     found = sensitivity(car("double-wishbone"), ["camber"])
     sizes = np.abs(found.derivatives["camber"])

@@ -22,6 +22,7 @@ from pointcoord import (
     sweep,
     sweep_blocks,
 )
+from pointcoord.effects.registry import EFFECTS
 from pointcoord.simulation import effort
 from pointcoord.solve import box
 from pointcoord.solve.designs import solve_designs
@@ -100,6 +101,65 @@ def test_a_design_among_many_is_the_design_alone(scene: Scene, varied: str) -> N
         assert_same_as_alone(found.of(number), own)
         assert found.closing[number] == pytest.approx(simulate(own).closing.largest, rel=1e-9, abs=1e-12)
         assert found.varied[varied][number] == own.mechanism.points[point]["xyz".index(axis)]
+
+
+@pytest.mark.parametrize(
+    ("name", "point"),
+    [
+        ("wheel-travel", "upper_ball_joint"),
+        ("axle-opposed", "left.tie_rod_outer"),
+        ("pushrod", "lower_ball_joint"),
+        ("off-axis-strut", "strut_top"),
+        ("five-link", "toe_inner"),
+    ],
+)
+def test_designs_have_gradients_and_what_else_is_along_a_way_as_each_has_alone(name: str, point: str) -> None:
+    scene = few_instants(Scene.load(name), 5)
+    along = tuple(effect for effect in scene.mechanism.effects if EFFECTS[effect].way)
+    assert len(along) > 5
+    scene = scene.model_copy(update={"effects": along})
+    found = sweep(scene, offsets={f"{point}.z": [-3.0, 0.0, 4.0]})
+    alone = simulate(found.scene(2))
+    ours, theirs = found.proof(2, rates=True).proven, alone.proof(rates=True).proven
+    for quantity, numbers in theirs.items():
+        for number, bounds in numbers.items():
+            values = alone.numbers[quantity][number]
+            difference = np.abs(found.numbers[quantity][number][2] - values)
+            assert (difference <= ours[quantity][number] + bounds).all(), number
+            # A number that is not this design's has a proof as wide as it is wrong.
+            assert ours[quantity][number].max() <= 1e-8 * (1.0 + np.abs(values).max()), number
+
+
+def test_forces_of_designs_are_those_of_each_alone() -> None:
+    part = WISHBONE.mechanism.model_copy(
+        update={"loads": {"force": [400.0, -2500.0, 4000.0]}, "wheel_radius": 270.0}
+    )
+    scene = Scene.from_mapping(
+        WISHBONE.model_copy(update={"mechanism": part, "effects": ("loads",)}).model_dump(exclude_none=True),
+        "loaded",
+    )
+    found = sweep(scene, offsets={"upper_ball_joint.y": [0.0, 6.0]})
+    alone = simulate(found.scene(1))
+    bounds = alone.proof(rates=True).proven["rod_force"]
+    assert [*bounds]
+    for rod, force in alone.rod_force.items():
+        # Both poses are within the scene's 1e-9 mm, of links of 60 mm and more that carry some 1e4 N.
+        room = bounds[rod] + 1e4 * 1e-9 / 60.0
+        assert (np.abs(found.rod_force[rod][1] - force) <= room).all(), rod
+    assert np.abs(found.rod_force["tie_rod"][1] - found.rod_force["tie_rod"][0]).max() > 1.0
+
+
+def test_a_point_of_a_part_is_varied_by_its_whole_name() -> None:
+    axle = few_instants(Scene.load("axle-opposed"), 3).model_copy(update={"effects": ("toe",)})
+    found = sweep(axle, offsets={"left.tie_rod_outer.z": [0.0, 2.0]})
+    change = {side: np.abs(np.diff(found.wheel[f"{side}.toe"], axis=0)).max() for side in ("left", "right")}
+    # 2 mm of bump steer at one wheel; the other one stays to rounding.
+    assert change["left"] > 1e-4
+    assert change["right"] < 1e-13
+    with pytest.raises(UnknownName, match=r"no point named 'left.tie_rod_outr'"):
+        sweep(axle, offsets={"left.tie_rod_outr.z": [0.0]})
+    with pytest.raises(UnknownName, match=r"no axis of left.tie_rod_outer named 'w'"):
+        sweep(axle, offsets={"left.tie_rod_outer.w": [0.0]})
 
 
 def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other() -> None:

@@ -118,9 +118,8 @@ def test_hardpoints_are_ranked_by_the_first_number_and_their_tolerances_spread(
     assert "<svg" in (tmp_path / "toe.svg").read_text(encoding="utf-8")
 
 
-def test_a_gradient_and_a_point_that_is_none_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_number_and_a_point_that_are_none_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
     for words, told in (
-        (("--number", "toe_by_rack"), "toe_by_rack"),
         (("--point", "tie_rod_outr"), "tie_rod_outr"),
         (("--number", "toes"), "no number of a car is called toes (did you mean 'toe'?)"),
     ):
