@@ -83,7 +83,8 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     if evidence.other_cars and _open(evidence, found, mostly=True) and _elsewhere(evidence):
         cars: list[_Found] = []
         for kind in KINDS:
-            if kind.stage == "car" and _open(evidence, cars):
+            others = [one for one in cars if one.hypothesis.kind != kind.beside]
+            if kind.stage == "car" and _open(evidence, others):
                 cars += _of_kind(evidence, kind)
         found += cars
         for one in _ranked(cars)[:1]:

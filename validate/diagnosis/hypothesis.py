@@ -54,6 +54,7 @@ class Kind:
             is sought in what the first would make of the held numbers.
         of_time: whether it makes sense of numbers over time only.
         neighbours: whether it takes numbers from the rows beside, so that some rows alone do not show it.
+        beside: a kind whose faults leave it open, as they may be its own said otherwise; empty if none does.
     """
 
     name: str
@@ -63,3 +64,4 @@ class Kind:
     closes: bool = False
     of_time: bool = False
     neighbours: bool = False
+    beside: str = ""

@@ -91,6 +91,8 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
         return meanings[name]
     ends = [one for whole, one in meanings.items() if whole.endswith(f".{name}")]
     ends = [one for one in ends if one.kind != TRAVEL and not one.name.startswith(f"{TRAVEL}.")]
+    # A rod may be called as an angle of the wheel is, and have a force.
+    ends = [one for one in ends if angle_of(one) is not None] or ends
     if not ends and name != name.lower():
         return named(name.lower(), meanings)
     return ends[0] if len(ends) == 1 else None

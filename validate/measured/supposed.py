@@ -40,6 +40,8 @@ TRIED = 3
 NEARLY = 1.5
 # By what a rounded offset may leave more than the found one, which least squares put lowest.
 CLOSE = 1.1
+# Of a found factor: how near to a unit's it is meant to be that one's.
+NEARLY_UNIT = 1e-2
 # Of a found offset: how near to a known one it is meant to be that.
 NEAR = 1e-3
 
@@ -62,7 +64,7 @@ class Supposed:
 
 @dataclass(frozen=True)
 class _Change:
-    """x = factor v + more of a column v; `found` of one whose `more` was found by least squares."""
+    """x = factor v + more of a column v; `found` of one of which either was found by least squares."""
 
     factor: float = 1.0
     more: float = 0.0
@@ -82,6 +84,8 @@ class _Change:
         if (self.factor, self.more) == (-1.0, math.pi):
             return f"{shown(s.column)} is pi minus ours"
         said, turned = _unit_of(s), self.factor < 0.0
+        if self.found and not self.more:
+            return f"{shown(s.column)} is {1.0 / self.factor:.6g} times ours"
         other = _unit_of(replace(s, factor=abs(self.factor) * s.factor))
         parts = [] if other == said else [f"is in {other}, not in {said}"]
         if not self.more:
@@ -223,6 +227,7 @@ def _changes(driven: Driven, some: Measured) -> Iterator[Changes]:
     yield {i: _Change(-1.0) for i in range(len(some.independent))}
     for i in range(len(some.independent)):
         yield from ({i: one} for sign in (1.0, -1.0) if (one := _other_zero(driven, some, i, sign)))
+        yield from ({i: one} for one in [_other_size(driven, some, i)] if one)
 
 
 def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
@@ -286,6 +291,31 @@ def _other_zero(driven: Driven, some: Measured, i: int, factor: float) -> _Chang
         return None
     more = float(roundest(best, 7, lambda near: left(float(near)) <= CLOSE * least, s.factor))
     return _Change(factor, more, found=True)
+
+
+def _other_size(driven: Driven, some: Measured, i: int) -> _Change | None:
+    """The factor that least squares find for a column, a unit's own where it is nearly one; None of none."""
+
+    s = some.independent[i]
+
+    def left(times: float) -> float:
+        return _left(driven, some, {i: _Change(1.0 / times)})
+
+    def gaps(sets: Array) -> Array:
+        found = [_gaps(driven, some, {i: _Change(float(factor))}).ravel() for (factor,) in sets]
+        return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
+
+    best = fitted(gaps, [1.0], 1e-4, np.zeros(len(some.numbers) * len(some.rows)))
+    if best is None or abs(float(best[0])) < 1e-6:
+        return None
+    times = 1.0 / float(best[0])
+    if not (least := left(times)) <= PROMISING:
+        return None
+    ratios = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
+    near = [
+        one for one in ratios if abs(one - times) <= NEARLY_UNIT * abs(one) and left(one) <= CLOSE * least
+    ]
+    return _Change(1.0 / (near or [times])[0], found=True)
 
 
 def _sizes(s: Series) -> list[float]:

@@ -7,6 +7,8 @@ from validate.diagnosis.kinds.angles import other_definitions
 from validate.diagnosis.kinds.assembly import other_assemblies, other_closures
 from validate.diagnosis.kinds.hardpoint import misread_hardpoints
 from validate.diagnosis.kinds.inputs import wrong_inputs
+from validate.diagnosis.kinds.links import other_lines, wrong_lengths
+from validate.diagnosis.kinds.names import anothers, sides_exchanged, swapped
 from validate.diagnosis.kinds.numbers import (
     exchanged_axes,
     factors,
@@ -15,12 +17,11 @@ from validate.diagnosis.kinds.numbers import (
     other_signs,
     other_units,
     printed_digits,
-    swapped,
 )
 from validate.diagnosis.kinds.rates import differences, rates_per_input
 from validate.diagnosis.kinds.time_shift import one_sample_off, shifted_in_time
 
-UNIT = "unit"
+UNIT, LINK = "unit", "link"
 KINDS = (
     Kind("sign", other_signs, opens=True, closes=True),
     Kind("axes", exchanged_axes, opens=True),
@@ -30,6 +31,8 @@ KINDS = (
     Kind("definition", other_definitions, opens=True),
     Kind("digits", printed_digits, closes=True),
     Kind("swapped", swapped),
+    Kind("sides", sides_exchanged),
+    Kind("name", anothers),
     Kind("differences", differences, of_time=True),
     Kind("per input", rates_per_input, opens=True, of_time=True),
     Kind("sample", one_sample_off, opens=True, neighbours=True),
@@ -37,6 +40,9 @@ KINDS = (
     Kind("input", wrong_inputs, "car", of_time=True),
     Kind("branch", other_assemblies, "car"),
     Kind("time shift", shifted_in_time, "car", of_time=True),
-    Kind("hardpoint", misread_hardpoints, "car"),
+    Kind("line", other_lines, "car"),
+    Kind(LINK, wrong_lengths, "car"),
+    # A rod of another length may be one whose end was misread, and the other way round.
+    Kind("hardpoint", misread_hardpoints, "car", beside=LINK),
     Kind("factor", factors, "last"),
 )

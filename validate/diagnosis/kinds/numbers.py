@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import partial
-from itertools import combinations, permutations, product
+from itertools import permutations, product
 from math import pi
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
@@ -192,16 +191,6 @@ def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
     found = evidence.in_words(rows[0], shift)
     words = f"another origin: every point is shifted by {found}" if every else f"shifted by {found}"
     yield Hypothesis("origin", words, moved, fitted, 1.0 + 0.5 * fitted)
-
-
-def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Two quantities in each other's place, such as velocities and accelerations."""
-    for one, two in combinations(sorted(evidence.wrong_quantities), 2):
-        partner = {one: two, two: one}
-        others = {r: (partner[r[0]], r[1]) for r in evidence.wrong if r[0] in partner}
-        rows = {r: (evidence.held[o], evidence.allowed[o]) for r, o in others.items() if o in evidence.held}
-        words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
-        yield Hypothesis((one, two), words, rows, cost=1.1)
 
 
 def _decimal_step(numbers: Array, places: int) -> Array:

@@ -38,6 +38,13 @@ def _second(x: Array, t: Array) -> Array:
     return _padded(_steps(_steps(x, t), 0.5 * (t[1:] + t[:-1])), 1, 1)
 
 
+def _not_halved(x: Array, t: Array) -> Array:
+    """(x_{k+1} - x_{k-1}) / h, and one-sided differences at the ends."""
+    found = np.asarray(np.gradient(x, t, axis=0))
+    found[1:-1] *= 2.0
+    return found
+
+
 def _twice(rule: Rule) -> Rule:
     return lambda x, t: rule(rule(x, t), t)
 
@@ -55,6 +62,7 @@ ONCE: dict[str, Rule] = {
     ),
     "forward differences, zero in the last row": lambda x, t: _padded(_steps(x, t), 0, 1, "constant"),
     "backward differences, zero in the first row": lambda x, t: _padded(_steps(x, t), 1, 0, "constant"),
+    "central differences over one step, not two": _not_halved,
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),

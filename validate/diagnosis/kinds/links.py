@@ -1,0 +1,126 @@
+"""A rod of another length than drawn, and a slide whose line leads through another point of its body.
+
+The car is written anew, with its mechanism's tables in the scene. A rod in question is an input there, the
+distance of its ends, which is as drawn and so much more; by how much is found by least squares. A line in
+question leads through another joint of its body, as that of a strut does through the ball joint in textbooks,
+and what slides on it is drawn on that line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord.mechanism.inputs import CHASSIS
+from pointcoord.mechanism.structure import CLOSING
+from validate.diagnosis.evidence import Evidence
+from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.least import fitted, roundest
+
+Array = NDArray[np.float64]
+
+STEP = 0.05  # mm, of differences by a length
+FEW = 25  # instants that a length is looked for at
+# By what a rounder length may leave more than the found one, of so many decimals at most, mm.
+CLOSE, DECIMALS = 1.1, 5
+
+
+def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Each rod by itself."""
+    tables = _tables(evidence.scene)
+    for rod in tables.get("rods", {}):
+        if found := _wrong_length(evidence, tables, rod):
+            yield found
+
+
+def _wrong_length(evidence: Evidence, tables: Mapping[str, Any], rod: str) -> Hypothesis | None:
+    looked, few, ends = evidence.first_wrong, evidence.thinned(FEW), tables["rods"][rod]
+    theirs = np.concatenate([few.given[row].ravel() for row in looked])
+    if not np.isfinite(theirs).all():
+        return None
+    name = f"length of {rod}"
+    changed = {
+        **tables,
+        "rods": {key: one for key, one in tables["rods"].items() if key != rod},
+        "inputs": {**tables["inputs"], name: {"distance": ends}},
+    }
+
+    def car(more: float) -> Motion | None:
+        return _solved(evidence, changed, {}, {name: {"sum": [{"constant": "drawn"}, {"constant": more}]}})
+
+    def read(sets: Array) -> Array:
+        found = np.full((len(sets), len(theirs)), np.nan)
+        for i, (more,) in enumerate(sets.tolist()):
+            if motion := car(more):
+                there = motion.at(few.times).numbers
+                found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
+        return found
+
+    def left(more: Array | float) -> float:
+        return float(np.linalg.norm(read(np.array([[float(more)]]))[0] - theirs))
+
+    amounts = fitted(read, [0.0], STEP, theirs)
+    if amounts is None:
+        return None
+    enough = CLOSE * left(amounts[0])
+    more = float(roundest(amounts[0], DECIMALS, lambda near: left(near) <= enough))
+    if (motion := car(more)) is None:
+        return None
+    start, end = (np.array(evidence.scene.mechanism.points[point]) for point in ends)
+    drawn = float(np.linalg.norm(end - start))
+    off = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
+    words = f"{rod} is {off}, {drawn + more:.6g} mm for {drawn:.6g}"
+    return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, whole=True)
+
+
+def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Each line of a moving body, through each other joint of it."""
+    tables = _tables(evidence.scene)
+    points = evidence.scene.mechanism.points
+    ends = {end for rod in tables.get("rods", {}).values() for end in rod}
+    for name, slide in tables.get("slides", {}).items():
+        own = tables["bodies"][slide["body"]]
+        others = {p for body, some in tables["bodies"].items() if body != slide["body"] for p in some}
+        joints = [p for p in own if p in others | ends and p not in (slide["through"], slide["along"])]
+        for joint in joints if slide["body"] != CHASSIS and slide["along"] in points else ():
+            line = np.subtract(points[slide["along"]], points[joint])
+            line /= np.linalg.norm(line)
+            moved = {}
+            for point in slide["points"]:
+                along = np.subtract(points[point], points[joint]) @ line
+                moved[point] = tuple((np.array(points[joint]) + along * line).tolist())
+            changed = {**tables["slides"], name: {**slide, "through": joint}}
+            if motion := _solved(evidence, {**tables, "slides": changed}, moved, {}):
+                words = f"the line of {name} leads through {joint}, not through {slide['through']}"
+                yield Hypothesis((name, joint), words, evidence.by(motion), cost=1.5, whole=True)
+
+
+def _tables(scene: Scene) -> Mapping[str, Any]:
+    """The mechanism's, as in a scene that holds it; empty of one with parts or that puts points in place."""
+    part = scene.mechanism
+    if part.topology.sides or part.topology.puts_in_place:
+        return {}
+    plain = part.plain(tuple(scene.inputs))
+    return {table: plain[table] for table in CLOSING if table in plain}
+
+
+def _solved(
+    evidence: Evidence,
+    tables: Mapping[str, Any],
+    points: Mapping[str, tuple[float, ...]],
+    inputs: Mapping[str, Any],
+) -> Motion | None:
+    """The motion of the car by other tables, points and further inputs; None where there is none."""
+    content = evidence.solved.fine.model_dump(exclude_none=True)
+    part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
+    part |= tables
+    part["points"] = {**part["points"], **points}
+    content |= {"mechanism": part, "inputs": {**content["inputs"], **inputs}}
+    try:
+        return simulate(Scene.from_mapping(content, "another car"))
+    except PointcoordError:
+        return None
