@@ -266,13 +266,19 @@ class Evidence:
         return self.held, self.given
 
     @property
+    def telling(self) -> tuple[tuple[Row, ...], ...]:
+        """Numbers of one unit that disagree: positions, angles, as far as there are any, else the first."""
+        of_a_pose = (
+            tuple(row for row in self.wrong if length_or_angle(row) == of and order(row) == 0)
+            for of in ("mm", "rad")
+        )
+        first = tuple(row for row in self.wrong if row[0] == self.wrong[0][0])
+        return tuple(filter(None, of_a_pose)) or (first,)
+
+    @property
     def first_wrong(self) -> tuple[Row, ...]:
-        """Numbers of one unit that disagree: positions if there are any, then angles, else the first."""
-        for of in ("mm", "rad"):
-            best = [row for row in self.wrong if length_or_angle(row) == of and order(row) == 0]
-            if best:
-                return tuple(best)
-        return tuple(row for row in self.wrong if row[0] == self.wrong[0][0])
+        """The first of these, that tell most."""
+        return self.telling[0]
 
     @property
     def beside(self) -> tuple[Row, ...]:

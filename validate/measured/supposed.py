@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
+from pointcoord.mechanism.inputs import CHASSIS
 from validate.diagnosis.least import fitted, roundest
 from validate.measured.mapping import Measured, Series
-from validate.measured.meanings import CONTACT, INPUT, TIME, TRAVEL
+from validate.measured.meanings import CONTACT, INPUT, TIME, Meaning
 from validate.measured.poses import Driven, of_a_pose, ours_of
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
@@ -161,11 +162,11 @@ def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Ite
 
     Where no rolling radius is said it is the one that leaves least of poses.
     """
-    centre = scene.mechanism.topology.wheel_centre
-    said = next((s for s in measured.independent if s.meaning.kind == TRAVEL), None)
-    if said is None or said.meaning.name not in (CONTACT, centre):
+    centre, heights = scene.mechanism.topology.wheel_centre, _travels(scene)
+    said = next((s for s in measured.independent if s.meaning.name in heights), None)
+    if said is None:
         return
-    other = replace(said.meaning, name=centre if said.meaning.name == CONTACT else CONTACT)
+    other = Meaning("travel", centre if heights[said.meaning.name] == CONTACT else CONTACT, "mm")
     independent = tuple(replace(s, meaning=other) if s is said else s for s in measured.independent)
 
     def by(radius: float) -> Measured:
@@ -188,6 +189,18 @@ def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Ite
         of = f" with a rolling radius of {radius:.4g} mm"
     words = f"{shown(said.column)} is {other.words}{of}, not {said.meaning.words}"
     yield Supposed(words, by(radius), "travel")
+
+
+def _travels(scene: Scene) -> dict[str, str]:
+    """The travels and inputs that are one of the wheel's, with what travels: its centre or the contact."""
+    part = scene.mechanism
+    found = {one: one for one in (CONTACT, part.topology.wheel_centre) if one}
+    for name, table in part.plain(tuple(scene.inputs))["inputs"].items():
+        if table.get("height") == part.topology.wheel_centre and part.topology.wheel_centre:
+            found[name] = part.topology.wheel_centre
+        if table.get("contact") and table.get("over", CHASSIS) == CHASSIS:
+            found[name] = CONTACT
+    return found
 
 
 def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
@@ -312,10 +325,10 @@ def _other_size(driven: Driven, some: Measured, i: int) -> _Change | None:
     if not (least := left(times)) <= PROMISING:
         return None
     ratios = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
-    near = [
-        one for one in ratios if abs(one - times) <= NEARLY_UNIT * abs(one) and left(one) <= CLOSE * least
-    ]
-    return _Change(1.0 / (near or [times])[0], found=True)
+    near = [one for one in ratios if abs(one - times) <= NEARLY_UNIT * abs(one)]
+    round_ = roundest(times, 7, lambda one: abs(float(one) - times) <= NEAR * abs(times))
+    fitting = [one for one in (*near, float(round_)) if left(one) <= CLOSE * least]
+    return _Change(1.0 / (fitting or [times])[0], found=True)
 
 
 def _sizes(s: Series) -> list[float]:

@@ -49,15 +49,17 @@ TOO: Mapping[Direction, str] = {
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     """The likeliest; and where no drawing gives every number that is looked at, one that gives all but one.
 
-    A number that has a fault of its own hides what the others say.
+    A number that has a fault of its own hides what the others say, and positions in another unit what angles
+    do.
     """
-    looked = evidence.first_wrong
-    found = _misread(evidence, looked, 3)
-    yield from found
-    of_the_car = len(looked) >= ENOUGH_NUMBERS and all(kind_of(row) == "car" for row in looked)
-    if of_the_car and not any(_gives(evidence, one, looked) for one in found):
-        for others in combinations(looked, len(looked) - 1):
-            yield from (one for one in _misread(evidence, others, 1) if _gives(evidence, one, others))
+    for looked in evidence.telling:
+        found = _misread(evidence, looked, 3)
+        yield from found
+        if any(_gives(evidence, one, looked) for one in found):
+            return
+        if len(looked) >= ENOUGH_NUMBERS and all(kind_of(row) == "car" for row in looked):
+            for others in combinations(looked, len(looked) - 1):
+                yield from (one for one in _misread(evidence, others, 1) if _gives(evidence, one, others))
 
 
 def _gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:

@@ -1,0 +1,179 @@
+"""Cars with a rod of another length or a line through another joint, solved by absolute, are named."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from curve_files import compared, table, verdicts
+from numpy.typing import NDArray
+
+from pointcoord import Scene
+from validate.comparison.compare import compare_solutions
+from validate.diagnosis import Explanation, explain
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+
+Array = NDArray[np.float64]
+Content = dict[str, Any]
+EFFECTS = ["velocity", "acceleration", "camber", "toe"]
+
+
+def car(name: str, **inputs: Mapping[str, object]) -> tuple[Scene, Content]:
+    """A scene, and the same with its mechanism's tables in it."""
+    scene = Scene.load(name).model_copy(update={"effects": EFFECTS})
+    if inputs:
+        scene = scene.model_copy(
+            update={"inputs": inputs, "time": {"start": 0.0, "stop": 1.0, "samples": 21}}
+        )
+    content = scene.model_dump(exclude_none=True)
+    for key in ("type", "closure"):
+        content["mechanism"].pop(key, None)
+    plain = scene.mechanism.plain(tuple(scene.inputs))
+    content["mechanism"] |= {key: plain[key] for key in ("bodies", "rods", "slides", "inputs", "roles")}
+    return scene, content
+
+
+def with_rod(content: Content, rod: str, more: float) -> Content:
+    """The distance of a rod's ends is driven instead, so much longer than drawn."""
+    part, points = content["mechanism"], content["mechanism"]["points"]
+    ends = part["rods"].pop(rod)
+    part["inputs"] |= {"its_length": {"distance": ends}}
+    drawn = float(np.linalg.norm(np.subtract(points[ends[1]], points[ends[0]])))
+    content["inputs"] |= {"its_length": {"constant": drawn + more}}
+    return content
+
+
+def through_the_ball_joint(content: Content) -> Content:
+    """The textbook's strut: its axis leads through the ball joint, and its rod ends on that axis."""
+    part, points = content["mechanism"], content["mechanism"]["points"]
+    part["slides"]["strut"]["through"] = "lower_ball_joint"
+    foot, top = np.array(points["lower_ball_joint"]), np.array(points["strut_top"])
+    axis = (top - foot) / np.linalg.norm(top - foot)
+    points["strut_rod_end"] = (foot + (np.array(points["strut_rod_end"]) - foot) @ axis * axis).tolist()
+    return content
+
+
+def absolute(content: Content) -> Solution:
+    return formulation("absolute").solve(Scene.from_mapping(content, "another car"))
+
+
+def diagnosis(scene: Scene, content: Content, *quantities: str) -> tuple[Explanation, ...]:
+    held = formulation("pointcoord").solve(scene)
+    numbers = absolute(content).numbers
+    given = replace(held, numbers={quantity: numbers[quantity] for quantity in quantities or numbers})
+    return explain(scene, given, held, compare_solutions(scene, held, given, "car"))
+
+
+@pytest.mark.parametrize(
+    ("name", "rod", "more", "quantities", "told"),
+    [
+        ("five-link", "lower_rear", -2.0, (), "lower_rear is 2 mm too short, 375.492 mm for 377.492"),
+        ("five-link", "upper_front", 2.5, ("wheel",), "upper_front is 2.5 mm too long"),
+        ("double-wishbone", "tie_rod", 3.0, (), "tie_rod is 3 mm too long"),
+        ("off-axis-strut", "tie_rod", -2.0, ("position",), "tie_rod is 2 mm too short"),
+    ],
+)
+def test_a_rod_of_another_length_is_named_with_what_it_is_too_long(
+    name: str, rod: str, more: float, quantities: tuple[str, ...], told: str
+) -> None:
+    scene, content = car(name)
+    first, *others = diagnosis(scene, with_rod(content, rod, more), *quantities)
+    assert first.kind == "link"
+    assert told in first.words
+    assert first.leftover <= 1.0
+    # The end of a tie rod on a rack may be misread instead, along the rack: the same links.
+    assert all("tie_rod_inner.y drawn" in other.words for other in others)
+    assert not (others and name == "five-link")
+
+
+@pytest.mark.parametrize("quantities", [(), ("wheel",)])
+def test_a_strut_whose_axis_leads_through_the_ball_joint_is_named(quantities: tuple[str, ...]) -> None:
+    scene, content = car("off-axis-strut")
+    (only,) = diagnosis(scene, through_the_ball_joint(content), *quantities)
+    assert only.kind == "line"
+    assert "the line of strut leads through lower_ball_joint, not through strut_lower" in only.words
+
+
+@pytest.mark.parametrize(
+    ("name", "rod", "more"), [("double-wishbone", "tie_rod", -4.0), ("five-link", "toe", 3.0)]
+)
+def test_a_table_over_travel_shows_a_rod_of_another_length(name: str, rod: str, more: float) -> None:
+    steered = {} if name == "five-link" else {"rack": {"constant": 0.0}}
+    scene, content = car(name, wheel_travel={"sweep": (-50.0, 50.0)}, **steered)
+    numbers = absolute(with_rod(content, rod, more)).numbers["wheel"]
+    columns = {f"{angle} [deg]": np.degrees(numbers[angle]) for angle in ("camber", "toe")}
+    text = table({"input.wheel_travel [mm]": np.linspace(-50.0, 50.0, 21), **columns}, 4)
+    found = compared(text, {}, scene)
+    assert set(verdicts(found).values()) == {"disagrees"}
+    (only,) = found.outcome.explanations
+    assert only.kind == "link"
+    assert f"{rod} is {abs(more):g} mm too {'long' if more > 0.0 else 'short'}" in only.words
+
+
+def test_what_two_names_have_exchanged_is_said_of_each() -> None:
+    scene, _ = car("double-wishbone")
+    held = formulation("pointcoord").solve(scene)
+    wheel = held.numbers["wheel"]
+    given = held.with_numbers({"wheel": {"camber": wheel["toe"], "toe": wheel["camber"]}})
+    found = explain(scene, given, held, compare_solutions(scene, held, given, "car"))
+    assert {one.words for one in found} == {"camber: the numbers of toe", "toe: the numbers of camber"}
+
+
+def test_what_both_wheels_of_an_axle_have_exchanged_is_said_once() -> None:
+    scene = Scene.load("axle-opposed")
+    held = formulation("pointcoord").solve(scene)
+    other = {"left": "right", "right": "left"}
+
+    def exchanged(name: str) -> str:
+        part, dot, own = name.partition(".")
+        return f"{other[part]}.{own}" if dot else name
+
+    numbers = {q: {name: part[exchanged(name)] for name in part} for q, part in held.numbers.items()}
+    given = held.with_numbers(numbers)
+    (only,) = explain(scene, given, held, compare_solutions(scene, held, given, "axle"))
+    assert only.words.endswith("what is of left stands under right, and the other way")
+
+
+def test_a_misread_point_is_named_by_angles_where_positions_are_in_metres() -> None:
+    scene, content = car("hmmwv-front")
+    x, y, z = content["mechanism"]["points"]["lower_arm_rear"]
+    content["mechanism"]["points"]["lower_arm_rear"] = [x, y, z + 5.0]
+    numbers = absolute(content).numbers
+    held = formulation("pointcoord").solve(scene)
+    in_metres = {name: place / 1000.0 for name, place in numbers["position"].items()}
+    given = replace(held, numbers={"position": in_metres, "wheel": numbers["wheel"]})
+    found = explain(scene, given, held, compare_solutions(scene, held, given, "car"))
+    assert [one.kind for one in found] == ["unit", "hardpoint"]
+    assert "lower_arm_rear.z drawn 5 mm too high" in found[1].words
+
+
+@pytest.mark.parametrize(
+    ("over", "factor", "told"),
+    [
+        ("rack", 25.4, "input.rack is 25.4 times ours"),
+        ("wheel_travel", 2.0, "input.wheel_travel is 2 times ours"),
+    ],
+)
+def test_a_column_that_is_so_many_times_ours_is_said_with_its_factor(
+    over: str, factor: float, told: str
+) -> None:
+    laws = {"wheel_travel": {"constant": 0.0}, "rack": {"constant": 0.0}}
+    half = 25.0 / factor
+    scene, _ = car("double-wishbone", **(laws | {over: {"sweep": (-half, half)}}))
+    wheel = formulation("absolute").solve(scene).numbers["wheel"]
+    columns = {f"{angle} [deg]": np.degrees(wheel[angle]) for angle in ("camber", "toe")}
+    text = table({f"input.{over} [mm]": np.linspace(-25.0, 25.0, 21), **columns}, 5)
+    first = compared(text, {}, scene).outcome.explanations[0]
+    assert told in first.words
+
+
+def test_the_travel_of_the_contact_point_under_the_wheel_centres_name_is_said() -> None:
+    scene, _ = car("wheel-travel", contact_travel={"sweep": (-50.0, 50.0)}, rack={"constant": 0.0})
+    wheel = formulation("absolute").solve(scene).numbers["wheel"]
+    columns = {f"{angle} [deg]": np.degrees(wheel[angle]) for angle in ("camber", "toe")}
+    text = table({"input.wheel_travel [mm]": np.linspace(-50.0, 50.0, 21), **columns}, 5)
+    judged, _ = car("wheel-travel", wheel_travel={"sweep": (-50.0, 50.0)}, rack={"constant": 0.0})
+    first = compared(text, {}, judged).outcome.explanations[0]
+    assert "input.wheel_travel is travel.contact with a rolling radius of" in first.words
