@@ -5,7 +5,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 Row = tuple[str, str]
 Rows = Mapping[Row, Array]
 
+MOST_LATE = 8  # instants, of which one at an end may be left out
 MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
 # How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
 CLEAR = 4.0
@@ -264,6 +265,42 @@ class Evidence:
     def both(self) -> tuple[Rows, Rows]:
         """The held and the given numbers."""
         return self.held, self.given
+
+    @property
+    def moving_all_wrong(self) -> bool:
+        """Whether every number that changes disagrees, and several do."""
+        moving = [row for row, values in self.held.items() if np.ptp(values, axis=0).max(initial=0.0) > 0.0]
+        return len(self.wrong) > 1 and len(self.times) > MOST_LATE and set(moving) <= set(self.wrong)
+
+    def without_a_late_sample(self) -> Iterator[tuple[str, Evidence]]:
+        """The same without an end, if every row is one late or early; in words."""
+        ends = (
+            ("one sample late", slice(1, None), slice(None, -1)),
+            ("one sample early", slice(None, -1), slice(1, None)),
+        )
+        for words, theirs, ours in ends:
+            allowed, own, held = (
+                {row: values[ours] for row, values in rows.items()}
+                for rows in (self.allowed, self.own, self.held)
+            )
+            times = self.times[ours]
+            limits = {"start": float(times[0]), "stop": float(times[-1]), "samples": len(times)}
+            time = self.scene.time.model_copy(update=limits)
+            scene = self.scene.model_copy(update={"time": time})
+            yield (
+                words,
+                replace(
+                    self,
+                    scene=scene,
+                    times=times,
+                    given={row: values[theirs] for row, values in self.given.items()},
+                    held=held,
+                    allowed=allowed,
+                    own=own,
+                    known={point: places[ours] for point, places in self.known.items()},
+                    solved=Solved(scene),
+                ),
+            )
 
     @property
     def telling(self) -> tuple[tuple[Row, ...], ...]:

@@ -38,6 +38,7 @@ ENOUGH = 1e3
 FITTED = 2.0
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
+OTHER_CARS = {kind.name for kind in KINDS if kind.stage == "car" and not kind.of_time}
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,21 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     """The same of numbers that are already beside each other."""
     if not evidence.wrong or not len(evidence.times):
         return ()
+    found = _explained(evidence)
+    if evidence.moving_all_wrong and _open(evidence, found):
+        # Rows that are one late or early hide which car it is: it is looked for with these in their places.
+        for words, undone in evidence.without_a_late_sample():
+            for one in _explained(undone):
+                if one.whole and one.hypothesis.kind in OTHER_CARS and not _open(undone, [one]):
+                    told = _in_words(undone, one)
+                    return (
+                        replace(told, words=f"{told.words}, and {words}", kind=f"{told.kind} and sample"),
+                    )
+    return tuple(_in_words(evidence, one) for one in found)
+
+
+def _explained(evidence: Evidence) -> list[_Found]:
+    """What the numbers carry, the best first."""
     found = list(_supposed(evidence, "numbers"))
     if evidence.other_cars and _open(evidence, found, mostly=True) and _elsewhere(evidence):
         cars: list[_Found] = []
@@ -96,7 +112,7 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
         found += _pairs(replace(evidence, wrong=left))
     if left := _open(evidence, found):
         found += _supposed(replace(evidence, wrong=left), "last")
-    return tuple(_in_words(evidence, one) for one in _best(_ranked(found)))
+    return list(_best(_ranked(found)))
 
 
 def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:

@@ -25,7 +25,7 @@ from validate.measured.meanings import CONTACT, INPUT, TIME, Meaning
 from validate.measured.poses import Driven, of_a_pose, ours_of
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
-from validate.tables.units import KINDS
+from validate.tables.units import ANGLES, KINDS
 
 Array = NDArray[np.float64]
 
@@ -115,7 +115,8 @@ def meant_otherwise(
     """What explains the whole file: another travel, and the likeliest change of its columns, if any does."""
     likeliest = islice(_likely(driven, measured), TRIED if len(measured.independent) == 1 else 1)
     found = []
-    for suppositions in (_other_travel(scene, measured, held), likeliest):
+    suppositions_of = (_other_travel(scene, measured, held), likeliest, _other_held(measured, driven))
+    for suppositions in suppositions_of:
         for one in suppositions:
             try:
                 other = held_of(one.measured, scene, accuracy)[0]
@@ -189,6 +190,40 @@ def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Ite
         of = f" with a rolling radius of {radius:.4g} mm"
     words = f"{shown(said.column)} is {other.words}{of}, not {said.meaning.words}"
     yield Supposed(words, by(radius), "travel")
+
+
+def _other_held(measured: Measured, driven: Driven) -> Iterator[Supposed]:
+    """Each input that is the same in every row, at the value that least squares find."""
+    some = _some(measured)
+    if measured.independent[0].meaning.kind == TIME or not some.numbers:
+        return
+    held = {name: driven.drawn[name] for name in driven.as_drawn} | dict(driven.said)
+    for name in driven.scene.mechanism.topology.inputs:
+        if name in held and (value := _found_held(driven, some, name, held[name])) is not None:
+            unit = driven.scene.mechanism.topology.input_units[name]
+            words = f"{name} is {value:.6g} {unit} in every row, not {held[name]:.6g}"
+            other = replace(measured, held={**measured.held, f"{INPUT}.{name}": value})
+            yield Supposed(words, other, found=True)
+
+
+def _found_held(driven: Driven, some: Measured, name: str, begin: float) -> float | None:
+    unit = driven.scene.mechanism.topology.input_units[name]
+
+    def gaps(sets: Array) -> Array:
+        others = tuple(one for one in driven.as_drawn if one != name)
+        cars = [replace(driven, said={**driven.said, name: float(v)}, as_drawn=others) for (v,) in sets]
+        found = [_gaps(car, some, {}).ravel() for car in cars]
+        return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
+
+    def left(value: Array) -> float:
+        return float(np.linalg.norm(gaps(value[None])))
+
+    best = fitted(gaps, [begin], STEP[unit], np.zeros(len(some.numbers) * len(some.rows)))
+    if best is None:
+        return None
+    enough = NEARLY * left(best)
+    near = roundest(best, 7, lambda one: left(one) <= enough, ANGLES["deg"] if unit == "rad" else 1.0)
+    return float(near[0])
 
 
 def _travels(scene: Scene) -> dict[str, str]:

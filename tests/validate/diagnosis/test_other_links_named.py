@@ -177,3 +177,51 @@ def test_the_travel_of_the_contact_point_under_the_wheel_centres_name_is_said() 
     judged, _ = car("wheel-travel", wheel_travel={"sweep": (-50.0, 50.0)}, rack={"constant": 0.0})
     first = compared(text, {}, judged).outcome.explanations[0]
     assert "input.wheel_travel is travel.contact with a rolling radius of" in first.words
+
+
+def test_a_rod_of_another_length_is_named_where_every_row_is_one_late_besides() -> None:
+    scene, content = car("five-link")
+    numbers = absolute(with_rod(content, "upper_rear", 2.0)).numbers
+    late = {
+        q: {name: np.concatenate([values[:1], values[:-1]]) for name, values in part.items()}
+        for q, part in numbers.items()
+    }
+    held = formulation("pointcoord").solve(scene)
+    given = replace(held, numbers=late)
+    (only,) = explain(scene, given, held, compare_solutions(scene, held, given, "car"))
+    assert only.kind == "link and sample"
+    assert only.words.endswith("upper_rear is 2 mm too long, 363.109 mm for 361.109, and one sample late")
+
+
+@pytest.mark.parametrize(("name", "value"), [("rack", 5.0), ("wheel_travel", 10.0)])
+def test_an_input_that_every_row_has_at_another_value_is_named_with_it(name: str, value: float) -> None:
+    laws = {"wheel_travel": {"sweep": (-40.0, 40.0)}, "rack": {"sweep": (-20.0, 20.0)}}
+    over = next(other for other in laws if other != name)
+    scene, _ = car("hmmwv-front", **(laws | {name: {"constant": value}}))
+    wheel = formulation("absolute").solve(scene).numbers["wheel"]
+    columns = {f"{angle} [deg]": np.degrees(wheel[angle]) for angle in ("camber", "toe")}
+    law = scene.functions[over].series(scene.instants, 0)[:, 0]
+    judged, _ = car("hmmwv-front", **(laws | {name: {"constant": 0.0}}))
+    found = compared(table({f"input.{over} [mm]": law, **columns}, 4), {}, judged)
+    assert f"{name} is {value:g} mm in every row, not 0" in found.outcome.explanations[0].words
+
+
+def test_angles_from_the_drawing_on_are_said_to_be() -> None:
+    scene, _ = car("hmmwv-front", wheel_travel={"sweep": (-40.0, 40.0)}, rack={"constant": 0.0})
+    scene = scene.model_copy(update={"effects": ["wheel_angles", "caster"]})
+    wheel = formulation("absolute").solve(scene).numbers["wheel"]
+    columns = {f"{name} [deg]": np.degrees(wheel[name] - wheel[name][10]) for name in ("kingpin", "caster")}
+    found = compared(
+        table({"input.wheel_travel [mm]": np.linspace(-40.0, 40.0, 21), **columns}, 4), {}, scene
+    )
+    (only,) = found.outcome.explanations
+    assert only.words == "kingpin, caster: the value of the drawing is subtracted"
+
+
+def test_velocities_in_metres_are_not_said_to_be_per_millisecond_as_well() -> None:
+    scene, _ = car("five-link")
+    held = formulation("pointcoord").solve(scene)
+    in_metres = {name: values / 1000.0 for name, values in held.numbers["velocity"].items()}
+    given = held.with_numbers({"velocity": in_metres})
+    (only,) = explain(scene, given, held, compare_solutions(scene, held, given, "car"))
+    assert only.words == "velocity: m for mm"

@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord import PointcoordError, solve_poses
+from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
@@ -120,7 +122,8 @@ def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
                 factor = unit.factor ** order(row) if unit.of == "s" else unit.factor
                 rows[row] = (factor * evidence.held[row], factor * evidence.rounded(row))
         if rows:
-            yield Hypothesis(unit.words, unit.words, rows)
+            # A velocity in m/s is one in mm per millisecond: the length is meant.
+            yield Hypothesis(unit.words, unit.words, rows, cost=1.05 if unit.of == "s" else 1.0)
 
 
 def factors(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -158,12 +161,19 @@ def _is_less(evidence: Evidence, row: Row, offset: Array) -> bool:
 
 
 def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
-    """What is subtracted: the first value, another origin of all points, a constant."""
+    """What is subtracted: the first value, the drawing's, another origin of all points, a constant.
+
+    A constant of one point beside others that are off as well is said where it is all that is wrong with it.
+    """
     placed = [row for row in evidence.wrong if order(row) == 0]
     first = {row: _less(evidence, row, evidence.held[row][0]) for row in placed}
     if first:
         yield Hypothesis("first", "the value at the first instant is subtracted", first)
-    yield from _origin(evidence, [row for row in placed if kind_of(row) == "point"])
+    drawn = {row: _less(evidence, row, value) for row, value in _as_drawn(evidence, placed).items()}
+    if drawn:
+        yield Hypothesis("drawn", "the value of the drawing is subtracted", drawn, cost=1.2)
+    points = [row for row in placed if kind_of(row) == "point"]
+    yield from _origin(evidence, points)
     for row in placed:
         gap = np.mean(evidence.given[row] - evidence.held[row], axis=0)
         noise = float(evidence.rounded(row).max())
@@ -171,8 +181,21 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
             _, unit = evidence.theirs.get(row, ("", 1.0))
             near = np.where(np.abs(gap) <= noise, 0.0, gap)
             gap = roundest(near, 7, partial(_is_less, evidence, row), unit)
+            if row in points and len(points) > 1 and not _is_less(evidence, row, gap):
+                continue
             words, count = f"a constant offset of {evidence.in_words(row, gap)}", max(np.size(gap), 1)
             yield Hypothesis((row, "constant"), words, {row: _less(evidence, row, -gap)}, count, 1.0 + count)
+
+
+def _as_drawn(evidence: Evidence, rows: Iterable[Row]) -> dict[Row, float]:
+    """Numbers of the car as it is drawn, of those rows that are such."""
+    of_the_car = [row for row in rows if kind_of(row) == "car"]
+    try:
+        scene = evidence.solved.fine
+        numbers = solve_poses(scene, drawn_inputs(scene)).numbers if of_the_car else {}
+    except PointcoordError:
+        return {}
+    return {(q, name): float(numbers[q][name]) for q, name in of_the_car if name in numbers[q]}
 
 
 def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
