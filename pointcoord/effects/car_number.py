@@ -42,7 +42,7 @@ SUCH_AS = {
     "spring_free_length": "350.0",
 }
 LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
-KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide"}
+KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide or a steering wheel"}
 
 
 class CarNumber(Protocol):

@@ -20,6 +20,7 @@ of it no computed pose tells the branches apart: a motion may end there, and doe
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -129,19 +130,24 @@ def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.b
     return np.asarray(good)
 
 
-def regular_on(system: QuadraticMap, series: Array) -> NDArray[np.bool_]:
-    """Whether no block of C_u is singular where |s_i| <= 1 in a series, shape (...,); see the formula above.
+def regular_on(system: QuadraticMap, y: Array, series: Array, moving: Sequence[int]) -> NDArray[np.bool_]:
+    """Whether no block of C_u is singular where |s_i| <= 1 in a series, shape (N,); see the formula above.
 
     Args:
-        series: by power of one or several variables, shape (..., powers, size).
+        y: where it starts, (N, size).
+        series: of the coordinates that move, by power of one or several variables from the first one on,
+            (powers - 1, N, moving).
     """
-    batch, flat = series.shape[:-2], series.reshape(-1, *series.shape[-2:])
-    good = _regular(system, flat[:, 0], system.spread_entries(np.abs(flat[:, 1:]).sum(axis=1))[:, None], True)
+    sums = np.zeros_like(y)
+    sums[:, moving] = np.abs(series).sum(axis=0)
+    good = _regular(system, y, system.spread_entries(sums)[:, None], True)
     # By |X| |D_k| it is quicker, and proves less.
     left = np.flatnonzero(~good)
     if left.size:
-        good[left] = _regular(system, flat[left, 0], system.entries(flat[left, 1:]), False)
-    return good.reshape(batch)
+        whole = np.zeros((left.size, len(series), y.shape[-1]))
+        whole[..., moving] = series[:, left].swapaxes(0, 1)
+        good[left] = _regular(system, y[left], system.entries(whole), False)
+    return good
 
 
 def _regular(system: QuadraticMap, y: Array, entries: Array, magnitudes: bool) -> NDArray[np.bool_]:

@@ -262,10 +262,8 @@ class _Boxed:
         Args:
             start: the middle of the ranges. moving: series of all that moves, powers first.
         """
-        whole = np.zeros((*moving.shape[:2], start.shape[-1]))
-        whole[0] = start
-        whole[1:, :, [*range(self.part.system.unknowns), *self.driven()[1]]] = moving[1:]
-        return regular_on(self.part.system, whole.swapaxes(0, 1))
+        coordinates = [*range(self.part.system.unknowns), *self.driven()[1]]
+        return regular_on(self.part.system, start, moving[1:], coordinates)
 
     def series(self, y: Array, factors: Factors) -> tuple[Array, int, Flags] | None:
         """Series of all that moves, powers first, their degree, and of which designs it is enough.

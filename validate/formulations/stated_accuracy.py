@@ -505,9 +505,10 @@ class _Held:
 
 
 def _height(a: Array, b: Array, c: Array) -> float:
-    """The least height of a triangle."""
+    """The least height of a triangle; 0 of three points at one place."""
     area = float(np.linalg.norm(np.cross(b - a, c - a)))
-    return area / max(float(np.linalg.norm(side)) for side in (b - a, c - a, c - b))
+    longest = max(float(np.linalg.norm(side)) for side in (b - a, c - a, c - b))
+    return area / longest if longest > 0.0 else 0.0
 
 
 def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:

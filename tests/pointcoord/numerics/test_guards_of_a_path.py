@@ -85,7 +85,8 @@ def test_a_series_is_proven_regular_up_to_where_the_next_singular_pose_lies(
     series[:, 0], series[0, 3] = u * np.array([1.0, *shares]), 1.0
     least = 1.0 - float(np.abs(shares).sum())
     assume(abs(least) > 1e-6)
-    assert bool(regular_on(PARABOLA, series)) == (least > 0.0)
+    found = regular_on(PARABOLA, series[None, 0], series[1:, None], range(series.shape[-1]))
+    assert found.tolist() == [least > 0.0]
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=st.integers(1, 6), norm=st.floats(0.1, 3.0))
