@@ -46,7 +46,7 @@ CASES: dict[str, tuple[str, ...]] = {
 
 # Coordinates are written with the file's digits, or with 12 decimals of mm: some roundings of 2000 mm.
 ROUNDING = 5e-12
-# The bounce's amplitude is 30 mm, or a quarter of the way to the nearer end of the reach in four digits.
+# A bounce's amplitude is a quarter of the way to the nearer end of the reach, in four digits.
 WRITTEN = {"amplitude": 1e-4}
 
 

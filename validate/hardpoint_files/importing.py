@@ -31,7 +31,7 @@ from validate.hardpoint_files.mjcf import read_mjcf
 from validate.hardpoint_files.mjcf_mechanism import mechanism_of
 from validate.hardpoint_files.names_file import NO_NAMES, NamesFile, names_to_fill_in, read_names
 from validate.hardpoint_files.static_angles import AngleCheck, check_angles
-from validate.hardpoint_files.written_scene import ScenePoint, bounce_of, scene_of, scene_text
+from validate.hardpoint_files.written_scene import ScenePoint, scene_of, scene_text, travel_of
 from validate.plain_text import some_of
 from validate.tables.cells import text_of
 from validate.tables.errors import FileError
@@ -87,7 +87,7 @@ class Imported:
     """A scene from another program's file, and what became of everything that the file holds.
 
     Attributes:
-        scene: checked, with a bounce. text: the same as a scene file, with a comment for each point.
+        scene: checked, with a way of the wheel. text: the same as a scene file, each point with a comment.
         points: of the scene, in its axes, with where each comes from.
         others: points of the file that are none of ours.
         angles: static angles that the file prints, held to the drawing's.
@@ -178,7 +178,7 @@ def _whole_mechanism(source: str, choices: Choices, found: Format, text: str) ->
     ]
     drawn = scene_of(source, "mechanism", made.side, points, made.tables)
     stands = standing(drawn)
-    laws, scene = bounce_of(drawn, stands)
+    laws, scene = travel_of(drawn, stands)
     written = scene_text(source, found.words, drawn, points, laws, facts, ())
     return Imported(found, scene, written, tuple(points), (), (), stands, tuple(facts), ())
 
@@ -259,7 +259,7 @@ class _Import:
         ]
         drawn = scene_of(self.source, kind, side, points.values())
         stands = standing(drawn)
-        laws, scene = bounce_of(drawn, stands)
+        laws, scene = travel_of(drawn, stands)
         words = self.format.words, drawn, points.values(), laws, facts, wheel.others
         angles = check_angles(self.format.angles, axle.angles, stands.angles, wheel.places, topology)
         return Imported(

@@ -1,4 +1,4 @@
-"""A scene file of points from elsewhere: each with its source in a comment, and a bounce to begin with."""
+"""A scene file of points from elsewhere: each with its source in a comment, and a way of the wheel."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from validate.toml_written import key_of, value_of
 
 # mm of wheel travel up and down, where both ends are far enough: far from where links lie in line.
 TRAVEL, FAR_ENOUGH = 30.0, 40.0
-# Else part of the way from the drawing to the nearer end of the input that moves the wheel.
+# Else a bounce, by part of the way from the drawing to the nearer end of the input that moves the wheel.
 PART = 0.25
 # A sine of nearly one period. No instant is one at which the input turns, an odd multiple of pi / 12 s: its
 # rate is rounding alone there, and a comparison of rates would test nothing.
@@ -118,11 +118,11 @@ def driven_inputs(
         raise SceneError(source, ".".join(map(str, fault.place)), fault.problem, fault.allowed) from None
 
 
-def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
-    """A bounce about the drawing, with the others held as drawn, well within what the linkage reaches.
+def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
+    """A way of the wheel about the drawing, with the others held as drawn, well within its reach.
 
-    The wheel travels 30 mm up and down; where the linkage reaches less than 40 mm, or what moves it is no
-    travel, it is a quarter of the way to the nearer end.
+    The wheel goes from 30 mm below to 30 mm above; where it reaches less than 40 mm, or what moves it is no
+    travel, it bounces by a quarter of the way to the nearer end.
     """
     laws: dict[str, tuple[Mapping[str, Any], str]] = {}
     drives = drawn.mechanism.topology.drives
@@ -133,18 +133,23 @@ def bounce_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
             laws[name] = {"constant": here}, f"{unit}, as drawn"
             continue
         low, high = (end.value for end in stands.reach[name])
-        nearer = min(here - low, high - here)
-        whole = unit == "mm" and nearer >= FAR_ENOUGH
-        amplitude = TRAVEL if whole else floor(1e4 * PART * nearer) / 1e4
+        nearer, words = min(here - low, high - here), f"{unit}; it reaches {low:.4f} to {high:.4f}"
+        if unit == "mm" and nearer >= FAR_ENOUGH:
+            laws[name] = {"sweep": [here - TRAVEL, here + TRAVEL]}, words
+            continue
+        amplitude = floor(1e4 * PART * nearer) / 1e4
         sine = {"amplitude": amplitude, "angular_frequency": FREQUENCY, "offset": here}
-        words = f"{unit}; it reaches {low:.4f} to {high:.4f}"
-        words += "" if whole else ", and this takes a quarter of the shorter way"
-        laws[name] = {"sine": sine}, words
-    moved = {
-        "inputs": {name: law for name, (law, _) in laws.items()},
-        "time": {"start": 0.0, "stop": STOP, "samples": SAMPLES},
-    }
-    return laws, Scene.from_mapping(drawn.model_dump(exclude_none=True) | moved, drawn.title)
+        laws[name] = {"sine": sine}, f"{words}, and this takes a quarter of the shorter way"
+    content = drawn.model_dump(exclude_none=True, exclude={"time"}) | _times(laws)
+    content["inputs"] = {name: law for name, (law, _) in laws.items()}
+    return laws, Scene.from_mapping(content, drawn.title)
+
+
+def _times(laws: Laws) -> dict[str, Any]:
+    """The table of times, which a scene of ranges and constants does without."""
+    if not any("sine" in law for law, _ in laws.values()):
+        return {}
+    return {"time": {"start": 0.0, "stop": STOP, "samples": SAMPLES}}
 
 
 def scene_text(
@@ -187,10 +192,10 @@ def scene_text(
         "",
         "[inputs]",
         *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),
-        "",
-        "[time]    # s",
-        "start = 0.0",
-        f"stop = {STOP}",
-        f"samples = {SAMPLES}",
+        *(
+            line
+            for table in _times(laws).values()
+            for line in ("", "[time]    # s", *(f"{key} = {value}" for key, value in table.items()))
+        ),
     ]
     return "\n".join(lines) + "\n"

@@ -21,6 +21,8 @@ from validate.plain_text import shown
 
 # What a column of numbers may hold: its cells are read from the right.
 NUMBER = re.compile(r"[-+]?\d|-?$|not a number$")
+# As such it acts nowhere inside of a line.
+PLAIN_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]\d+)?")
 # Green, red and yellow of a terminal, by the words of verdicts; the words say it too.
 COLOURS = {"agrees|as expected": "32", "DISAGREES|NOT": "1;31", "not tested|not given": "33"}
 SAFE = frozenset(" ,.;:/()=-'?")
@@ -168,6 +170,8 @@ def csv_of(head: Iterable[str], lines: Iterable[Iterable[object]]) -> str:
 
 def markdown(text: str) -> str:
     """Text that Markdown shows as it is, in one line: what could act is written as a character reference."""
+    if PLAIN_NUMBER.fullmatch(text):
+        return text
     text = shown(text)
     return "".join(_character(text, i) for i in range(len(text)))
 
