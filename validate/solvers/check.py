@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.diagnosis import explain_outcome
 from validate.formulations.protocol import Formulation
 from validate.solvers.plain import NoSolver, PlainSolver, as_function
 
@@ -41,6 +40,11 @@ def check(
     taken = Scene.load(scene) if isinstance(scene, str) else scene
     one = PlainSolver(_name_of(solver), function, required_accuracy(accuracy))
     outcome = compare(taken, one, against)
+    if not outcome.disagreements:
+        return outcome
+    # Imported here: most runs have nothing to explain.
+    from validate.diagnosis import explain_outcome
+
     return replace(outcome, explanations=explain_outcome(taken, outcome))
 
 

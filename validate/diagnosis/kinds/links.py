@@ -120,6 +120,8 @@ def _solved(
     part |= tables
     part["points"] = {**part["points"], **points}
     content |= {"mechanism": part, "inputs": {**content["inputs"], **inputs}}
+    # It is read between its instants.
+    content["time"] = {**content["time"], "samples": min(2, evidence.scene.time.samples)}
     try:
         return simulate(Scene.from_mapping(content, "another car"))
     except PointcoordError:
