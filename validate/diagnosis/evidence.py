@@ -28,7 +28,8 @@ Array = NDArray[np.float64]
 Row = tuple[str, str]
 Rows = Mapping[Row, Array]
 
-MOST_LATE = 8  # instants, of which one at an end may be left out
+# Instants of which one at an end may be left out, and that are looked through twice more in a second or two.
+FEWEST_LATE, MOST_LATE = 8, 2000
 MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
 # How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
 CLEAR = 4.0
@@ -268,9 +269,10 @@ class Evidence:
 
     @property
     def moving_all_wrong(self) -> bool:
-        """Whether every number that changes disagrees, and several do."""
+        """Whether every number that changes disagrees, and several do, at not too many instants."""
         moving = [row for row, values in self.held.items() if np.ptp(values, axis=0).max(initial=0.0) > 0.0]
-        return len(self.wrong) > 1 and len(self.times) > MOST_LATE and set(moving) <= set(self.wrong)
+        few = FEWEST_LATE < len(self.times) <= MOST_LATE
+        return few and len(self.wrong) > 1 and set(moving) <= set(self.wrong)
 
     def without_a_late_sample(self) -> Iterator[tuple[str, Evidence]]:
         """The same without an end, if every row is one late or early; in words."""

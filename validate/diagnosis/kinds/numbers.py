@@ -55,6 +55,7 @@ UNITS = (
 # A factor near 1 is what least squares makes of any small difference, such as that of two cars.
 NEAR_ONE = 0.01
 MOST_DIGITS = 10
+FEW = 64  # instants at which axes are tried first
 SINGLE = float(np.finfo(np.float32).eps)
 
 
@@ -93,12 +94,21 @@ def _in_axes(evidence: Evidence, matrix: Array, rows: Iterable[Row]) -> dict[Row
 
 
 def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Axes in another order, with or without other signs."""
-    if not _vectors(evidence.wrong):
+    """Axes in another order, with or without other signs.
+
+    Those that do not even halve a difference at a few instants are left out.
+    """
+    few = evidence.thinned(FEW)
+    vectors = _vectors(few.wrong)
+    before = {row: few.left(row, few.held[row], few.allowed[row]) for row in vectors}
+    if not vectors:
         return
     for places, signs in product([*permutations(range(3))][1:], product((1.0, -1.0), repeat=3)):
         matrix = np.zeros((3, 3))
         matrix[range(3), places] = signs
+        there = _in_axes(few, matrix, vectors)
+        if all(few.left(row, *there[row]) > max(1.0, 0.5 * before[row]) for row in vectors):
+            continue
         named = tuple("-" * (s < 0.0) + "xyz"[p] for s, p in zip(signs, places, strict=True))
         rows = _in_axes(evidence, matrix, (*evidence.wrong, *evidence.beside))
         words = f"other axes: its x, y, z are our {', '.join(named)}"
