@@ -11,7 +11,7 @@ moved point have other lengths, and the inputs keep their values.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -95,7 +95,7 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     # Designs of one coordinate after those of another.
     moved = np.kron(np.eye(len(named)), step * PLACES[:, None])
     found = sweep(scene, offsets={name: moved[:, i] for i, name in enumerate(named)})
-    every = dict(_scalars(found.numbers))
+    every = _scalars(found.numbers)
     for name in numbers:
         if name not in every:
             raise UnknownName("number of the scene's effects", name, every)
@@ -110,10 +110,13 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     return Sensitivity(named, found.times, derivatives, doubts, failures)
 
 
-def _scalars(numbers: Mapping[str, Channel]) -> Iterator[tuple[str, Array]]:
-    for channel in numbers.values():
-        if channel.quantity.of == "car":
-            yield from channel.items()
+def _scalars(numbers: Mapping[str, Channel]) -> dict[str, Array]:
+    """Numbers of the car by name; of one that comes twice, as a rod's may, the later by its quantity."""
+    found: dict[str, Array] = {}
+    for quantity, channel in numbers.items():
+        for name, values in channel.items() if channel.quantity.of == "car" else ():
+            found[f"{quantity}.{name}" if name in found else name] = values
+    return found
 
 
 def _coordinates(scene: Scene, asked: Sequence[str]) -> tuple[str, ...]:

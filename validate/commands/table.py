@@ -32,12 +32,13 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.table import Table, csv_of, is_terminal
-from validate.plain_text import shown
+from validate.plain_text import shown, some_of
 
 Array = NDArray[np.float64]
 
 ENDINGS = (".csv", ".md")
 ROWS = 21
+NAMED = 12  # numbers, in a message
 DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2}
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
 
@@ -75,12 +76,15 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene, name = load_scene(options.scene), name_of(options.scene)
     signs = _chosen(options, scene, name)
     scene = asking_for(scene, [*signs])
-    numbers = {number.path[-1]: number for number in numbers_of(scene) if len(number.path) < 3}
+    every = numbers_of(scene)
+    # A rod may be called as a number of the car is, and has a force: the first by a name is the car's.
+    numbers = {number.path[-1]: number for number in reversed(every) if number.of_the_car}
+    inputs = {number.path[0]: number for number in every if len(number.path) == 1}
     read = [numbers[number] for number in signs]
     if options.grid:
         return _on_grid(scene, read, signs, options, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
-    columns = [*(numbers[one] for one in driven), *read]
+    columns = [*(inputs[one] for one in driven), *read]
 
     def write(motion: Motion) -> str:
         rows = options.rows or min(ROWS, len(motion.times))
@@ -100,7 +104,8 @@ def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> dict[str, i
     convention = CONVENTIONS[options.convention]
     if options.number:
         counted = dict(map(convention.number, options.number))
-        return {number: counted[number] for number in chosen_numbers([*counted], False, scene, name)}
+        chosen = chosen_numbers([*counted], False, scene, name)
+        return {number: counted.get(number, counted.get(number.rpartition(".")[2], 1)) for number in chosen}
     if options.all and convention.means:
         raise UsageError("--all is every number by our names; leave --convention out with it")
     first = chosen_numbers(None, options.all, scene, name)
@@ -124,7 +129,8 @@ def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name:
             f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
             "pointcoord simulate writes what it gives"
         )
-    for number in named or ():
+    asked = [one for number in named or () for one in _of_each_part(number, known) or [number]]
+    for number in asked:
         if number not in known:
             own = number.rpartition(".")[2]
             why = [reason for e in EFFECTS.values() if own in e.own_names and (reason := part.refusal(e))]
@@ -132,12 +138,17 @@ def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name:
                 f"{name}: --number {number}: {why[0]}"
                 if why
                 else f"{name}: no number of a car is called {shown(number)}"
-                f"{meant(number, known)}; allowed: {', '.join(known)}"
+                f"{meant(number, known)}; allowed: {some_of(known, NAMED)} (--all shows every one)"
             )
-    if named:
-        return list(dict.fromkeys(named))
+    if asked:
+        return list(dict.fromkeys(asked))
     first = [number for own in READ_FIRST for number in known if number.rpartition(".")[2] == own]
     return known if every else first
+
+
+def _of_each_part(number: str, known: Sequence[str]) -> list[str]:
+    """A number that the wheels have by a name without their part's; none of one that has it whole."""
+    return [] if number in known else [one for one in known if one.rpartition(".")[2] == number]
 
 
 def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
@@ -167,7 +178,7 @@ def _on_grid(
     except PointcoordError as error:
         console.complain(f"{name}: {error}; nothing is written")
         return ExitStatus.NO_VERDICT
-    inputs = {n.path[-1]: n for n in numbers_of(scene) if n.path[-1] in axes}
+    inputs = {n.path[0]: n for n in numbers_of(scene) if len(n.path) == 1}
     # A pose has no motion: what is read of the car is there by quantity and name.
     values = [grid[n].ravel() for n in axes] + [poses.numbers[c.path[0]][c.path[1]] for c in columns]
     every = [*(inputs[n] for n in axes), *columns]

@@ -126,3 +126,34 @@ def test_a_number_and_a_point_that_are_none_are_refused(capsys: pytest.CaptureFi
         status, out, err = printed(capsys, "sensitivity", "double-wishbone", *words)
         assert (status, out, len(err.splitlines())) == (2, "", 1), err
         assert told in err
+
+
+def test_a_rod_that_is_called_as_an_angle_is_does_not_stand_for_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The five-link's toe link has a force, and is called toe."""
+    path = tmp_path / "car.csv"
+    assert main(["table", "five-link", "--rows", "5", "-o", str(path), "-q"]) == 0
+    scene = Scene.load("five-link").model_copy(update={"effects": ("toe",)})
+    motion = simulate(scene)
+    toe = motion.at(np.linspace(motion.times[0], motion.times[-1], 5)).wheel["toe"]
+    found = [float(row["toe [deg]"]) for row in rows_of(path)]
+    np.testing.assert_allclose(found, np.degrees(toe), rtol=0, atol=1e-12)
+    part = scene.mechanism.model_copy(update={"loads": {"force": (0.0, 0.0, 3000.0)}, "wheel_radius": 300.0})
+    loaded = scene.model_copy(update={"mechanism": part, "effects": ("toe", "loads")})
+    both = sensitivity(loaded, ["toe", "rod_force.toe"], ["toe_inner.z"])
+    alone = sensitivity(scene, ["toe"], ["toe_inner.z"])
+    np.testing.assert_allclose(both.derivatives["toe"], alone.derivatives["toe"], rtol=0, atol=1e-12)
+    assert np.abs(both.derivatives["rod_force.toe"]).max() > 0.0
+
+
+def test_a_number_of_both_wheels_is_asked_for_by_its_own_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "axle.csv"
+    assert main(["table", "axle-steer", "--number", "toe", "--rows", "2", "-o", str(path), "-q"]) == 0
+    assert [*rows_of(path)[0]] == ["rack [mm]", "left.toe [deg]", "right.toe [deg]"]
+    status, _, err = printed(capsys, "table", "axle-steer", "--number", "tooe")
+    assert status == 2
+    assert "no number of a car is called tooe" in err
+    assert "and 126 more (--all shows every one)" in err
