@@ -20,11 +20,9 @@ class Convention:
     """Names that mean others of our numbers.
 
     Attributes:
-        words: whose it is.
         means: by name, our number of that meaning; a minus before it where it counts the other way.
     """
 
-    words: str
     means: Mapping[str, str] = field(default_factory=dict)
 
     def number(self, name: str) -> tuple[str, int]:
@@ -41,11 +39,12 @@ class Convention:
 
 
 CONVENTIONS: Mapping[ConventionName, Convention] = {
-    "iso": Convention("ISO 8855, and ours"),
-    "paper": Convention("Attia's paper, eqs. 16 and 17"),
+    # ISO 8855, and ours.
+    "iso": Convention(),
+    # Attia's, eqs. 16 and 17.
+    "paper": Convention(),
     # The trail that Lotus prints as mechanical is this one times the cosine of the caster.
     "lotus": Convention(
-        "Lotus Suspension Analysis",
         {
             "travel": "contact_travel",
             "scrub_radius": "kingpin_offset",
@@ -53,7 +52,8 @@ CONVENTIONS: Mapping[ConventionName, Convention] = {
             "damper_per_wheel": "wheel_per_damper",
         },
     ),
-    "optimumk": Convention("OptimumK", {"toe": "-toe_by_arcsine", "damper_per_wheel": "wheel_per_damper"}),
-    "adams": Convention("Adams/Car's turning tables", {"camber": "camber_by_arcsine"}),
+    "optimumk": Convention({"toe": "-toe_by_arcsine", "damper_per_wheel": "wheel_per_damper"}),
+    # Adams/Car's turning tables.
+    "adams": Convention({"camber": "camber_by_arcsine"}),
 }
 """By name."""

@@ -167,15 +167,15 @@ class ByChain(SolvedScene):
         """Sums of their series, of designs (designs, N, size); the instants lie side by side in memory."""
         mechanism, segments = self.readout.mechanism, self.chain.segments
         wanted = min(derivatives, self.readout.plan.derivative)
-        unknowns = mechanism.map.unknowns
+        unknowns, known = mechanism.map.unknowns, self._known(instants)
         if isinstance(box := segments[0], Box):
-            size = unknowns + self._known(instants).shape[-1]
+            size = unknowns + known.shape[-1]
             found = [np.zeros((len(box.coefficients), len(instants), size)) for _ in range(wanted + 1)]
             for each, powers in zip(found, box.powers(instants, wanted + 1), strict=True):
                 each[..., :unknowns] = powers.T @ box.coefficients
         else:
             found = list(evaluate(self.chain, [s.coefficients for s in segments], instants, wanted))
-        found[0][..., unknowns:] = self._known(instants)
+        found[0][..., unknowns:] = known
         return found
 
     def _known(self, instants: Array) -> Array:
