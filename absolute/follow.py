@@ -117,7 +117,7 @@ def _predicted(
 ) -> tuple[Array, Array, Array]:
     """Ways of N directions by their targets, (3, N, rows): straight s and curve c, (N, 6 * moving bodies), of
     the step l s + l^2 c along each, and the largest l that is no longer and bends no more than a step may."""
-    straight, second = map(mechanism.spread, rates(mechanism, pose, targets[1], targets[2]))
+    straight, second = map(mechanism.spread, rates(mechanism, pose, *targets[1:]))
     # A step turns with the body, so its curve is o'' - w x o'.
     twist, curve = straight.reshape(len(straight), -1, 2, 3), 0.5 * second
     curve.reshape(twist.shape)[..., 0, :] -= 0.5 * cross(twist[..., 1, :], twist[..., 0, :])

@@ -8,8 +8,13 @@ from absolute.errors import InputError
 from absolute.solution import Array
 
 
-def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
-    """(N, 3, inputs): value, rate and acceleration of every input of the model, in its order.
+def orders_of(inputs: Mapping[str, Array]) -> int:
+    """How many numbers each input has at an instant: value, rate and acceleration, or 4 with the jerk."""
+    return 4 if any(np.shape(law)[1:] == (4,) for law in inputs.values()) else 3
+
+
+def input_series(names: Sequence[str], inputs: Mapping[str, Array], orders: int) -> Array:
+    """(N, orders, inputs): value and rates of every input of the model, in its order.
 
     Raises:
         InputError: an input is missing, unknown, of another length, or not finite.
@@ -22,17 +27,19 @@ def input_series(names: Sequence[str], inputs: Mapping[str, Array]) -> Array:
         )
     columns = list[Array]()
     for name in names:
-        columns.append(checked(name, inputs[name], (3,), len(columns[0]) if columns else None))
-    return np.stack(columns, axis=-1) if columns else np.zeros((0, 3, 0))
+        columns.append(checked(name, inputs[name], (orders,), len(columns[0]) if columns else None))
+    return np.stack(columns, axis=-1) if columns else np.zeros((0, orders, 0))
 
 
-def chassis_series(chassis: Array | None, count: int) -> Array:
-    """(N, 3, 3): translation, velocity, acceleration of the chassis; zeros for None.
+def chassis_series(chassis: Array | None, count: int, orders: int) -> Array:
+    """(N, orders, 3): translation of the chassis and its rates; zeros for None.
 
     Raises:
         InputError: another shape or length, or not finite.
     """
-    return np.zeros((count, 3, 3)) if chassis is None else checked("chassis", chassis, (3, 3), count)
+    if chassis is None:
+        return np.zeros((count, orders, 3))
+    return checked("chassis", chassis, (orders, 3), count)
 
 
 def checked(name: str, values: object, shape: tuple[int, ...], count: int | None = None) -> Array:
@@ -44,7 +51,7 @@ def checked(name: str, values: object, shape: tuple[int, ...], count: int | None
     if array.shape[1:] != shape or array.ndim != 1 + len(shape):
         raise InputError(
             f"{name!r} has shape {array.shape}; {('N', *shape)} is needed: value, rate and acceleration at "
-            "each instant",
+            "each instant, and jerk where another input has one",
             name,
             None,
             array.shape,

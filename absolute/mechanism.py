@@ -1,6 +1,7 @@
 """The mechanism in Pinocchio: one free-flying body each, and the rows that join them."""
 
 from collections.abc import Sequence
+from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -115,25 +116,25 @@ class Mechanism:
             named.setdefault(drive.value, value)
         return named
 
-    def targets(self, values: Array, rates: Array | None = None, seconds: Array | None = None) -> Array:
-        """(3, ..., rows): what the rows shall equal, its first and its second rate, for inputs (..., inputs).
+    def targets(self, values: Array, *rates: Array) -> Array:
+        """(orders, ..., rows): what the rows shall equal and its rates, for inputs (..., inputs).
 
         Args:
-            rates, seconds: (..., inputs) first and second derivative of the inputs, zero if None.
+            rates: (..., inputs) derivatives of the inputs; the first two are zero where they are not given.
         """
         nothing = np.zeros_like(values)
-        rates, seconds = nothing if rates is None else rates, nothing if seconds is None else seconds
-        lead = np.broadcast_shapes(values.shape, rates.shape)[:-1]
-        targets = np.zeros((3, *lead, self.stack.count))
+        series = [values, *rates, *[nothing] * (2 - len(rates))]
+        targets = np.zeros((len(series), *np.broadcast_shapes(*map(np.shape, series))[:-1], self.stack.count))
         targets[0] = self.stack.drawn
-        # f(value) is the value or its cosine.
-        f, f1, f2 = values, np.ones_like(values), nothing
+        driven = series
         if self._cosines.any():
-            cosine, minus_sine = np.cos(values), -np.sin(values)
-            f, f1, f2 = (
-                np.where(self._cosines, *of) for of in ((cosine, f), (minus_sine, f1), (-cosine, f2))
-            )
-        driven = f, f1 * rates, f2 * rates * rates + f1 * seconds
+            # Of an angle x: cos' = -x' sin, sin' = x' cos, and their derivatives by the product rule.
+            cosine, sine = [np.cos(values)], [np.sin(values)]
+            for n in range(1, len(series)):
+                turned = [[comb(n - 1, i) * of[i] * series[n - i] for i in range(n)] for of in (sine, cosine)]
+                cosine.append(-np.asarray(sum(turned[0])))
+                sine.append(np.asarray(sum(turned[1])))
+            driven = [np.where(self._cosines, *of) for of in zip(cosine, series, strict=True)]
         for target, part in zip(targets, driven, strict=True):
             target[..., self.joint_rows :] = self._factors * part
         return targets

@@ -163,18 +163,21 @@ def solved(matrices: Array, right_hand: Array) -> Array:
         return np.concatenate([solved(matrix[None], side[None]) for matrix, side in each])
 
 
-def rates(mechanism: Mechanism, at: Configurations, first: Array, second: Array) -> tuple[Array, Array]:
-    """Velocities and accelerations (N, rows), unknowns of [o', w] and [o'', w'] of the moving bodies.
+def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array]:
+    """Velocities, accelerations and so on (N, rows), unknowns of [o', w], [o'', w'] of the moving bodies.
 
-    J v = first,  J a = second - drift(v):  one matrix serves both.
+    J v = first,  J a = second - drift(v),  and so on:  one matrix serves all.
 
     Args:
-        at: N configurations, or one. first, second: (N, rows) rates of the rows.
+        at: N configurations, or one. sides: (N, rows) rates of the rows, the first, the second and so on.
     """
-    velocity = velocities(at, first)
-    moving = np.zeros((len(first), at.origin.shape[1], 2, 3))
-    moving[:, 1:] = mechanism.spread(velocity).reshape(len(first), -1, 2, 3)
-    return velocity, velocities(at, second - mechanism.stack.drift(at.placed, moving))
+    found, moving = [velocities(at, sides[0])], list[Array]()
+    for side in sides[1:]:
+        bodies = np.zeros((len(side), at.origin.shape[1], 2, 3))
+        bodies[:, 1:] = mechanism.spread(found[-1]).reshape(len(side), -1, 2, 3)
+        moving.append(bodies)
+        found.append(velocities(at, side - mechanism.stack.drift(at.placed, moving)))
+    return found
 
 
 def velocities(at: Configurations, rates: Array) -> Array:

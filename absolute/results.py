@@ -11,9 +11,9 @@ from absolute.mechanism import Mechanism
 from absolute.model import Corner
 from absolute.solution import Array, Counts, Solution
 from absolute.turning import Turning
-from absolute.vectors import EPS, cross
+from absolute.vectors import EPS, carried, cross
 
-OF_POINTS = ("position", "velocity", "acceleration")
+OF_POINTS = ("position", "velocity", "acceleration", "jerk")
 OF_BODIES = ("angular_velocity", "angular_acceleration")
 
 
@@ -22,8 +22,8 @@ class Instants(NamedTuple):
 
     Attributes:
         rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), the chassis first.
-        rates: (N, 2, bodies, 2, 3) velocities [o', w] and accelerations [o'', w'] of the bodies; the chassis,
-            and all where they are not asked for, stay at zero.
+        rates: (N, R, bodies, 2, 3) velocities [o', w], accelerations [o'', w'] and so on of the bodies; the
+            chassis, and all where they are not asked for, stay at zero.
         slopes: (N, K, bodies, 2, 3) velocities of the bodies for a unit rate of one input each.
         residual: (N,) largest violation of a row.
         corrections: (N,) of Newton.
@@ -37,12 +37,12 @@ class Instants(NamedTuple):
     corrections: Counts
 
     @classmethod
-    def none(cls, bodies: int, slopes: int) -> "Instants":
+    def none(cls, rates: int, bodies: int, slopes: int) -> "Instants":
         """No instants."""
         return cls(
             np.zeros((0, bodies, 3, 3)),
             np.zeros((0, bodies, 3)),
-            np.zeros((0, 2, bodies, 2, 3)),
+            np.zeros((0, rates, bodies, 2, 3)),
             np.zeros((0, slopes, bodies, 2, 3)),
             np.zeros(0),
             np.zeros(0, dtype=np.int64),
@@ -57,7 +57,7 @@ class Motion:
     from its origin costs no more than one rounding.
 
     Attributes:
-        chassis: (N, 3, 3) displacement of the chassis and its rates, mm and s, after its turns.
+        chassis: (N, 1 + R, 3) displacement of the chassis and its rates, mm and s, after its turns.
         by: part, and "travel" or "rack", of the K inputs that effects take derivatives by.
         part: whose wheel is looked at.
     """
@@ -73,12 +73,12 @@ class Motion:
         """The motion in mm, seen from the ground, with what is asked for: effects and forces by name."""
         size, model = self.mechanism.drawing.size, self.mechanism.model
         # Of body rates, angular velocity is the first.
-        orders = 3 if rates else 1
+        orders = 1 + self.instants.rates.shape[1] if rates else 1
         numbers: dict[str, dict[str, Array]] = {kind: {} for kind in (*OF_POINTS, *OF_BODIES)}
         for kind, state in zip(OF_POINTS[:orders], self._points(orders), strict=True):
             numbers[kind] = dict(zip(self.mechanism.drawing.points, state, strict=True))
         bodies = [name for name in model.moving if name not in model.aids]
-        for kind, state in zip(OF_BODIES[: orders - 1], self._bodies(bodies), strict=False):
+        for kind, state in zip(OF_BODIES if rates else (), self._bodies(bodies), strict=False):
             numbers[kind] = dict(zip(bodies, state, strict=True))
         numbers |= {kind: dict(of) for kind, of in asked.items()}
         iterations, residual = self.instants.corrections, self.instants.residual
@@ -181,10 +181,10 @@ class Motion:
         arm = np.matvec(self.instants.rotation[:, body].swapaxes(0, 1), arms[:, None])
         states = [self.instants.origin[:, body].swapaxes(0, 1) + arm]
         if orders > 1:
-            (speed, spin), (second, spin1) = self.instants.rates[:, :, body].transpose(1, 3, 2, 0, 4)
+            speeds, spins = self.instants.rates[:, :, body].transpose(3, 1, 2, 0, 4)
             # p' = o' + w x r,  p'' = o'' + w' x r + w x (w x r)
-            turning = cross(spin, arm)
-            states += [speed + turning, second + cross(spin1, arm) + cross(spin, turning)]
+            turning = carried(arm, spins, orders)[1:]
+            states += [speed + turned for speed, turned in zip(speeds, turning, strict=True)]
         state = np.array(states) * drawing.size
         # What stands is where it is drawn, to the last digit.
         given, still = np.array(list(drawing.points.values()))[:, None], (body == 0)[:, None, None]
@@ -199,9 +199,9 @@ class Motion:
     def _bodies(self, names: Sequence[str]) -> Array:
         """(2, B, N, 3) angular velocity and acceleration of bodies, rad and s."""
         indices = [self.mechanism.drawing.bodies[name] for name in names]
-        state = self.instants.rates[:, :, indices, 1].transpose(1, 2, 0, 3)
+        state = self.instants.rates[:, :2, indices, 1].transpose(1, 2, 0, 3)
         for turn in self.turns:
-            state = turn.seen(state) + turn.rates[:, None]
+            state = turn.seen(state) + turn.rates[:2, None]
         return state
 
     def _condition_numbers(self) -> Array:

@@ -12,13 +12,13 @@ The turn t of axes x, y of the first and x2, y2 of the second body about a commo
 cos t = y . y2 and sin t = -x . y2, has the rate of the right angle  -(x cos t + y sin t) . y2  which is 0
 there, t held. Its value is known up to whole turns: `gap` takes the nearest.
 
-With the turning a1 = w1 x a and the velocity v of e as it is seen from the first body, a row's rate is a . v
-and its second rate, when no body accelerates,
-    a1 . (2 v + t1) - (w2 x a) . t2,    v = s2 + t2 - s1 - t1,    t1 = w1 x (r1 + e),    t2 = w2 x r2,
-s the velocity of an origin, and of a distance (v . v - (a . v)^2) / |e| more.
+A row's rate of order n, when the bodies have none of that order, is the n-th derivative of a . e by the
+product rule: a, r1 and r2 are carried by their bodies, e = o2 + r2 - o1 - r1. That of a distance l follows
+from l l = e . e, and that of a turn from the sine of what it goes beyond where it is, which is a . e.
 """
 
 from collections.abc import Iterable, Sequence
+from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from absolute.model import Row
 from absolute.solution import Array
-from absolute.vectors import EPS, cross
+from absolute.vectors import EPS, carried, cross
 
 # A row is a sum of products of turned features and origins. About 27 roundings of eps / 2 of its terms
 # meet in it: four from the quaternion, four from its products, three from the turning, two from the
@@ -164,15 +164,50 @@ class RowStack:
         """(...) whether no row misses its target by more than rounding."""
         return np.asarray((np.abs(self.gap(placed, target)) <= self.rounding(placed)).all(-1))
 
-    def drift(self, placed: Placed, rates: Array) -> Array:
-        """Second rate of the rows when no body accelerates, at rates [o', w], (..., bodies, 2, 3)."""
-        both, a = rates.take(self._holders[1:], -3), placed.a
-        t, turned = cross(both[..., 1, :], placed.arms), cross(both[..., 1, :], a[..., None, :, :])
-        t1, t2 = t[..., 0, :, :], t[..., 1, :, :]
-        v = self._offset[:, None] * (both[..., 1, :, 0, :] - both[..., 0, :, 0, :]) + t2 - t1
-        drift: Array = np.vecdot(turned[..., 0, :, :], 2.0 * v + t1) - np.vecdot(turned[..., 1, :, :], t2)
+    def drift(self, placed: Placed, rates: Sequence[Array]) -> Array:
+        """Rate of the rows of the order after the last, when no body has a rate of that order.
+
+        Args:
+            rates: [o', w], [o'', w'] and so on of the bodies, each (..., bodies, 2, 3).
+        """
+        order = len(rates) + 1
+        held = [rate.take(self._holders[1:], -3) for rate in rates]
+        spins, speeds = ([each[..., kind, :] for each in held] for kind in (1, 0))
+        arms = np.matvec(placed.rotation.take(self._holders[1:], -3), self._local[1:])
+        along = carried(placed.a, [spin[..., 0, :, :] for spin in spins], order + 1)
+        apart = [turned[..., 1, :, :] - turned[..., 0, :, :] for turned in carried(arms, spins, order + 1)]
+        for n, speed in enumerate(speeds, 1):
+            apart[n] += self._offset[:, None] * (speed[..., 1, :, :] - speed[..., 0, :, :])
+        apart[0] = placed.e
+        drift = _product(along, apart, order)
         if self._distances.size:
-            a, v = a[..., self._distances, :], v[..., self._distances, :]
-            along = np.vecdot(a, v)
-            drift[..., self._distances] += (np.vecdot(v, v) - along**2) / placed.values[..., self._distances]
+            drift[..., self._distances] = _of_length([e[..., self._distances, :] for e in apart])
+        if self._turns.size:
+            sines = [_product(along, apart, n)[..., self._turns] for n in range(1, order)]
+            drift[..., self._turns] = _of_turn([*sines, drift[..., self._turns]])
         return drift
+
+
+def _product(one: Sequence[Array], other: Sequence[Array], order: int) -> Array:
+    """A derivative of the scalar product of two vectors, from their derivatives."""
+    terms = (comb(order, i) * np.vecdot(one[i], other[order - i]) for i in range(order + 1))
+    return np.asarray(sum(terms))
+
+
+def _of_length(vectors: Sequence[Array]) -> Array:
+    """The last derivative of the length of a vector, (..., rows, 3) by derivative: l l = e . e."""
+    lengths = [np.sqrt(np.vecdot(vectors[0], vectors[0]))]
+    for n in range(1, len(vectors)):
+        inner = (comb(n, i) * lengths[i] * lengths[n - i] for i in range(1, n))
+        lengths.append((_product(vectors, vectors, n) - sum(inner)) / (2.0 * lengths[0]))
+    return np.asarray(lengths[-1])
+
+
+def _of_turn(sines: Sequence[Array]) -> Array:
+    """The last derivative of a turn u from nothing, from those of its sine, by order from the first:
+    (sin u)' = u' cos u, (cos u)' = -u' sin u."""
+    sine, cosine, turn = [0.0 * sines[0], *sines], [np.ones_like(sines[0])], [0.0 * sines[0]]
+    for n in range(1, len(sine)):
+        turn.append(sine[n] - sum(comb(n - 1, i) * cosine[i] * turn[n - i] for i in range(1, n)))
+        cosine.append(-np.asarray(sum(comb(n - 1, i) * sine[i] * turn[n - i] for i in range(n))))
+    return turn[-1]

@@ -18,6 +18,7 @@ class Solution:
         position: point name -> (N, 3), mm, world axes; chassis, moving and carried points.
         velocity: point name -> (N, 3), mm/s; empty when no rates were asked for.
         acceleration: point name -> (N, 3), mm/s^2; empty when no rates were asked for.
+        jerk: point name -> (N, 3), mm/s^3; empty where the inputs were given without their jerks.
         angular_velocity: moving body name -> (N, 3), rad/s, world axes; empty without rates.
         angular_acceleration: moving body name -> (N, 3), rad/s^2, world axes; empty without rates.
         iterations: (N,) Newton corrections spent on the way to each instant.
@@ -37,6 +38,7 @@ class Solution:
     position: Mapping[str, Array]
     velocity: Mapping[str, Array]
     acceleration: Mapping[str, Array]
+    jerk: Mapping[str, Array]
     angular_velocity: Mapping[str, Array]
     angular_acceleration: Mapping[str, Array]
     iterations: Counts

@@ -10,7 +10,7 @@ from absolute.effects import effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
-from absolute.input_arrays import chassis_series, input_series
+from absolute.input_arrays import chassis_series, input_series, orders_of
 from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
@@ -68,9 +68,10 @@ def solve(
     Args:
         model: the linkage.
         inputs: name -> (N, 3) value, rate and acceleration of every value of the inputs (rad or mm, per s);
-            and of turns of the chassis, which is not turned where they are not given.
-        chassis: (N, 3, 3) translation, velocity, acceleration of the chassis in the frame of the
-            points, mm, mm/s, mm/s^2, after all turns; None for none.
+            and of turns of the chassis, which is not turned where they are not given. With the jerks of all
+            as well, (N, 4), there are jerks of points.
+        chassis: (N, 3, 3) or (N, 4, 3) translation, velocity, acceleration of the chassis and its jerk in the
+            frame of the points, mm, mm/s, mm/s^2, mm/s^3, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
         effects: names of `effect_names(model)`.
@@ -135,11 +136,13 @@ class Assembled:
         asked = effects_of(effects, model)
         by = inputs_of(asked, model)
         driving = {n: law for n, law in inputs.items() if n not in model.turns or n in model.values}
-        series = input_series(model.values, driving)
-        carried, turns = chassis_series(chassis, len(series)), turnings(model, inputs, len(series))
+        orders = orders_of(inputs)
+        series = input_series(model.values, driving, orders)
+        carried = chassis_series(chassis, len(series), orders)
+        turns = turnings(model, inputs, len(series), orders)
         # Inputs that take the same value have a column each.
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
-        runs = [Instants.none(len(mechanism.drawing.bodies), len(by))]
+        runs = [Instants.none(orders - 1, len(mechanism.drawing.bodies), len(by))]
 
         def solution(count: int | None = None) -> Solution:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
@@ -160,7 +163,7 @@ class Assembled:
             whole = solution()
             # Where rates overflow, so do accelerations.
             finite = np.ones(len(series), dtype=np.bool_)
-            for of in whole.acceleration.values():
+            for of in (*whole.acceleration.values(), *whole.jerk.values()):
                 finite &= np.isfinite(of).all(axis=1)
             if finite.all():
                 return whole
@@ -170,8 +173,8 @@ class Assembled:
             raise refused
 
     def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
-        """The instants of inputs (N, 3, inputs), one run of them after the other, and the velocities for unit
-        rates of some values."""
+        """The instants of inputs (N, orders, inputs), one run of them after the other, and the velocities for
+        unit rates of some values."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
         named = np.array([drive.value for drive in self.model.inputs])
@@ -180,16 +183,16 @@ class Assembled:
         units = np.array([mechanism.targets(series[:, 0], unit_of * (named == value))[1] for value in by])
         for found in through(mechanism, self._drawn, series[:, 0]):
             count, bodies = found.origin.shape[:2]
-            moving, residual = np.zeros((count, 2, bodies, 2, 3)), found.residual
+            moving, residual = np.zeros((count, len(targets) - 1, bodies, 2, 3)), found.residual
             slopes, held = np.zeros((count, len(by), bodies, 2, 3)), np.ones(count, dtype=np.bool_)
             for number, unit in enumerate(units):
                 velocity = velocities(found, unit[done : done + count])
                 slopes[:, number, 1:] = mechanism.spread(velocity).reshape(count, -1, 2, 3)
                 held &= _of_rates(mechanism, found, velocity)[1]
             if rated:
-                both = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
-                moving[:, :, 1:] = mechanism.spread(both).reshape(count, 2, -1, 2, 3)
-                residual, followed = _of_rates(mechanism, found, both[:, 0])
+                every = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
+                moving[:, :, 1:] = mechanism.spread(every).reshape(count, every.shape[1], -1, 2, 3)
+                residual, followed = _of_rates(mechanism, found, every[:, 0])
                 held &= followed
             good = leading(held)
             if good:
@@ -218,8 +221,10 @@ def _of_rates(
 
 
 def _overflow(instant: int, rates: Mapping[str, Array]) -> InputError:
-    # The squares of speeds are accelerations.
-    fastest = max(rates, key=lambda name: max(abs(rates[name][0]), np.sqrt(abs(rates[name][1]))))
+    # The squares of speeds are accelerations, and so on.
+    fastest = max(
+        rates, key=lambda name: max(abs(rate) ** (1.0 / d) for d, rate in enumerate(rates[name], 1))
+    )
     return InputError(
         f"instant {instant}: the rates and accelerations of points overflow; those of {fastest!r} are "
         f"{rates[fastest].tolist()}: give smaller ones",

@@ -7,22 +7,23 @@ A turn by the angle t(t) about the unit axis u through the fixed point P, with U
 and with w = t' u, a = t'' u any vector s that is solved in the chassis' frame has, seen from the ground,
 
     (R s)'  = R s' + w x R s
-    (R s)'' = R s'' + 2 w x R s' + a x R s + w x (w x R s):
+    (R s)'' = R s'' + 2 w x R s' + a x R s + w x (w x R s)
 
-rate and acceleration of a point with s = x - P (the term with 2 w is Coriolis'), and of a body, whose rates
-are s and s', angular velocity w + R s and angular acceleration a + (R s)'. Of several turns the next
-one takes what the one before has made. A displacement is added last.
+and so on: rate and acceleration of a point with s = x - P (the term with 2 w is Coriolis'), and of a body,
+whose rates are s and s', angular velocity w + R s and angular acceleration a + (R s)'. Of several turns the
+next one takes what the one before has made. A displacement is added last.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import comb
 
 import numpy as np
 
 from absolute.input_arrays import checked
 from absolute.model import Model
 from absolute.solution import Array
-from absolute.vectors import cross
+from absolute.vectors import carried
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Turning:
     """A turn of the chassis at N instants.
 
     Attributes:
-        about: P, (3,), mm. axis: u, (3,). angle: t, t', t'', (N, 3), rad and s.
+        about: P, (3,), mm. axis: u, (3,). angle: t, t', t'' and so on, (N, orders), rad and s.
     """
 
     about: Array
@@ -52,22 +53,21 @@ class Turning:
 
     @property
     def rates(self) -> Array:
-        """w and a, (2, N, 3), rad/s and rad/s^2."""
+        """w, a and so on, (orders - 1, N, 3), rad/s, rad/s^2."""
         return np.asarray(self.angle.T[1:, :, None] * self.axis)
 
     def seen(self, vector: Array) -> Array:
         """R s and as many of its rates as there are of s, (orders, N, 3)."""
         turned: Array = np.matvec(self.rotation, vector)
-        w, a = self.rates
         seen = turned.copy()
-        if len(seen) > 1:
-            seen[1] += cross(w, turned[0])
-        if len(seen) > 2:
-            seen[2] += 2.0 * cross(w, turned[1]) + cross(a, turned[0]) + cross(w, cross(w, turned[0]))
+        for order, rate in enumerate(turned):
+            # R s^(order) turns with the chassis from then on.
+            for more, part in enumerate(carried(rate, list(self.rates), len(turned) - order)[1:], 1):
+                seen[order + more] += comb(order + more, order) * part
         return seen
 
     def seen_point(self, state: Array, base: Array) -> Array:
-        """A point and its rates, (3, N, 3), measured from a place at rest, (3,)."""
+        """A point and its rates, (orders, N, 3), measured from a place at rest, (3,)."""
         arm, about = state.copy(), self.about - base
         arm[0] -= about
         seen = self.seen(arm)
@@ -75,16 +75,16 @@ class Turning:
         return seen
 
 
-def turnings(model: Model, inputs: Mapping[str, Array], count: int) -> tuple[Turning, ...]:
+def turnings(model: Model, inputs: Mapping[str, Array], count: int, orders: int) -> tuple[Turning, ...]:
     """The turns of a model that are given, in its order.
 
     Args:
-        inputs: name -> (N, 3) angle, rate and acceleration of some of them, among others. count: N.
+        inputs: name -> (N, orders) angle and rates of some of them, among others. count: N.
     Raises:
         InputError: one is of another length, or not finite.
     """
     return tuple(
-        Turning(turn.about, turn.axis, checked(name, inputs[name], (3,), count))
+        Turning(turn.about, turn.axis, checked(name, inputs[name], (orders,), count))
         for name, turn in model.turns.items()
         if name in inputs
     )

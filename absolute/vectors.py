@@ -1,5 +1,8 @@
 """Vectors of doubles."""
 
+from collections.abc import Sequence
+from math import comb
+
 import numpy as np
 
 from absolute.solution import Array
@@ -15,3 +18,19 @@ def cross(a: Array, b: Array) -> Array:
     """a x b over the last axis, quicker than numpy's for a few vectors."""
     product: Array = a.take(NEXT, -1) * b.take(LAST, -1) - a.take(LAST, -1) * b.take(NEXT, -1)
     return product
+
+
+def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
+    """A vector that a body carries, and its time derivatives: x' = w x x, and so by the product rule
+
+        x^(n+1) = sum_i C(n, i) w^(i) x x^(n-i),    i = 0 .. n.
+
+    Args:
+        vector: (..., 3). spins: w and as many of its derivatives as are not zero, likewise.
+        orders: how many are wanted, the vector itself among them.
+    """
+    found = [vector]
+    for n in range(orders - 1):
+        terms = (comb(n, i) * cross(spins[i], found[n - i]) for i in range(min(n + 1, len(spins))))
+        found.append(np.asarray(sum(terms)))
+    return found

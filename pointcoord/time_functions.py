@@ -46,12 +46,12 @@ class TimeFunction(Protocol):
         """How far the computed value may be from the law's own, rounded once, shape (N,); or a derivative."""
         ...
 
-    def exact(self, instants: Array) -> list[Enclosed]:
-        """The law's own value, rate and acceleration, (N,)."""
+    def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
+        """The law's own value and time derivatives, each (N,)."""
         ...
 
-    def enclosed(self, instants: Array) -> list[Enclosed]:
-        """The law's own value, rate and acceleration, each rounded once, (N,).
+    def enclosed(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
+        """The law's own value and time derivatives, each rounded once, (N,).
 
         A series of the law does not round its value, so that is expected beside what `rounding` says.
         """
@@ -82,9 +82,9 @@ class TimeFunction(Protocol):
 class Rounded:
     """A time function whose own value is known in twice the working precision."""
 
-    def enclosed(self: TimeFunction, instants: Array) -> list[Enclosed]:
+    def enclosed(self: TimeFunction, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """See `TimeFunction`."""
-        values = enumerate(self.exact(instants))
+        values = enumerate(self.exact(instants, derivatives))
         return [_rounded_once(self, value, instants, derivative) for derivative, value in values]
 
 
@@ -139,10 +139,10 @@ class Polynomial(Rounded):
             terms = np.polynomial.polynomial.polyval(np.abs(instants), law)
         return np.asarray(4 * count**2 * UNIT_ROUNDOFF**2 * terms if count > 1 else np.zeros_like(instants))
 
-    def exact(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """Horner's rule in twice the working precision, with the bound of its rounding."""
         t, found = Enclosed.of(instants), []
-        for derivative in range(3):
+        for derivative in range(derivatives + 1):
             total = Enclosed.of(np.zeros_like(instants))
             for j in range(len(self.coefficients) - 1, derivative - 1, -1):
                 factor = Enclosed.of(float(perm(j, derivative)))
@@ -226,17 +226,18 @@ class Sine(Rounded):
             turned = np.where(swing > 0.0, 2.0 * np.abs(computed), 0.0)
         return np.asarray(UNIT_ROUNDOFF * (swing + turned))
 
-    def exact(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """The formulas of `series` in twice the working precision, whole turns taken off the angle."""
         speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
         angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
         turns = np.rint(angle.high / TURN.high)
         cosine, sine = (angle - Enclosed.of(turns) * TURN).cosine_sine()
-        return [
-            Enclosed.of(self.offset) + swing * sine,
-            swing * speed * cosine,
-            -(swing * speed * speed * sine),
-        ]
+        quarter_turns, found = (sine, cosine, -sine, -cosine), []
+        for derivative in range(derivatives + 1):
+            found.append(swing * quarter_turns[derivative % 4])
+            swing = swing * speed
+        found[0] = Enclosed.of(self.offset) + found[0]
+        return found
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
         """The values at the ends, or the crest or the trough where the angle may pass one.
@@ -274,8 +275,9 @@ class Sine(Rounded):
 class Table(Rounded):
     """The cubic spline through (times, values), not-a-knot at its ends.
 
-    Its value, rate and acceleration are continuous; its third derivative jumps at the times. What it means
-    is what scipy's CubicSpline computes: the rounding of the spline's own equations is not told apart.
+    Its value, rate and acceleration are continuous; its third derivative jumps at the times, where it is that
+    of the piece that begins. What it means is what scipy's CubicSpline computes: the rounding of the spline's
+    own equations is not told apart.
     """
 
     times: tuple[float, ...]
@@ -293,9 +295,9 @@ class Table(Rounded):
         """None: the computed spline is the law."""
         return np.zeros_like(instants)
 
-    def exact(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """The computed spline, which is the law."""
-        return [Enclosed.of(self._spline(instants, nu=derivative)) for derivative in range(3)]
+        return [Enclosed.of(self._spline(instants, nu=derivative)) for derivative in range(derivatives + 1)]
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
         """The cubic about the middle, each term at its largest.
@@ -358,9 +360,9 @@ class Sum(Rounded):
         sums = (len(self.terms) + 1) * UNIT_ROUNDOFF * sum(sizes)
         return np.asarray(sums + sum(term.rounding(instants, derivative) for term in self.terms))
 
-    def exact(self, instants: Array) -> list[Enclosed]:
+    def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """The sum in twice the working precision."""
-        first, *others = (term.exact(instants) for term in self.terms)
+        first, *others = (term.exact(instants, derivatives) for term in self.terms)
         for other in others:
             first = [one + another for one, another in zip(first, other, strict=True)]
         return first

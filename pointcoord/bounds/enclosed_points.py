@@ -4,7 +4,8 @@ The certificate of a pose gives y* = y - e to within its spread and tail. Its ra
 
     2 B(y*, v*) = 0,        2 B(y*, a*) + 2 B(v*, v*) = 0,
 
-with known rates w', w''. For a computed v with the exact w' in it, r = 2 B(y*, v), and X close to C_u^-1,
+with known rates w', w'', and so on: of the derivative d, 2 B(y*, z_d) + sum_{0<i<d} C(d, i) B(z_i, z_{d-i}).
+For a computed v with the exact w' in it, r = 2 B(y*, v), and X close to C_u^-1,
 
     C_u(y*) (v* - v) = -r,        v* - v = -X r + E (v* - v),        E = I - X C_u(y*).
 
@@ -32,6 +33,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,7 +67,7 @@ class EnclosedPoses:
             units.
         in_chassis: places before these turns.
         added: by time derivative, what reporting a point adds to it, (N, 3), mm and s.
-        powers: of the unit of time, s^d for d = 0, 1, 2, each (N,).
+        powers: of the unit of time, s^d for d = 0, 1, and so on, each (N,).
         slopes: by way, the derivatives of places along it, after the turns of the chassis and before, in
             units per rad, mm or unit; of the ways that effects take.
     """
@@ -113,14 +115,16 @@ def enclosed_coordinates(
     moved[:, :n] = largest + proven
     spoilt = certificate.defect + magnitude @ system.jacobian_uncertainty(moved)
     edges = []
-    for derivative, computed in enumerate(rates, 1):
+    for order, computed in enumerate(rates, 1):
         edges.append(differences(system, result[-1]))
         rest = twice_polar(system, edges[0], differences(system, computed))
         if opened is not None:
             beside = twice_polar(system, edges[0], differences(system, Enclosed.of(opened[0])))
             rest = rest + beside.scaled(opened[1])
-        if derivative == 2:
-            rest = rest + twice_polar(system, edges[1], edges[1])
+        for i in range(1, order // 2 + 1):
+            # Twice B of two different ones is both of them, and of one with itself two of them.
+            count = comb(order, i) // (2 if 2 * i == order else 1)
+            rest = rest + twice_polar(system, edges[i], edges[order - i]).times(count)
         result.append(_corrected(computed, rest, poses, spoilt))
     for state, left in zip(result, cut, strict=False):
         state.radius[1, :, 0, :n] += left[:, :n]
@@ -222,14 +226,12 @@ def _carried(weights: Enclosed, edges: Sequence[Edges], normals: Sequence[Enclos
 
 def _normals(edges: Sequence[Edges]) -> list[Enclosed]:
     """e1 x e2 and its derivatives by Leibniz' rule."""
-    (e1, e2), *rates = edges
-    result = [cross(e1, e2)]
-    if rates:
-        (v1, v2), *more = rates
-        result.append(cross(v1, e2) + cross(e1, v2))
-    if rates and more:
-        a1, a2 = more[0]
-        result.append(cross(a1, e2) + cross(e1, a2) + cross(v1, v2).scaled(2.0))
+    result = []
+    for order in range(len(edges)):
+        first, *others = (
+            cross(edges[order - i][0], edges[i][1]).times(comb(order, i)) for i in range(order + 1)
+        )
+        result.append(sum(others, first))
     return result
 
 

@@ -43,6 +43,11 @@ LONGEST = 400
 class Bounded(Protocol):
     """Something that reports numbers and knows how far they are off."""
 
+    @property
+    def derivative(self) -> int:
+        """Highest time derivative of positions that it is made of."""
+        ...
+
     def ways(self, topology: Topology) -> tuple[Way, ...]:
         """Along which ways it takes derivatives of places."""
         ...
@@ -187,14 +192,16 @@ def _with_rates(
     mechanism: Mechanism, times: Array, reported: Reported
 ) -> tuple[CertifiedPoses, EnclosedPoses]:
     """The same with the rates of the points, as many as were solved for."""
-    y, *rates = reported.solved.coordinates(times, 2)
+    highest = max((effect.derivative for effect in reported.effects), default=0)
+    y, *rates = reported.solved.coordinates(times, max(highest, 2))
     groups, factors = grouped(mechanism.map, y, _drives(mechanism))
     together, functions = groups.together, {**reported.laws, **reported.chassis.functions}
     laws = {
-        name: [part.together(together) for part in law.enclosed(times)] for name, law in functions.items()
+        name: [part.together(together) for part in law.enclosed(times, max(len(rates), 2))]
+        for name, law in functions.items()
     }
     driven = driven_coordinates(mechanism, laws)
-    parts = [{place: each[d] for place, each in driven.items()} for d in range(3)]
+    parts = [{place: each[d] for place, each in driven.items()} for d in range(max(len(rates), 2) + 1)]
     poses = CertifiedPoses.of(mechanism, groups, factors, together(y), parts[0])
     computed = [
         with_known(together(rate), mechanism.map.unknowns, known)
@@ -295,7 +302,7 @@ def _enclosed(
     """
     chassis = reported.chassis
     laws = {name: laws[name] for name in chassis.functions}
-    added = chassis.enclosed(laws, mechanism.origin)
+    added = chassis.enclosed(laws, mechanism.origin, len(powers) - 1)
     points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
     in_chassis = points[0]
     if chassis.turns:
@@ -372,8 +379,8 @@ def _inflated(found: Numbers, which: int, factor: float) -> dict[str, dict[str, 
     return inflated
 
 
-def driven_coordinates(mechanism: Mechanism, laws: Laws) -> dict[int, tuple[Enclosed, Enclosed, Enclosed]]:
-    """By place in y, where each driven coordinate and its two derivatives are, each (N,)."""
+def driven_coordinates(mechanism: Mechanism, laws: Laws) -> dict[int, list[Enclosed]]:
+    """By place in y, where each driven coordinate and its time derivatives are, each (N,)."""
     return {
         place: drive.enclosed(laws[drive.input], mechanism.drawing)
         for place, drive in _drives(mechanism).items()

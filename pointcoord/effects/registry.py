@@ -18,6 +18,7 @@ from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.instant_centres import INSTANT_CENTRES
+from pointcoord.effects.jerk import JERK
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.motion_ratio import MOTION_RATIO
@@ -52,6 +53,7 @@ EFFECTS: Mapping[str, Effect] = {
     for effect in (
         VELOCITY,
         ACCELERATION,
+        JERK,
         KNUCKLE_RATES,
         *_ANGLES_AND_DIMENSIONS,
         *(gradients(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),

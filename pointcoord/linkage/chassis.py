@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from math import comb, factorial
 from typing import TypeVar
 
 import numpy as np
@@ -32,9 +33,7 @@ V = TypeVar("V", Array, Enclosed)
 
 LARGEST = 1e300  # mm and s: sums with an origin and of some inputs stay finite
 FASTEST = 1e140  # rad and s: squares of rates, times lengths, stay finite
-FACTORIALS = np.array([1.0, 1.0, 2.0])
-# Which derivatives of a factor the product rule takes: (u v)'' = u v'' + u' v' + u' v' + u'' v.
-LEIBNIZ = ((0,), (0, 1), (0, 1, 1, 2))
+KINDS = ("values", "rates", "accelerations")
 # A turn leaves no component of a vector larger than its length, which is this many times its largest one.
 SPREAD = 3.0**0.5
 
@@ -106,14 +105,16 @@ class ChassisMotion:
         """
         largest, unit = (FASTEST, "rad") if name in self.centres else (LARGEST, "mm")
         with np.errstate(over="ignore", invalid="ignore"):
-            series = self.functions[name].series(instants, derivatives) * FACTORIALS[: derivatives + 1]
+            factors = [factorial(order) for order in range(derivatives + 1)]
+            series = self.functions[name].series(instants, derivatives) * factors
         if not (np.abs(series) < largest).all():
-            place, order = np.argwhere(~(np.abs(series) < largest))[0]
-            what = ("values", "rates", "accelerations")[order]
+            place, order = map(int, np.argwhere(~(np.abs(series) < largest))[0])
+            what = KINDS[order] if order < len(KINDS) else f"derivatives of order {order}"
+            per = "/s" * min(order, 1) + f"^{order}" * (order > 1)
             raise InputOutOfRange(
                 name,
                 float(series[place, order]),
-                f"{what} below {largest:g} {unit}{('', '/s', '/s^2')[order]} in size",
+                f"{what} below {largest:g} {unit}{per} in size",
                 float(instants[place]),
             )
         return np.moveaxis(series, -1, 0)
@@ -146,14 +147,15 @@ class ChassisMotion:
                 places = self.turned_by(law, [{"": places}])[0][""]
         return places
 
-    def enclosed(self, laws: Mapping[str, Sequence[Enclosed]], origin: Array) -> list[Enclosed]:
-        """Exact displacement with an origin added, and its two time derivatives, each (N, 3), mm and s.
+    def enclosed(
+        self, laws: Mapping[str, Sequence[Enclosed]], origin: Array, derivatives: int
+    ) -> list[Enclosed]:
+        """Exact displacement with an origin added, and its time derivatives, each (N, 3), mm and s.
 
         Args:
-            laws: by input, where its value, rate and acceleration exactly are, each (N,).
+            laws: by input, where its value and its time derivatives exactly are, each (N,).
         """
-        still = np.zeros(3)
-        sums = [Enclosed.of(origin), Enclosed.of(still), Enclosed.of(still)]
+        sums = [Enclosed.of(origin), *(Enclosed.of(np.zeros(3)) for _ in range(derivatives))]
         for name, law in laws.items():
             if name in self.directions and name not in self.centres:
                 along = self._along(name)
@@ -211,22 +213,29 @@ def _turned(
         arm = list(jet)
         arm[0] = place - about
         parts = [axes(v) for v in arm]
-        for d, (total, orders) in enumerate(zip(jet, LEIBNIZ, strict=False)):
-            for order in orders:
-                (sine, versine), (one, other) = slopes[order], parts[d - order]
-                total = total + one * sine + other * versine
+        for d, total in enumerate(jet):
+            # The product rule: (u v)'' = u v'' + u' v' + u' v' + u'' v.
+            for i in range(d + 1):
+                (sine, versine), (one, other) = slopes[i], parts[d - i]
+                for _ in range(comb(d, i)):
+                    total = total + one * sine + other * versine
             found[d][point] = total
     return found
 
 
 def _slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tuple[V, V]]:
-    """Sine and versine of an angle, and their time derivatives, from its own."""
+    """Sine and versine of an angle, and their time derivatives, from its own.
+
+    Both change with the angle: sin' = cos angle', (1 - cos)' = sin angle', and cos' = -(1 - cos)'.
+    """
     found = [(sine, versine)]
-    if len(rates) > 0:
-        found.append((cosine * rates[0], sine * rates[0]))
-    if len(rates) > 1:
-        square = rates[0] * rates[0]
-        found.append((cosine * rates[1] - sine * square, sine * rates[1] + cosine * square))
+    for d in range(1, len(rates) + 1):
+        along, across = cosine * rates[d - 1], sine * rates[d - 1]
+        for i in range(1, d):
+            for _ in range(comb(d - 1, i)):
+                along = along - found[i][1] * rates[d - 1 - i]
+                across = across + found[i][0] * rates[d - 1 - i]
+        found.append((along, across))
     return found
 
 

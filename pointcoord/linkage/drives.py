@@ -9,6 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,9 +57,9 @@ class Function:
         """By how much f changes at most where x does by `off`, at a value of f."""
         return np.broadcast_to(off, value.shape)
 
-    def enclosed(self, law: Sequence[Enclosed]) -> tuple[Enclosed, Enclosed, Enclosed]:
-        """Where f and its two time derivatives exactly are, from those of x."""
-        return law[0], law[1], law[2]
+    def enclosed(self, law: Sequence[Enclosed]) -> list[Enclosed]:
+        """Where f and its time derivatives exactly are, from those of x."""
+        return list(law)
 
     def input_of(self, value: Array) -> Array:
         """The input that gives a value of f."""
@@ -83,10 +84,9 @@ class Square(Function):
         """(2 x + off) off."""
         return np.asarray((2.0 * np.sqrt(np.abs(value)) + off) * off)
 
-    def enclosed(self, law: Sequence[Enclosed]) -> tuple[Enclosed, Enclosed, Enclosed]:
-        """x^2, 2 x x' and 2 (x'^2 + x x'')."""
-        x, rate, acceleration = law
-        return x * x, (x * rate).scaled(2.0), (rate * rate + x * acceleration).scaled(2.0)
+    def enclosed(self, law: Sequence[Enclosed]) -> list[Enclosed]:
+        """x^2, 2 x x', 2 x'^2 + 2 x x'' and so on."""
+        return [_leibniz(law, law, order) for order in range(len(law))]
 
     def input_of(self, value: Array) -> Array:
         return np.asarray(np.sqrt(np.maximum(value, 0.0)))
@@ -118,12 +118,16 @@ class Circle(Function):
             found.append(1.01 * first / (1.0 - half / (order + 2.0 - d)))
         return found
 
-    def enclosed(self, law: Sequence[Enclosed]) -> tuple[Enclosed, Enclosed, Enclosed]:
-        """f, f' x' and f' x'' + f'' x'^2."""
-        angle, rate, acceleration = law
+    def enclosed(self, law: Sequence[Enclosed]) -> list[Enclosed]:
+        """f, g x' and so on, g the slope of f, whose own slope is -f."""
+        angle, *rates = law
         cosine, sine = within_a_turn(angle).cosine_sine()
-        value, slope = (sine, cosine) if self.quarter else (cosine, -sine)
-        return value, slope * rate, slope * acceleration - value * rate * rate
+        values, slopes = ([sine], [cosine]) if self.quarter else ([cosine], [-sine])
+        for order in range(len(rates)):
+            value, slope = _leibniz(slopes, rates, order), -_leibniz(values, rates, order)
+            values.append(value)
+            slopes.append(slope)
+        return values
 
     def input_of(self, value: Array) -> Array:
         """The angle between 0 and pi or, from a sine, between -pi / 2 and pi / 2."""
@@ -133,6 +137,12 @@ class Circle(Function):
     def extremes(self, farthest: Array) -> tuple[Array, Array]:
         one = np.ones_like(farthest)
         return one, -one
+
+
+def _leibniz(one: Sequence[Enclosed], other: Sequence[Enclosed], order: int) -> Enclosed:
+    """A time derivative of a product, from those of its factors."""
+    first, *others = ((one[i] * other[order - i]).times(comb(order, i)) for i in range(order + 1))
+    return sum(others, first)
 
 
 def within_a_turn(angle: Enclosed) -> Enclosed:
@@ -238,20 +248,20 @@ class Drive(ABC):
         units = self.function.rounded + (0.0 if self.exact else 1.0)
         return coordinate * (rest / scale), _units(units) * np.abs(coordinate) + 1.01 * change
 
-    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> tuple[Enclosed, Enclosed, Enclosed]:
-        """Where the coordinate and its first and second derivative exactly are.
+    def enclosed(self, law: Sequence[Enclosed], drawing: Drawing) -> list[Enclosed]:
+        """Where the coordinate and its time derivatives exactly are.
 
         Args:
-            law: the input's value, rate and acceleration, each (N,), in its unit per s^d.
+            law: the input's value and its time derivatives, each (N,), in its unit per s^d.
         """
-        value, rate, bend = self.function.enclosed(law)
+        values = self.function.enclosed(law)
         scale, rest = self.scale(drawing)
         if self.exact:
-            return value.scaled(scale), rate.scaled(scale), bend.scaled(scale)
+            return [value.scaled(scale) for value in values]
         # What is left of s is of the order of u^2, and plain doubles round it once or twice.
         size = np.abs(scale)
         whole = Enclosed.of(scale, rest, 256 * UNIT_ROUNDOFF**2 * size, 2 * UNIT_ROUNDOFF * size)
-        return value * whole, rate * whole, bend * whole
+        return [value * whole for value in values]
 
     def input_value(self, coordinate: Array, drawing: Drawing) -> Array:
         """The input that gives a coordinate."""

@@ -88,7 +88,7 @@ class Evaluated:
             found.append(points)
         laws = {name: [Enclosed.of(rate[here]) for rate in law] for name, law in self.laws.items()}
         turned = chassis.turned_exactly(laws, found, unit)
-        added = chassis.enclosed(laws, mechanism.origin)
+        added = chassis.enclosed(laws, mechanism.origin, len(found) - 1)
         ones = [np.ones(count)] * len(found)
         return EnclosedPoses(mechanism, self.readout.axes, turned, found[0], added, ones)
 

@@ -352,11 +352,13 @@ class KinematicMap(ReadOnly):
         still, axes = ChassisMotion.of(self.mechanism, {}), self.scene.mechanism.axes
         return tuple(
             Readout(self.mechanism, Plan(tuple(e for e in asked if e.derivative <= d)), still, axes)
-            for d in range(3)
+            for d in range(len(STATES))
         )
 
 
-POINT_STATES = tuple(name for name, effect in EFFECTS.items() if effect.reports_states)
+POINT_STATES = tuple(
+    name for name, effect in EFFECTS.items() if effect.reports_states and effect.derivative < len(STATES)
+)
 """Effects that a map gives wherever it is told the rates."""
 
 
@@ -413,6 +415,9 @@ def kinematic_map(
     for effect in plan_effects(scene.effects).computed:
         if effect.way:
             raise MapError("effects", f"has {effect.name!r}", "effects without derivatives by an input")
+        if effect.derivative >= len(STATES):
+            allowed = "effects of rates and accelerations; a motion by the method 'map' gives higher ones"
+            raise MapError("effects", f"has {effect.name!r}", allowed)
     closed = close_drawing(mechanism)
     require_the_drawn_car(scene, closing(mechanism, closed.y))
     cover = flood_from_drawing(domain, domain.order_for(tolerance), Limits(tolerance), closed, MOST)

@@ -117,6 +117,12 @@ class Enclosed:
         change += self.high * other.change
         return Enclosed(high, low, radius, change, reach)
 
+    def times(self, count: int) -> Enclosed:
+        """A whole multiple."""
+        if count & (count - 1):
+            return self * Enclosed.of(float(count))
+        return self.scaled(float(count))
+
     def scaled(self, powers_of_two: ArrayLike) -> Enclosed:
         """Times powers of two, which rounds nothing but what falls below the normal numbers."""
         factor = np.asarray(powers_of_two, dtype=float)

@@ -2,8 +2,8 @@ r"""Powers of several variables at many places, and their time derivatives along
 
 The powers of a total degree are those of the degree below times one variable each: s_1 times all of them, s_2
 times those without s_1, and so on, the order of `itertools.combinations_with_replacement`. With batch last
-every such product is one call on contiguous numbers, and its rates follow Leibniz' rule,
-(s m)' = s' m + s m' and (s m)'' = s'' m + 2 s' m' + s m''.
+every such product is one call on contiguous numbers, and its derivatives follow Leibniz' rule,
+(s m)' = s m' + s' m, (s m)'' = s m'' + 2 s' m' + s'' m and so on.
 """
 
 from __future__ import annotations
@@ -64,16 +64,14 @@ def monomials(states: Sequence[Array], order: int, room: Array | None = None) ->
     found[0][0] = 1.0
     for rates in found[1:]:
         rates[0] = 0.0
-    twice = 2.0 * states[1] if len(states) > 2 else states[0]
+    # By derivative d those of a variable times their part in Leibniz' rule.
+    parts = [
+        [comb(d, k) * states[k] if 0 < k < d else states[k] for k in range(d + 1)] for d in range(len(states))
+    ]
     for step in steps(inputs, order):
         here, before, i = slice(step.low, step.high), slice(step.first, step.last), step.variable
-        np.multiply(states[0][i], found[0][before], out=found[0][here])
-        if len(states) > 1:
-            product = spare[here]
-            np.multiply(states[0][i], found[1][before], out=found[1][here])
-            found[1][here] += np.multiply(states[1][i], found[0][before], out=product)
-            if len(states) > 2:
-                np.multiply(states[0][i], found[2][before], out=found[2][here])
-                found[2][here] += np.multiply(twice[i], found[1][before], out=product)
-                found[2][here] += np.multiply(states[2][i], found[0][before], out=product)
+        for d, (value, *rates) in enumerate(parts):
+            np.multiply(value[i], found[d][before], out=found[d][here])
+            for k, rate in enumerate(rates, 1):
+                found[d][here] += np.multiply(rate[i], found[d - k][before], out=spare[here])
     return found

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Places = Mapping[State, Array]
 
-# Of instants in any order, how many are computed before they are put where they belong: 13 MB of them.
-ORDERED = 2**14
+# Of instants in any order, how many are computed before they are put where they belong: 9 MB of them.
+ORDERED = 2**13
 # Designs whose carried points are made at a time: at a hundred instants what lies between stays in a
 # second-level cache.
 CARRIED = 32

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
+from pointcoord.effects.conventions import ConventionName
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
@@ -464,12 +465,14 @@ class Scene(Part):
     """A checked scene; read one with `Scene.load` or make one with `Scene.from_mapping`.
 
     `points` names the points that are reported, all of them if it is not given; what neither they nor the
-    effects hang on is not solved for.
+    effects hang on is not solved for. `convention` says whose numbers are meant where tables, pictures and
+    files of results are asked for one by its name; what is solved and compared keeps one meaning.
     """
 
     title: Text = ""
     effects: Annotated[tuple[Text, ...], AS_LIST] = ()
     tolerance: Positive = 1e-9
+    convention: ConventionName = "iso"
     mechanism: MechanismPart
     inputs: dict[str, InputPart]
     time: TimePart

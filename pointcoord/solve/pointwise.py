@@ -22,6 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import comb, factorial
 from typing import Protocol
 
 import numpy as np
@@ -121,7 +122,7 @@ def solve_instants(
     Args:
         pose: assembled at the first instant.
         times: increasing instants, shape (N,), s.
-        derivative: highest time derivative to solve for, 0 to 2.
+        derivative: highest time derivative to solve for.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
         chord: whether a factorisation is kept for as many instants as it serves.
     Returns:
@@ -337,9 +338,14 @@ def with_rates(
         # Newton's factors are of the place before its last step, which may be farther off than the bound.
         factors = factorise(system.jacobian(y[some]))
         states[1][some] = implicit_rate(system, factors, y[some], known[some, 1], 0.0)
-        if derivative >= 2:
-            term = square_term(system, states[1][some])
-            states[2][some] = implicit_rate(system, factors, y[some], 2.0 * known[some, 2], term)
+        for d in range(2, derivative + 1):
+            if d == 2:
+                term = square_term(system, states[1][some])
+            else:
+                # sum_{0<i<d} C(d, i) B(z_i, z_{d-i})
+                mixed = (comb(d, i) * system.polar(states[i][some], states[d - i][some]) for i in range(1, d))
+                term = np.asarray(sum(mixed))
+            states[d][some] = implicit_rate(system, factors, y[some], factorial(d) * known[some, d], term)
     if derivative:
         work = work + Work(factorisations=len(times))
     rest = np.zeros(len(times)) if left is None else left

@@ -17,24 +17,27 @@ from absolute.mechanism import Mechanism
 from absolute.newton import Configurations, newton
 
 BODY_ORDERS = ("angular_velocity", "angular_acceleration")
-# Polynomials with exact coefficients: value, rate and acceleration are exact in few digits.
-LAWS = {"turn": (0.25, 2.0, -1.5), "steer": (4.0, -8.0, 2.5), "roll": (0.25, -1.25, 0.5)} | {
-    "pitch": (-0.125, 0.75, 2.0)
+# Polynomials with exact coefficients: value, rate, acceleration and jerk are exact in few digits.
+LAWS = {
+    "turn": (0.25, 2.0, -1.5, 0.5),
+    "steer": (4.0, -8.0, 2.5, 4.0),
+    "roll": (0.25, -1.25, 0.5, -2.0),
+    "pitch": (-0.125, 0.75, 2.0, 1.0),
 }
-SHIFT = (3.0, -8.0, 16.0)
+SHIFT = (3.0, -8.0, 16.0, -32.0)
 HINGED = ("Andrews' squeezing mechanism", "Bricard's six-bar", "Coupled four-bars")
 TIMES = (0.0, 0.25, 0.75)
 
 
 def law(coefficients: tuple[float, ...], t: Any) -> Any:
-    c0, c1, c2 = coefficients
-    return c0 + c1 * t + c2 * t * t
+    c0, c1, c2, c3 = coefficients
+    return c0 + t * (c1 + t * (c2 + t * c3))
 
 
 def series(coefficients: tuple[float, ...]) -> Array:
-    """Value, rate and acceleration at all times."""
-    _, c1, c2 = coefficients
-    return np.array([[law(coefficients, t), c1 + 2 * c2 * t, 2 * c2] for t in TIMES])
+    """Value, rate, acceleration and jerk at all times."""
+    law = np.polynomial.Polynomial(coefficients)
+    return np.stack([law.deriv(order)(np.array(TIMES)) for order in range(4)], axis=-1)
 
 
 def one_arm(order: tuple[str, ...] = ("roll", "pitch")) -> Motion:
@@ -96,10 +99,10 @@ def test_instants_do_not_depend_on_each_other_nor_positions_on_rates(motion: Mot
 
 
 def test_a_displaced_chassis_displaces_every_point(motion: Motion) -> None:
-    count = len(next(iter(motion.inputs.values())))
-    chassis = np.random.default_rng(1).normal(size=(count, 3, 3)) * 50.0
+    count, orders = next(iter(motion.inputs.values())).shape
+    chassis = np.random.default_rng(1).normal(size=(count, orders, 3)) * 50.0
     still, heaving = motion._replace(chassis=None).solve(), motion._replace(chassis=chassis).solve()
-    for order in range(3):
+    for order in range(orders):
         for name, found in states(heaving, order).items():
             wanted = states(still, order)[name] + chassis[:, order]
             assert np.abs(found - wanted).max() <= 4 * EPS * max(1000.0, np.abs(wanted).max())
@@ -164,7 +167,7 @@ def test_a_car_that_rolls_and_pitches_moves_as_written_out(order: tuple[str, ...
                     values = {of: law(coefficients, s) for of, coefficients in LAWS.items()}
                     return place(name, values, order)[i] + (law(SHIFT, s) if i == 2 else 0)
 
-                for number in range(3):
+                for number in range(4):
                     exact = [diff(lambda s, i=i: at(s, i), t, number) for i in range(3)]
                     allowed = rounding(solution, number)[k, 0]
                     assert error(states(solution, number)[name][k], exact) <= allowed, (name, number)

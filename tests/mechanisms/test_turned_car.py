@@ -32,7 +32,7 @@ LAWS = {
     "roll": {"sine": {"amplitude": 0.2, "angular_frequency": 3.0, "phase": 0.3, "offset": 7.0}},
     "pitch": {"polynomial": [0.02, -0.3, 0.25]},
 }
-STATES = ("position", "velocity", "acceleration", "angular_velocity", "angular_acceleration")
+STATES = ("position", "velocity", "acceleration", "jerk", "angular_velocity", "angular_acceleration")
 
 
 @cache
@@ -46,14 +46,15 @@ def turning(name: str, far: bool = False, order: tuple[str, ...] = ("heave", "ro
     part["points"] = {n: (np.array(p) + shift).tolist() for n, p in part["points"].items()}
     part.pop("driven", None)
     content["mechanism"] = part | tables
+    content["effects"] = [*content["effects"], "jerk"]
     content["inputs"] |= {motion: LAWS[motion] for motion in reversed(order)}
     content["time"] = {"start": 0.0, "stop": 1.0, "samples": 9}
     return Scene.from_mapping(content)
 
 
 def told(scene: Scene, instant: float) -> dict[str, tuple[Fraction, ...]]:
-    """Value, rate and acceleration of every input as its law means them."""
-    parts = {name: law.enclosed(np.array([instant])) for name, law in scene.functions.items()}
+    """Value, rate, acceleration and jerk of every input as its law means them."""
+    parts = {name: law.enclosed(np.array([instant]), 3) for name, law in scene.functions.items()}
     return {name: tuple(Fraction(p.high[0]) + Fraction(p.low[0]) for p in law) for name, law in parts.items()}
 
 
@@ -152,6 +153,7 @@ def test_turns_follow_each_other_in_the_order_of_the_file() -> None:
 
 def test_maps_and_unrelated_poses_turn_the_car_as_its_motion_does() -> None:
     scene = turning("double-wishbone")
+    scene = scene.model_copy(update={"effects": tuple(e for e in scene.effects if e != "jerk")})
     motion = simulate(scene)
     proof = motion.proof(rates=True)
     laws = {name: law.series(motion.times, 2) * (1.0, 1.0, 2.0) for name, law in scene.functions.items()}

@@ -19,7 +19,7 @@ class Car:
     """A car at an instant; mm, s, rad.
 
     Attributes:
-        points: by name, position, velocity and acceleration in the chassis' frame.
+        points: by name, position, velocity, acceleration and jerk in the chassis' frame.
         added: what the chassis' motion and the user's origin add to each of these.
         turn: angular velocity and acceleration of every body.
         bodies: their names.
@@ -339,6 +339,7 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
     "velocity": _of_points("velocity", 1),
     "acceleration": _of_points("acceleration", 2),
+    "jerk": _of_points("jerk", 3),
     "knuckle_rates": _rates,
     "wheel_angles": _wheel_angles,
     "camber": _camber,

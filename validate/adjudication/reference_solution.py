@@ -20,7 +20,7 @@ from pointcoord import Scene
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers, is_force
-from validate.formulations.input_rates import rates
+from validate.formulations.input_rates import laws_of
 from validate.formulations.protocol import Accuracy, Numbers, Solution
 from validate.reference import Design, Instant, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS
@@ -38,8 +38,8 @@ Inputs = Mapping[str, Sequence[float]]
 
 
 def inputs_at(scene: Scene, time: float) -> dict[str, tuple[float, ...]]:
-    """Every input's value, rate and acceleration at an instant."""
-    return {name: tuple(rates(part, np.array([time]))[0].tolist()) for name, part in scene.inputs.items()}
+    """Every input's value, rate and acceleration at an instant; and jerk, if the scene asks for jerks."""
+    return {name: tuple(law[0].tolist()) for name, law in laws_of(scene, np.array([time])).items()}
 
 
 def design_of(scene: Scene) -> Design:
@@ -58,7 +58,7 @@ def reference_instant(
     """The reference for a scene's car at given inputs, reached from the drawing.
 
     Args:
-        inputs: value, rate and acceleration of each.
+        inputs: value, rate and acceleration of each, and jerk, if jerks are wanted.
         exact_sides: whether the drawing is meant as it is, however near it is to another assembly.
     Raises:
         NoReferenceError: there is no pose, or none can be proven.
@@ -115,6 +115,7 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
         "velocity": _rounded([i.velocity for i in instants], first.velocity),
         "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
+        "jerk": _rounded([i.jerk for i in instants], first.jerk),
         "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
     }
@@ -143,12 +144,14 @@ def scales(numbers: Numbers) -> dict[str, float]:
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
     push = hardest + fastest * (fastest / size)
+    jolt = _largest(numbers["jerk"]) + push * (fastest / size) if numbers.get("jerk") else 0.0
     lengths = {"mm": size, "mm/rad": size, "rad/mm": 1.0 / size}
     return {
         **{q.name: lengths.get(q.unit, 1.0) for q in QUANTITIES.values()},
         "position": float(np.abs(corners).max()),
         "velocity": fastest,
         "acceleration": push,
+        "jerk": jolt,
         "angular_velocity": fastest / size,
         "angular_acceleration": push / size,
     }

@@ -23,7 +23,12 @@ from validate.output.picture import svg
 from validate.plain_text import shown
 
 PICTURES = (".svg",)
-SOLVED = ("positions", "positions and velocities", "positions, velocities and accelerations")
+# Positions, velocities and so on, by time derivative.
+STATES = tuple(
+    f"{effect.quantities[0].words}s".replace("ys", "ies")
+    for effect in (*ALWAYS, *EFFECTS.values())
+    if effect.reports_states
+)
 
 PLAN = """\
 Say what a scene makes the program compute and what it leaves out; then, of its drawing, the
@@ -107,17 +112,23 @@ def _mechanism(part: MechanismPart) -> list[str]:
     return lines
 
 
+def _up_to(order: int) -> str:
+    """Positions and their time derivatives up to an order, in words."""
+    *first, last = STATES[: order + 1]
+    return " and ".join(filter(None, (", ".join(first), last)))
+
+
 def _work(plan: Plan, topology: Topology) -> list[str]:
     """To which time derivative points are solved and evaluated for that."""
     derivatives = plan.derivatives(topology)
     groups = [
-        (SOLVED[order], [name for name, highest in derivatives.items() if highest == order])
+        (_up_to(order), [name for name, highest in derivatives.items() if highest == order])
         for order in sorted(set(derivatives.values()), reverse=True)
     ]
     each = (f"{words} of {', '.join(names)}" for words, names in groups)
     every = len(derivatives) == len(topology.points) and len(groups) == 1
     evaluated = f"{groups[0][0]} of every point" if every else "; ".join(each)
-    return [f"solved for: {SOLVED[plan.derivative]}", f"evaluated: {evaluated}"]
+    return [f"solved for: {_up_to(plan.derivative)}", f"evaluated: {evaluated}"]
 
 
 def _effort(scene: Scene, plan: Plan) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, Sensitivity, sensitivity, sweep
 from pointcoord.effects.registry import RANKED_FIRST, number_called
-from validate.commands.table import asking_for, chosen_numbers
+from validate.commands.table import meant_numbers
 from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
+from validate.curves.numbers import asking_for
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
@@ -59,7 +60,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if ending in PICTURES:
         needed("sensitivity", "matplotlib", "plot")
     scene, name = load_scene(options.scene), name_of(options.scene)
-    chosen = _chosen(options.number, scene, name)
+    signs = meant_numbers(options.number, scene, name, RANKED_FIRST) or meant_numbers(None, scene, name, None)
+    chosen = [*signs]
     time = {
         "start": scene.time.start,
         "stop": scene.time.stop,
@@ -73,21 +75,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.warn(f"{name}: {coordinate} has no derivative: {why}")
     order = np.argsort(-np.abs(found.largest(chosen[0])), kind="stable")
     if ending in PICTURES:
-        console.put(target, _picture(found, chosen, order, name, ending), "the picture")
+        console.put(target, _picture(found, signs, order, name, ending), "the picture")
     else:
         linear = {n: found.spread(n, options.tolerance) for n in chosen}
         spreads = {n: (deviation, random[n], worst) for n, (deviation, worst) in linear.items()}
-        text = _text(found, chosen, order, ending, options.tolerance, spreads)
+        text = _text(found, signs, order, ending, options.tolerance, spreads)
         console.put(target, text, "the table")
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
-
-
-def _chosen(named: Sequence[str] | None, scene: Scene, name: str) -> list[str]:
-    """The numbers that are named, or those that are read first of what has a value in each design."""
-    known = chosen_numbers(named, True, scene, name)
-    if named:
-        return known
-    return [one for own in RANKED_FIRST for one in known if one.rpartition(".")[2] == own] or known
 
 
 def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -> dict[str, float]:
@@ -99,26 +93,28 @@ def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -
     return {n: float(np.nanstd(arrays[n][designs.solved], axis=0).max()) for n in found.derivatives}
 
 
-def _shown(number: str) -> tuple[str, float]:
-    """The unit of a number for people, and how many of them its own is."""
+def _shown(number: str, sign: int) -> tuple[str, str, float]:
+    """A number for people, with a minus where it is to count the other way: its name, its unit, and how many
+    of them its own is."""
     called = number_called(number)
     assert called is not None  # only such are chosen
     unit = called.quantity.unit
-    return unit.replace("rad", "deg", 1), float(np.degrees(1.0)) if unit.startswith("rad") else 1.0
+    factor = sign * (float(np.degrees(1.0)) if unit.startswith("rad") else 1.0)
+    return f"{'-' if sign < 0 else ''}{number}", unit.replace("rad", "deg", 1), factor
 
 
 def _text(
     found: Sensitivity,
-    chosen: Sequence[str],
+    signs: Mapping[str, int],
     order: NDArray[np.intp],
     ending: str,
     tolerance: float,
     spreads: Mapping[str, tuple[float, float, float]],
 ) -> str:
     """A row for each coordinate, and what a tolerance makes."""
-    units = {number: _shown(number) for number in chosen}
-    head = ("hardpoint", *(f"{n} [{unit}/mm]" for n, (unit, _) in units.items()))
-    columns = [found.largest(n)[order] * factor for n, (_, factor) in units.items()]
+    shown_as = {number: _shown(number, sign) for number, sign in signs.items()}
+    head = ("hardpoint", *(f"{called} [{unit}/mm]" for called, unit, _ in shown_as.values()))
+    columns = [found.largest(n)[order] * factor for n, (*_, factor) in shown_as.items()]
     names = [found.coordinates[place] for place in order]
     if ending == ".csv":
         return csv_of(head, zip(names, *(column.tolist() for column in columns), strict=True))
@@ -128,10 +124,10 @@ def _text(
         (f"by {tolerance:g} mm of each", "standard deviation", f"of {DESIGNS} designs", "worst case"),
         tuple(
             (
-                f"{n} [{unit}]",
-                *(f"{factor * spread:.4f}" for spread in spreads[n]),
+                f"{called} [{unit}]",
+                *(f"{abs(factor) * spread:.4f}" for spread in spreads[n]),
             )
-            for n, (unit, factor) in units.items()
+            for n, (called, unit, factor) in shown_as.items()
         ),
     )
     table = Table(head, tuple(rows))
@@ -142,7 +138,7 @@ def _text(
 
 
 def _picture(
-    found: Sensitivity, chosen: Sequence[str], order: NDArray[np.intp], name: str, ending: str
+    found: Sensitivity, signs: Mapping[str, int], order: NDArray[np.intp], name: str, ending: str
 ) -> bytes:
     """A panel of bars for each number, a bar for each of the first coordinates."""
     # Imported here: matplotlib takes a second.
@@ -153,15 +149,15 @@ def _picture(
 
     first = order[:ROWS][::-1]
     with rc_context(SETTINGS):
-        page = Figure(figsize=(2.2 * len(chosen) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
+        page = Figure(figsize=(2.2 * len(signs) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
         page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
-        panels = page.subplots(1, len(chosen), sharey=True, squeeze=False)[0]
-        for axes, number in zip(panels, chosen, strict=True):
-            unit, factor = _shown(number)
+        panels = page.subplots(1, len(signs), sharey=True, squeeze=False)[0]
+        for axes, (number, sign) in zip(panels, signs.items(), strict=True):
+            called, unit, factor = _shown(number, sign)
             axes.barh(
                 [found.coordinates[i] for i in first], factor * found.largest(number)[first], color=BLUE
             )
-            axes.set_xlabel(f"{number}, {unit}/mm")
+            axes.set_xlabel(f"{called}, {unit}/mm")
             plain(axes)
         return drawn(page, ending.removeprefix("."))
 

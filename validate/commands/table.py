@@ -27,7 +27,7 @@ from validate.commands.usage import (
     told_as,
 )
 from validate.commands.values import values_of
-from validate.curves.numbers import Number, numbers_of
+from validate.curves.numbers import Number, asking_for, numbers_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
@@ -64,7 +64,7 @@ OPTIONS = f"""\
 --grid INPUT=VALUES  a row for every combination of values instead, in mm or rad; may be given again
 --number NAME  a column, by its name; may be given again
 --all  every number of the car that there is
---convention NAME  what names mean: {", ".join(CONVENTIONS)}; iso if not given
+--convention NAME  what names mean: {", ".join(CONVENTIONS)}; the scene's if not given, iso if it has none
 {QUIET}"""
 
 
@@ -74,7 +74,13 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if options.grid and given(options, "--rows"):
         raise UsageError("--rows is about a way of the inputs; leave it out with --grid")
     scene, name = load_scene(options.scene), name_of(options.scene)
-    signs = _chosen(options, scene, name)
+    if options.convention:
+        if options.convention not in CONVENTIONS:
+            raise UnknownName("convention", options.convention, CONVENTIONS)
+        if options.all and CONVENTIONS[options.convention].means:
+            raise UsageError("--all is every number by our names; leave --convention out with it")
+        scene = scene.model_copy(update={"convention": options.convention})
+    signs = meant_numbers(options.number, scene, name, READ_FIRST if not options.all else None)
     scene = asking_for(scene, [*signs])
     every = numbers_of(scene)
     # A rod may be called as a number of the car is, and has a force: the first by a name is the car's.
@@ -97,30 +103,30 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return solved(scene, target, options, console, write)
 
 
-def _chosen(options: argparse.Namespace, scene: Scene, name: str) -> dict[str, int]:
-    """The columns beside the inputs: our numbers by the convention, with their signs."""
-    if options.convention not in CONVENTIONS:
-        raise UnknownName("convention", options.convention, CONVENTIONS)
-    convention = CONVENTIONS[options.convention]
-    if options.number:
-        counted = dict(map(convention.number, options.number))
-        chosen = chosen_numbers([*counted], False, scene, name)
-        return {number: counted.get(number, counted.get(number.rpartition(".")[2], 1)) for number in chosen}
-    if options.all and convention.means:
-        raise UsageError("--all is every number by our names; leave --convention out with it")
-    first = chosen_numbers(None, options.all, scene, name)
-    there = set(chosen_numbers(None, True, scene, name))
-    return {number: sign for number, sign in map(convention.number, first) if number in there}
-
-
-def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name: str) -> list[str]:
-    """Numbers of the car by their names; those that are read first, or all, where none is named.
+def meant_numbers(
+    named: Sequence[str] | None, scene: Scene, name: str, first: Sequence[str] | None
+) -> dict[str, int]:
+    """Our numbers that are meant by the scene's convention, and -1 of those that it counts the other way.
 
     Args:
-        name: of the scene, for messages.
+        named: names of these. name: of the scene, for messages.
+        first: without names, those that are taken of what the car has; of None every number by our names.
     Raises:
         UsageError: the car has no such number, or none at all.
     """
+    convention, known = CONVENTIONS[scene.convention], _known_numbers(scene, name)
+    if named:
+        counted = dict(map(convention.number, named))
+        chosen = _chosen_of([*counted], known, scene, name)
+        return {number: counted.get(number, counted.get(number.rpartition(".")[2], 1)) for number in chosen}
+    if first is None:
+        return dict.fromkeys(known, 1)
+    usual = [number for own in first for number in known if number.rpartition(".")[2] == own]
+    return {number: sign for number, sign in map(convention.number, usual) if number in known}
+
+
+def _known_numbers(scene: Scene, name: str) -> list[str]:
+    """The numbers that the car has."""
     part = scene.mechanism
     had = [number for effect in part.effects for number in EFFECTS[effect].names(part.topology)]
     known = [number for number in dict.fromkeys(had) if number_called(number)]
@@ -129,7 +135,13 @@ def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name:
             f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
             "pointcoord simulate writes what it gives"
         )
-    asked = [one for number in named or () for one in _of_each_part(number, known) or [number]]
+    return known
+
+
+def _chosen_of(named: Sequence[str], known: Sequence[str], scene: Scene, name: str) -> list[str]:
+    """Numbers by names, of each wheel where no part is named."""
+    part = scene.mechanism
+    asked = [one for number in named for one in _of_each_part(number, known) or [number]]
     for number in asked:
         if number not in known:
             own = number.rpartition(".")[2]
@@ -140,23 +152,12 @@ def chosen_numbers(named: Sequence[str] | None, every: bool, scene: Scene, name:
                 else f"{name}: no number of a car is called {shown(number)}"
                 f"{meant(number, known)}; allowed: {some_of(known, NAMED)} (--all shows every one)"
             )
-    if asked:
-        return list(dict.fromkeys(asked))
-    first = [number for own in READ_FIRST for number in known if number.rpartition(".")[2] == own]
-    return known if every else first
+    return list(dict.fromkeys(asked))
 
 
 def _of_each_part(number: str, known: Sequence[str]) -> list[str]:
     """A number that the wheels have by a name without their part's; none of one that has it whole."""
     return [] if number in known else [one for one in known if one.rpartition(".")[2] == number]
-
-
-def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
-    """The scene with the effects that give some numbers beside its own."""
-    topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
-    givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
-    effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in numbers))))
-    return scene.model_copy(update={"effects": effects})
 
 
 def _on_grid(
@@ -265,7 +266,6 @@ COMMANDS = {
         {
             "--number": {"action": "append"},
             "--grid": {"action": "append"},
-            "--convention": {"default": "iso"},
         },
     )
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Protocol
 
@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, NotComputed, Scene
+from pointcoord.effects.conventions import Convention
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
-from pointcoord.wording import meant
+from pointcoord.wording import meant as hint
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.plain_text import gathered, shown
@@ -101,6 +102,34 @@ def numbers_of(scene: Scene) -> tuple[Number, ...]:
         if number.path not in found or found[number.path].missing:
             found[number.path] = number
     return (time, *travel, *_inputs(scene), *found.values())
+
+
+def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
+    """The scene with the effects that give some numbers beside its own."""
+    topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
+    givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
+    effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in numbers))))
+    return scene.model_copy(update={"effects": effects})
+
+
+def meant(numbers: Sequence[Number], convention: Convention) -> tuple[Number, ...]:
+    """The same under the names that a convention gives them, with the signs that they have there."""
+    ours = {number.path[-1]: number for number in numbers if number.of_the_car}
+    return tuple(_meant(number, ours, convention) for number in numbers)
+
+
+def _meant(number: Number, ours: Mapping[str, Number], convention: Convention) -> Number:
+    called, sign = convention.number(number.path[-1])
+    same = called == number.path[-1] and sign > 0
+    if same or called not in ours or len(number.path) > 2:
+        return number
+    own = ours[called]
+    if sign > 0:
+        return replace(own, path=number.path)
+    words, opposite = f"minus {own.words}", f"not {own.sign}" if own.sign else ""
+    return replace(
+        own, path=number.path, words=words, sign=opposite, read=lambda *of: np.negative(own.read(*of))
+    )
 
 
 def _travel(scene: Scene) -> Number:
@@ -203,7 +232,7 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     if not fitting:
         known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
         raise UsageError(
-            f"{shown(words)!r} is no number of this scene{meant(words, known)}; {_there(numbers)}"
+            f"{shown(words)!r} is no number of this scene{hint(words, known)}; {_there(numbers)}"
         )
     if len({n.path[:2] for n in fitting}) > 1:
         some = ", ".join(dict.fromkeys(".".join(n.path[:2]) for n in fitting))

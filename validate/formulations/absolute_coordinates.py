@@ -81,7 +81,7 @@ def driving(model: absolute.Model, part: MechanismPart, laws: Mapping[str, Array
 
 
 def chassis_motion(part: MechanismPart, inputs: Mapping[str, Array]) -> Array | None:
-    """What the inputs that displace the chassis come to, (N, 3, 3), mm and s; None if there are none."""
+    """What the inputs that displace the chassis come to, (N, orders, 3), mm and s; None if there are none."""
     up, right = np.array(part.up), np.array(part.right)
     forward = np.cross(up, right)
     directions = {

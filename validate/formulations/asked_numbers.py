@@ -33,4 +33,4 @@ def is_force(quantity: str) -> bool:
 
 def per_second(quantity: str) -> int:
     """How many times a quantity is divided by a time: 1 of a rate, 2 of an acceleration, by its unit."""
-    return {"s": 1, "s^2": 2}.get(QUANTITIES[quantity].unit.partition("/")[2], 0)
+    return {"s": 1, "s^2": 2, "s^3": 3}.get(QUANTITIES[quantity].unit.partition("/")[2], 0)

@@ -1,4 +1,4 @@
-"""Inputs of a scene as value, rate and acceleration, evaluated apart from pointcoord's power series.
+"""Inputs of a scene as value, rate, acceleration and so on, evaluated apart from pointcoord's power series.
 
 Polynomials, sines and sums are rounded once: from a number of a longer format, or from fractions of many
 digits where that does not tell, for terms may cancel, and an angle may be many turns. A table means scipy's
@@ -16,7 +16,9 @@ from importlib.util import find_spec
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.plan import plan_effects
 from pointcoord.scene.input_part import InputPart, SinePart, TablePart
+from pointcoord.scene.scene_file import Scene
 from validate.extras import MissingPackage
 
 # It takes half as long to import as numpy, and few laws need it; but it is missed before a scene is solved.
@@ -35,10 +37,10 @@ SINE = 4.0
 
 @dataclass(frozen=True)
 class _Law:
-    """Value, rate and acceleration of a law, by derivative.
+    """A law and its time derivatives.
 
     Attributes:
-        found: in a longer format, (3, N). doubts: how far these may be off.
+        found: in a longer format, (derivatives + 1, N). doubts: how far these may be off.
         exact: one of them, by instant and derivative.
     """
 
@@ -47,36 +49,42 @@ class _Law:
     exact: Callable[[int, int], Fraction]
 
 
-def rates(part: InputPart, times: Array) -> Array:
-    """Value, first and second time derivative at instants, shape (N, 3); rad or mm per s^d.
+def laws_of(scene: Scene, times: Array) -> dict[str, Array]:
+    """Every input at instants, with two time derivatives, or as many as the scene's effects are made of."""
+    derivatives = max(2, plan_effects(scene.effects).derivative)
+    return {name: rates(part, times, derivatives) for name, part in scene.inputs.items()}
+
+
+def rates(part: InputPart, times: Array, derivatives: int = 2) -> Array:
+    """Value and time derivatives at instants, shape (N, derivatives + 1); rad or mm per s^d.
 
     What is too large for the arithmetic comes out infinite; whoever uses it must check.
     """
     instants = np.asarray(times, dtype=float)
     with np.errstate(all="ignore"):
         if part.constant is not None:
-            return np.outer(np.ones(len(instants)), [part.constant, 0.0, 0.0])
+            return np.outer(np.ones(len(instants)), [part.constant, *[0.0] * derivatives])
         if part.table is not None:
-            return _spline(part.table, instants)
-        return _rounded_once(_law(part, instants))
+            return _spline(part.table, instants, derivatives)
+        return _rounded_once(_law(part, instants, derivatives))
 
 
-def _law(part: InputPart, instants: Array) -> _Law:
+def _law(part: InputPart, instants: Array, derivatives: int) -> _Law:
     if part.sum is not None:
-        return _sum([_law(term, instants) for term in part.sum])
+        return _sum([_law(term, instants, derivatives) for term in part.sum])
     if part.sine is not None:
-        return _sine(part.sine, instants)
+        return _sine(part.sine, instants, derivatives)
     if part.table is not None:
-        return _as_computed(_spline(part.table, instants))
-    return _polynomial(part.polynomial or (part.constant or 0.0,), instants)
+        return _as_computed(_spline(part.table, instants, derivatives))
+    return _polynomial(part.polynomial or (part.constant or 0.0,), instants, derivatives)
 
 
-def _spline(table: TablePart, instants: Array) -> Array:
+def _spline(table: TablePart, instants: Array, derivatives: int) -> Array:
     # Imported here: it takes several times as long as numpy, and few scenes have a table.
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(table.times, table.values)
-    return np.stack([spline(instants), spline(instants, 1), spline(instants, 2)], axis=-1)
+    return np.stack([spline(instants, order) for order in range(derivatives + 1)], axis=-1)
 
 
 def _as_computed(numbers: Array) -> _Law:
@@ -91,16 +99,18 @@ def _sum(laws: Sequence[_Law]) -> _Law:
     return _Law(found, doubts, lambda i, d: sum((law.exact(i, d) for law in laws), Fraction(0)))
 
 
-def _sine(wave: SinePart, instants: Array) -> _Law:
+def _sine(wave: SinePart, instants: Array, derivatives: int) -> _Law:
     """Offset + amplitude sin(angle) and its rates."""
     amplitude, speed, t = (np.longdouble(x) for x in (wave.amplitude, wave.angular_frequency, instants))
     angle = speed * t + np.longdouble(wave.phase)
     # The product and the sum are rounded once each.
     doubt = LONG * (2.0 * np.abs(speed * t) + abs(wave.phase)) + SINE * LONG
     cosine, sine = np.cos(angle), np.sin(angle)
-    found = [wave.offset + amplitude * sine, amplitude * speed * cosine, -amplitude * speed * speed * sine]
-    # Three products at most, and a sum.
-    doubts = [np.abs(amplitude * speed**d) * (doubt + 4.0 * LONG) for d in range(3)]
+    quarters = (sine, cosine, -sine, -cosine)
+    found = [amplitude * speed**d * quarters[d % 4] for d in range(derivatives + 1)]
+    found[0] = wave.offset + found[0]
+    # A power, of at most so many products and more, two products and a sum.
+    doubts = [np.abs(amplitude * speed**d) * (doubt + (4.0 + 2.0 * d) * LONG) for d in range(derivatives + 1)]
     doubts[0] += LONG * (abs(wave.offset) + np.abs(amplitude))
     return _Law(np.stack(found), np.stack(doubts), lambda i, d: _exact_sine(wave, float(instants[i]), d))
 
@@ -114,15 +124,15 @@ def _exact_sine(wave: SinePart, t: float, d: int) -> Fraction:
     angle = speed * instant + phase
     with mpmath.workdps(DIGITS + len(str(int(abs(angle))))):
         cosine, sine = mpmath.cos_sin(mpmath.mpf(angle.numerator) / angle.denominator)
-        swing = Fraction(*mpmath.libmp.to_rational((sine, cosine, -sine)[d]._mpf_))
+        swing = Fraction(*mpmath.libmp.to_rational((sine, cosine, -sine, -cosine)[d % 4]._mpf_))
     return amplitude * speed**d * swing + (0 if d else offset)
 
 
-def _polynomial(coefficients: tuple[float, ...], instants: Array) -> _Law:
+def _polynomial(coefficients: tuple[float, ...], instants: Array, derivatives: int) -> _Law:
     """A polynomial and its rates by Horner's rule."""
     t, count = instants.astype(np.longdouble), len(coefficients)
     found, doubts = [], []
-    for d in range(3):
+    for d in range(derivatives + 1):
         total, size = np.zeros(t.shape, np.longdouble), np.zeros(t.shape, np.longdouble)
         for k in range(count - 1, d - 1, -1):
             term = np.longdouble(coefficients[k]) * math.perm(k, d)
@@ -149,7 +159,7 @@ def _exact_polynomial(coefficients: tuple[float, ...], t: float, d: int) -> Frac
 
 
 def _rounded_once(law: _Law) -> Array:
-    """A law's numbers as the doubles nearest to what they stand for, shape (N, 3).
+    """A law's numbers as the doubles nearest to what they stand for, shape (N, derivatives + 1).
 
     Where a number and what it may be off by could round to two doubles, fractions of many digits decide
     (Ziv, ACM Transactions on Mathematical Software 17, 1991).

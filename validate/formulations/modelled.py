@@ -13,7 +13,7 @@ from pointcoord.errors import SceneError
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
 from validate.formulations.asked_numbers import asked_numbers, per_second
-from validate.formulations.input_rates import rates
+from validate.formulations.input_rates import laws_of
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
 from validate.reference import NoReferenceError
@@ -44,7 +44,7 @@ class Problem:
     """A scene and its inputs.
 
     Attributes:
-        laws: value and two derivatives of every input, (N, 3), rad or mm, and in the unit of time.
+        laws: value and time derivatives of every input, (N, orders), rad or mm, and in the unit of time.
         unit: of time at each instant, (N,), s.
     """
 
@@ -55,10 +55,10 @@ class Problem:
     @classmethod
     def of(cls, scene: Scene) -> Problem:
         """The inputs per second; where all are so slow that squares of their rates are lost, per more."""
-        laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
+        laws = laws_of(scene, scene.instants)
         unit = _slow_unit(laws, len(scene.instants))
-        scale = np.stack([np.ones_like(unit), unit, unit * unit], axis=-1)
-        return cls(scene, {name: law * scale for name, law in laws.items()}, unit)
+        laws = {name: law * unit[:, None] ** np.arange(law.shape[-1]) for name, law in laws.items()}
+        return cls(scene, laws, unit)
 
     def solution(self, who: str, found: Found) -> Solution:
         """What the scene asks for, of all that was found.
@@ -157,7 +157,8 @@ def _slow_unit(laws: Mapping[str, Array], count: int) -> Array:
     """A power of two at each instant, (N,), s: 1 unless all inputs are slower than SLOW."""
     fastest = np.zeros(count)
     for law in laws.values():
-        fastest = np.maximum(fastest, np.maximum(np.abs(law[:, 1]), np.sqrt(np.abs(law[:, 2]))))
+        for order in range(1, law.shape[-1]):
+            fastest = np.maximum(fastest, np.abs(law[:, order]) ** (1.0 / order))
     slow = (fastest > 0.0) & (fastest < SLOW)
     exponent = np.minimum(-np.frexp(np.where(slow, fastest, 1.0))[1], LONGEST)
     return np.asarray(np.where(slow, np.ldexp(1.0, exponent), 1.0))

@@ -31,6 +31,7 @@ without turning; what the chassis adds to every point alike turns nothing):
     position                e
     velocity                e_1 = sqrt(3) e (W + V / L)
     acceleration            e_2 = sqrt(3) e (A + W^2 + B / L)
+    jerk                    e_3 = sqrt(3) e (|alpha'| + 3 A W + W^3 + J / L), J the largest jerk
     turning of a body       2 e_1 / h and 2 e_2 / h, h the least height of the triangle of its three points
     an angle                both ends of its line off by e, through the line's length
 
@@ -42,7 +43,7 @@ and each is rounded once where it is handed over, and once where the chassis' pa
 The derivatives are those of the pose itself. Within the reach of delta the Jacobian changes; with
 r = |sum_i |C'^-1 dC'_i||, the largest relative change (maximum norm), it may lose so much that a first order
 is too little: near a fold y ~ sqrt(d) and d ~ delta, where r = delta / (2 d), the derivatives of position,
-velocity and acceleration grow by (1 - 2 r) to the power -1/2, -3/2 and -5/2. By the mean value theorem these
+velocity and so on grow by (1 - 2 r) to the power -1/2, -3/2 and so on. By the mean value theorem these
 factors cover the rest. At r = 1/2 the pose may be beyond the fold, or another one (as in Kantorovich's
 condition for Newton's method): from LIMIT on the accuracy says nothing of that instant, and it is not tested.
 """
@@ -53,7 +54,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
-from math import sqrt
+from math import comb, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,7 +67,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.method import AUTO
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
-from validate.formulations.input_rates import rates
+from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import Accuracy, Numbers
 from validate.reference import Design
@@ -84,12 +85,11 @@ from validate.reference.in_doubles import (
     local_places,
     motion_of_a_miss,
     newton_step,
-    order_of,
     unknown_jets_of,
     values_of,
     with_slopes,
 )
-from validate.reference.jet import Jet
+from validate.reference.jet import Jet, part_of
 from validate.reference.kinematics import body_turns
 from validate.reference.vectors import Scalar, Vector, each
 
@@ -121,8 +121,7 @@ def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
     Raises:
         FormulationError: the scene cannot be solved.
     """
-    laws = {name: rates(law, scene.instants) for name, law in scene.inputs.items()}
-    return accuracy_at(scene, accuracy, places_in(scene), laws)
+    return accuracy_at(scene, accuracy, places_in(scene), laws_of(scene, scene.instants))
 
 
 def places_in(scene: Scene) -> Mapping[str, Array]:
@@ -148,7 +147,7 @@ def accuracy_at(
     Args:
         accuracy: mm; of each instant, (N,), or of all.
         places: where every point is, (N, 3), mm.
-        laws: every input with its two time derivatives, (N, 3); of poses alone these are 0.
+        laws: every input with its time derivatives, (N, orders); of poses alone these are 0.
         solves_rates: whether rates are known to be solved from equations, which are missed as those of the
             pose are.
     """
@@ -280,7 +279,7 @@ class _Held:
         }
 
     def at(self, accuracy: Array, places: Mapping[str, Array], laws: Mapping[str, Array]) -> Accuracy:
-        """The claims at some instants, from where every point is, (N, 3), mm, and the inputs, (N, 3)."""
+        """The claims at some instants, from where every point is, (N, 3), mm, and the inputs."""
         off = accuracy / self.unit
         known = known_in_doubles(self.design, laws, len(next(iter(places.values()))))
         values, inverse, matrix, blind = self._pose(places, values_only(known))
@@ -291,7 +290,7 @@ class _Held:
         slopes = motion_of_a_miss(first, jets, inverse, known)
         change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
-        growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(3)]
+        growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(len(slopes))]
         along = {}
         for way, driver in self._drivers().items():
             # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
@@ -364,25 +363,23 @@ class _Held:
 
     def _per_length(
         self, states: Mapping[str, Sequence[Array]], turns: Mapping[str, Sequence[Vector]]
-    ) -> tuple[Array, Array, Array]:
-        """What a point that is off by 1 makes of its own place, rate and acceleration, each (N,), beside it.
+    ) -> list[Array]:
+        """What a point that is off by 1 makes of its own place and its derivatives, each (N,), beside it.
+
+        Of a rotation R with R' = Omega R, |R^(d+1)| <= sum_k C(d, k) |Omega^(k)| |R^(d-k)|.
 
         Args:
             states: by point its value and derivatives, each (N, 3). turns: of every body, likewise.
         """
         chassis = states[self.design.plain["bodies"][CHASSIS][0]]
-        count = len(chassis[0])
-        turning, bending = (
-            np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0) for d in range(2)
-        )
-        fastest, hardest = (
-            np.max([_lengths(state[d] - chassis[d]) for state in states.values()], axis=0) for d in (1, 2)
-        )
-        return (
-            np.zeros(count),
-            ROOT_3 * (turning + fastest / self.size),
-            ROOT_3 * (bending + turning**2 + hardest / self.size),
-        )
+        count, found = len(chassis[0]), [np.zeros(len(chassis[0]))]
+        turned, spins = [np.ones(count)], list[Array]()
+        for d in range(len(chassis) - 1):
+            spins.append(np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0))
+            turned.append(np.asarray(sum(comb(d, k) * spins[k] * turned[d - k] for k in range(d + 1))))
+            moved = np.max([_lengths(state[d + 1] - chassis[d + 1]) for state in states.values()], axis=0)
+            found.append(ROOT_3 * (turned[-1] + moved / self.size))
+        return found
 
     def _claims(
         self,
@@ -395,10 +392,12 @@ class _Held:
         points = known.points_of(solved)
         turns = body_turns(solved, known)
         count = len(growth[0])
-        states = {name: [values_of(order_of(p, d), count) for d in range(3)] for name, p in points.items()}
+        states = {
+            name: [values_of(part_of(p, d), count) for d in range(len(growth))] for name, p in points.items()
+        }
         chassis = states[self.design.plain["bodies"][CHASSIS][0]]
         per_length = self._per_length(states, turns)
-        moved = {name: _off(order_of(p, 0), count) * growth[0][:, None] for name, p in points.items()}
+        moved = {name: _off(part_of(p, 0), count) * growth[0][:, None] for name, p in points.items()}
         missed = {name: off[:, None] + (move if self.solves else 0.0) for name, move in moved.items()}
         far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
         of_car = self._of_car(off, solved, known, growth, along)
@@ -416,7 +415,7 @@ class _Held:
                 claims[quantity] = {
                     n: self.unit
                     * (
-                        _off(order_of(points[n], d), count) * growth[d][:, None]
+                        _off(part_of(points[n], d), count) * growth[d][:, None]
                         + missed[n] * per_length[d][:, None]
                         + UNIT_ROUNDOFF * np.abs(states[n][d])
                         + UNIT_ROUNDOFF * np.abs(chassis[d])
@@ -448,9 +447,12 @@ class _Held:
         places = [jet.value for jet in solved]
         cars: dict[Way, Car] = {(p, None): self._car(p, off, places, known, growth) for p in self.drawn}
         for (prefix, way), (driven, driving) in along.items():
-            pose = [Dual(jet.value, jet.rate) for jet in driven]
+            pose = [Dual(jet.value, jet.part(1)) for jet in driven]
             points, turns = driving.points_of(driven), body_turns(driven, driving)
-            states = {n: [values_of(order_of(p, d), len(off)) for d in range(3)] for n, p in points.items()}
+            states = {
+                n: [values_of(part_of(p, d), len(off)) for d in range(driving.derivatives + 1)]
+                for n, p in points.items()
+            }
             moved = self._per_length(states, turns)[1]
             cars[prefix, way] = self._car(prefix, off, pose, driving, growth, moved)
         found = {}

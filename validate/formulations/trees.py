@@ -67,7 +67,7 @@ class InTree:
 
         try:
             linkage = linkage_in(scene)
-            inputs = linkage.inputs(problem.laws)
+            inputs = linkage.inputs({name: law[:, :3] for name, law in problem.laws.items()})
             program = self.program(linkage)
             closed = program.closed(TOLERANCE)
             require_the_drawn_car(scene, linkage.moved(closed.places))

@@ -5,7 +5,7 @@ A map is TOML:
     independent = "bump"          # the column that the others are given over; found by itself where it can be
     rolling_radius = 270.0        # mm; for travel.contact only
     solve_for = "arm_angle"       # the input that a travel is reached by; found by itself
-    convention = "adams"          # whose numbers have the names: adams, optimumk, lotus; iso if not said
+    convention = "adams"          # whose names they are: adams, optimumk, lotus; as the scene if not said
 
     [held]                        # what is the same in every row; inputs that nothing is said of: as drawn
     rack = 0.0
@@ -101,7 +101,7 @@ class MapSaid(BaseModel):
     independent: str | None = None
     rolling_radius: Number = math.nan
     solve_for: str = ""
-    convention: ConventionName = "iso"
+    convention: ConventionName | None = None
     held: dict[str, Number] = {}
     columns: dict[str, ColumnSaid] = {}
 
@@ -422,7 +422,7 @@ class _Map:
 
     @property
     def _convention(self) -> Convention:
-        return CONVENTIONS[self.said.convention]
+        return CONVENTIONS[self.said.convention or self.scene.convention]
 
     def series(self) -> list[Series]:
         """Every column that means something, in our units; derivatives after what they are by."""

@@ -63,7 +63,7 @@ class ChassisMotion:
     def still(self) -> ChassisMotion:
         """With the values of the jets."""
         turns = tuple(replace(turn, sine=turn.sine.value, cosine=turn.cosine.value) for turn in self.turns)
-        return ChassisMotion(turns, None if self.rise is None else part_of(self.rise, "value"))
+        return ChassisMotion(turns, None if self.rise is None else part_of(self.rise, 0))
 
     def without_displacement(self) -> ChassisMotion:
         """The turns alone."""

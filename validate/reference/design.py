@@ -24,7 +24,7 @@ from validate.reference.vectors import Scalar, Vector, dot, each, minus, times
 DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more
 SAME_ROW = 1e-9  # of the largest: what is left of a row that others say already, in doubles
 
-# Every input, each (value, rate, acceleration) in fractions; rad or mm.
+# Every input, each (value, rate, acceleration) in fractions, or with the jerk; rad or mm.
 Driven = Mapping[str, Jet]
 
 
@@ -46,12 +46,14 @@ class Known:
     chassis: ChassisMotion
     inputs: Mapping[str, Jet]
 
+    @property
+    def derivatives(self) -> int:
+        """How many time derivatives of the inputs are known."""
+        return max((len(jet.parts) for jet in self.inputs.values()), default=3) - 1
+
     def driven_at(self, name: str, rate: arb) -> Known:
         """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
-        zero = arb(0)
-        inputs = {
-            one: Jet(jet.value, rate if one == name else zero, zero) for one, jet in self.inputs.items()
-        }
+        inputs = {one: Jet(jet.value, rate if one == name else arb(0)) for one, jet in self.inputs.items()}
         numbers = [w for drive in self.mechanism.drives.values() for w in drive.numbers(inputs)]
         return replace(self, numbers=numbers, chassis=self.chassis.still())
 
@@ -197,19 +199,22 @@ class Design:
         """Inputs by name as fractions; a travel or chassis motion that is not named rests at zero.
 
         Raises:
-            BadInputError: an unknown name, not three finite numbers, or an input is missing.
+            BadInputError: an unknown name, not three or four finite numbers, not as many of each, or an
+                input is missing.
         """
-        for name, triple in inputs.items():
+        count = max((len(law) for law in inputs.values()), default=3)
+        for name, law in inputs.items():
             if name not in self.inputs:
-                raise BadInputError(f"inputs[{name!r}]", triple, f"one of {', '.join(self.inputs)}")
-            if len(triple) != 3:
-                raise BadInputError(f"inputs[{name!r}]", triple, "three numbers: value, rate, acceleration")
+                raise BadInputError(f"inputs[{name!r}]", law, f"one of {', '.join(self.inputs)}")
+            if len(law) != count or count not in (3, 4):
+                allowed = "three numbers: value, rate, acceleration; or of all inputs four, with the jerk"
+                raise BadInputError(f"inputs[{name!r}]", law, allowed)
         required = [name for name, drive in self.mechanism.drives.items() if drive.required]
         if not set(required) <= set(inputs):
             allowed = f"a mapping that names at least {' and '.join(required)}"
             raise BadInputError("inputs", sorted(inputs), allowed)
         return {
-            name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0, 0, 0))))
+            name: Jet(*(as_fraction(part, f"inputs[{name!r}]") for part in inputs.get(name, (0,) * count)))
             for name in self.inputs
         }
 
@@ -261,7 +266,7 @@ def ball_vector(vector: Vector) -> Vector:
 
 def balls(jet: Jet) -> Jet:
     """A jet of fractions as a jet of balls."""
-    return Jet(as_ball(jet.value), as_ball(jet.rate), as_ball(jet.acceleration))
+    return Jet(*map(as_ball, jet.parts))
 
 
 def _unit(points: Collection[Vector], origin: Vector) -> Fraction:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, partial
+from math import comb
 
 import numpy as np
 from flint import arb
@@ -20,11 +21,9 @@ from validate.reference.dual import Dual, value_of
 from validate.reference.equations import Equations, equations_in
 from validate.reference.jet import Jet
 from validate.reference.kinematics import with_rates
-from validate.reference.vectors import Scalar, Vector, each
+from validate.reference.vectors import Scalar, Vector
 
 Array = NDArray[np.float64]
-
-ORDERS = 3  # a number, its rate and its acceleration
 
 
 @lru_cache(maxsize=64)
@@ -37,16 +36,16 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
     """What the equations take as given, as jets of arrays (N,).
 
     Args:
-        laws: of each input that does not rest at zero, value, rate and acceleration, (N, 3); rad or mm.
+        laws: of each input that does not rest at zero, value and time derivatives, (N, orders); rad or mm.
         count: N.
     """
-    still = np.zeros((count, ORDERS))
+    still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
     numbers: list[Jet] = []
     for drive in design.mechanism.drives.values():
         read = [laws.get(one, still).tolist() for one in drive.reads]
         found = [
             [
-                floats_of_jet(jet)
+                [float(jet.part(order)) for order in range(still.shape[-1])]
                 for jet in drive.numbers(
                     {n: Jet(*(arb(x) for x in law)) for n, law in zip(drive.reads, now, strict=True)}
                 )
@@ -114,42 +113,36 @@ def motion_of_a_miss(first: Array, jets: Sequence[Jet], inverse: Array, known: K
 
     From C(y, t) = delta follows C' dy = delta at every instant, and so by differentiating
 
-        C' dy'  = -(C')' dy,        C' dy'' = -2 (C')' dy' - (C')'' dy.
+        C' dy'  = -(C')' dy,        C' dy'' = -2 (C')' dy' - (C')'' dy,        and so on.
 
     Args:
         first: dy of each miss, (size, misses, N).
         jets: the unknowns with their rates.
         inverse: of C', (N, size, size).
     """
-    turned, bent = (
-        jacobian_of(jets, known.numbers, known.equations, partial(part_of, order=order)) for order in (1, 2)
-    )
-    place = first.transpose(2, 0, 1)
-    rate = -inverse @ (turned @ place)
-    acceleration = -inverse @ (2.0 * (turned @ rate) + bent @ place)
-    return np.stack([place, rate, acceleration]).transpose(0, 2, 3, 1)
+    turned = [
+        jacobian_of(jets, known.numbers, known.equations, partial(_derivative, order=order))
+        for order in range(1, known.derivatives + 1)
+    ]
+    found = [first.transpose(2, 0, 1)]
+    for d in range(1, known.derivatives + 1):
+        rest = sum(comb(d, k) * (turned[k - 1] @ found[d - k]) for k in range(1, d + 1))
+        found.append(np.asarray(-inverse @ rest))
+    return np.stack(found).transpose(0, 2, 3, 1)
 
 
 def with_slopes(jets: Sequence[Jet], slopes: Array) -> list[Jet]:
     """Jets of duals, the slopes by order and unknown."""
-    return [Jet(*(Dual(part_of(jet, d), slopes[d, i]) for d in range(ORDERS))) for i, jet in enumerate(jets)]
+    return [
+        Jet(*(Dual(part, slopes[d, i]) for d, part in enumerate(jet.parts))) for i, jet in enumerate(jets)
+    ]
 
 
-def part_of(jet: Jet, order: int) -> Scalar:
-    """Value, rate or acceleration."""
-    return (jet.value, jet.rate, jet.acceleration)[order]
-
-
-def order_of(point: Vector, order: int) -> Vector:
-    """The same of a vector of jets."""
-    return each(lambda component: part_of(component, order), point)
+def _derivative(entry: Scalar, order: int) -> Scalar:
+    """Of an entry of the Jacobian, which may be a plain number."""
+    return entry.part(order) if isinstance(entry, Jet) else 0.0
 
 
 def values_of(vector: Vector, count: int) -> Array:
     """Values of a vector of duals, (N, 3)."""
     return np.stack([np.broadcast_to(value_of(x), count) for x in vector], axis=-1)
-
-
-def floats_of_jet(jet: Jet) -> tuple[float, float, float]:
-    """A jet of balls as doubles."""
-    return float(jet.value), float(jet.rate), float(jet.acceleration)

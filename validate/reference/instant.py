@@ -37,6 +37,7 @@ class Instant:
         position: every point, mm.
         velocity: every point, mm/s.
         acceleration: every point, mm/s^2.
+        jerk: every point, mm/s^3; empty where the inputs are given without theirs.
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
         effects: those that were asked for, by name, with its part's prefix if there are parts, see
@@ -54,6 +55,7 @@ class Instant:
     position: Mapping[str, Triple]
     velocity: Mapping[str, Triple]
     acceleration: Mapping[str, Triple]
+    jerk: Mapping[str, Triple]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
     effects: Mapping[str, Fraction]
@@ -113,7 +115,7 @@ def prove_instant(
     _require_others(design, enclosure, still, least)
     inverse = inverse_jacobian(enclosure, still)
     solved = unknown_jets(enclosure, known, inverse)
-    vectors = _motion(design, known.points_of(solved), body_turns(solved, known))
+    vectors = _motion(design, known.points_of(solved), body_turns(solved, known), known.derivatives)
     bounds = {quantity: _largest_radius(of.values()) for quantity, of in vectors.items()}
     for quantity, scale in _scales(vectors, unit).items():
         if not bounds[quantity] <= scale * least:
@@ -145,7 +147,7 @@ def prove_instant(
         bounds["rod_force"] = max((ball.rad() for ball in statics.rods.values()), default=arb(0))
         bounds["joint_force"] = _largest_radius(statics.joints.values())
     return Instant(
-        **{quantity: _centres(of) for quantity, of in vectors.items()},
+        **{"jerk": {}, **{quantity: _centres(of) for quantity, of in vectors.items()}},
         effects={name: centre_of(ball) for name, ball in told.items()},
         rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
         joint_force=_centres(statics.joints),
@@ -196,18 +198,21 @@ def _require_others(design: Design, enclosure: Sequence[arb], known: Known, leas
 
 
 def _motion(
-    design: Design, points: Mapping[str, Vector], turns: Mapping[str, tuple[Vector, Vector]]
+    design: Design,
+    points: Mapping[str, Vector],
+    turns: Mapping[str, Sequence[Vector]],
+    derivatives: int,
 ) -> Mapping[str, Mapping[str, Vector]]:
     """Positions, rates and turning in mm, s, rad."""
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
+    kinds = ("position", "velocity", "acceleration", "jerk")[: derivatives + 1]
     local = {
-        order: {name: times(part_of(points[name], order), unit) for name in design.names}
-        for order in ("value", "rate", "acceleration")
+        kind: {name: times(part_of(points[name], order), unit) for name in design.names}
+        for order, kind in enumerate(kinds)
     }
     found = {
-        "position": {name: plus(origin, place) for name, place in local["value"].items()},
-        "velocity": local["rate"],
-        "acceleration": local["acceleration"],
+        **local,
+        "position": {name: plus(origin, place) for name, place in local["position"].items()},
         "angular_velocity": {body: turn[0] for body, turn in turns.items()},
         "angular_acceleration": {body: turn[1] for body, turn in turns.items()},
     }
@@ -218,17 +223,22 @@ def _motion(
 
 def _scales(vectors: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str, arb]:
     """The greatest number of each kind; centripetal parts may cancel: their size counts."""
-    _, fastest, hardest, spin, twist = (
-        max(x.abs_upper() for vector in of.values() for x in vector) for of in vectors.values()
-    )
-    push = hardest + fastest * fastest / unit
-    return {
+    largest = {
+        quantity: max(x.abs_upper() for vector in of.values() for x in vector)
+        for quantity, of in vectors.items()
+    }
+    fastest = largest["velocity"]
+    push = largest["acceleration"] + fastest * fastest / unit
+    scales = {
         "position": unit,
         "velocity": fastest,
         "acceleration": push,
-        "angular_velocity": spin + fastest / unit,
-        "angular_acceleration": twist + push / unit,
+        "angular_velocity": largest["angular_velocity"] + fastest / unit,
+        "angular_acceleration": largest["angular_acceleration"] + push / unit,
     }
+    if "jerk" in largest:
+        scales["jerk"] = largest["jerk"] + push * fastest / unit
+    return scales
 
 
 def _largest_radius(vectors: Iterable[Vector]) -> arb:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import comb
 
 from flint import arb, arb_mat
 
@@ -19,7 +20,8 @@ def unknown_jets(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> li
     """The unknowns with rates, as jets of balls, local.
 
     C(y(t), t) = 0 differentiated once and twice gives  C' y' = -C_t  and  C' y'' = -rest, the paper's
-    eqs. (19) and (22). The right-hand sides are C evaluated with jets whose unknown part is zero.
+    eqs. (19) and (22), and so on, as far as the inputs are known. The right-hand sides are C evaluated with
+    jets whose unknown part is zero.
 
     Args:
         inverse: of the Jacobian over the enclosure.
@@ -29,26 +31,28 @@ def unknown_jets(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> li
 
 def unknown_rates(enclosure: Sequence[arb], known: Known, inverse: arb_mat) -> Sequence[arb]:
     """The rates of the unknowns alone."""
-    return _rates(enclosure, known, _solving(inverse))
+    return [jet.part(1) for jet in with_rates(enclosure, known, _solving(inverse), 1)]
 
 
 def _solving(inverse: arb_mat) -> Solved:
     return lambda rows: (-(inverse * column(rows))).entries()
 
 
-def _rates(values: Sequence[Scalar], known: Known, solved: Solved) -> Sequence[Scalar]:
-    zero = values[0] * 0
-    still = [Jet(value, zero, zero) for value in values]
-    return solved([row.rate for row in known.residual(still)])
+def with_rates(
+    values: Sequence[Scalar], known: Known, solved: Solved, derivatives: int | None = None
+) -> list[Jet]:
+    """The same of any kind of number, where `solved` gives -C'^-1 times a column.
 
-
-def with_rates(values: Sequence[Scalar], known: Known, solved: Solved) -> list[Jet]:
-    """The same of any kind of number, where `solved` gives -C'^-1 times a column."""
-    zero = values[0] * 0
-    velocity = _rates(values, known, solved)
-    moving = [Jet(value, rate, zero) for value, rate in zip(values, velocity, strict=True)]
-    bend = solved([row.acceleration for row in known.residual(moving)])
-    return [Jet(jet.value, jet.rate, second) for jet, second in zip(moving, bend, strict=True)]
+    Args:
+        derivatives: how many; as many as are known of the inputs unless given.
+    """
+    zero, moving = values[0] * 0, [Jet(value) for value in values]
+    for order in range(1, 1 + (known.derivatives if derivatives is None else derivatives)):
+        rows = known.residual([Jet(*jet.parts, zero) for jet in moving])
+        # A row in which nothing moves is a plain number.
+        rest = [row.part(order) if isinstance(row, Jet) else zero for row in rows]
+        moving = [Jet(*jet.parts, rate) for jet, rate in zip(moving, solved(rest), strict=True)]
+    return moving
 
 
 def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
@@ -63,25 +67,26 @@ def inverse_jacobian(enclosure: Sequence[arb], known: Known) -> arb_mat:
         raise NotDecidedError("the inverse of the Jacobian for the rates", "0", "not 0") from None
 
 
-def body_turns(solved: Sequence[Jet], known: Known) -> dict[str, tuple[Vector, Vector]]:
-    """Angular velocity and acceleration of every moving body, rad/s, rad/s^2."""
-    return {name: body_rates(*frame) for name, frame in known.frames_of(solved).items()}
+def body_turns(solved: Sequence[Jet], known: Known) -> dict[str, list[Vector]]:
+    """Angular velocity, acceleration and so on of every moving body, rad/s, rad/s^2."""
+    return {name: body_rates(*frame, known.derivatives) for name, frame in known.frames_of(solved).items()}
 
 
-def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
+def body_rates(a: Vector, b: Vector, derivatives: int = 2) -> list[Vector]:
     r"""Angular velocity and acceleration of the body that carries two vectors (jets), not parallel.
 
     With the frame e = (a, b, n), n = a x b, and its reciprocal g (g_i . e_j = 1 if i = j else 0),
     e_i' = omega x e_i gives  sum_i g_i x e_i' = 2 omega,  and
-    e_i'' - omega x (omega x e_i) = alpha x e_i gives alpha in the same way.
+    e_i'' - omega x e_i' = alpha x e_i gives alpha in the same way, and so on: of the order n
+    e_i^(n+1) - sum_{k<n} C(n, k) omega^(k) x e_i^(n-k) = omega^(n) x e_i.
     The only divisor is |n|^2. The printed quotient v65 x v75 / (v65 . r75) is 0/0 whenever omega lies
     in the plane of the points.
 
     Returns:
-        omega, rad/s, and alpha, rad/s^2, as vectors of balls.
+        omega, rad/s, alpha, rad/s^2, and as many more as derivatives are wanted, as vectors of balls.
     """
     frame = (a, b, cross(a, b))
-    e = [part_of(vector, "value") for vector in frame]
+    e = [part_of(vector, 0) for vector in frame]
     n2 = dot(e[2], e[2])
     reciprocal = [times(g, 1 / n2) for g in (cross(e[1], e[2]), cross(e[2], e[0]), e[2])]
 
@@ -90,8 +95,13 @@ def body_rates(a: Vector, b: Vector) -> tuple[Vector, Vector]:
         x, y, z = plus(plus(parts[0], parts[1]), parts[2])
         return x / 2, y / 2, z / 2
 
-    omega = half_curl([part_of(vector, "rate") for vector in frame])
-    centripetal = [cross(omega, cross(omega, vector)) for vector in e]
-    second_rates = [part_of(vector, "acceleration") for vector in frame]
-    alpha = half_curl([minus(d, c) for d, c in zip(second_rates, centripetal, strict=True)])
-    return omega, alpha
+    found: list[Vector] = []
+    for order in range(derivatives):
+        rates = [part_of(vector, order + 1) for vector in frame]
+        for k, turn in enumerate(found):
+            carried = [cross(turn, part_of(vector, order - k)) for vector in frame]
+            rates = [
+                minus(rate, times(part, comb(order, k))) for rate, part in zip(rates, carried, strict=True)
+            ]
+        found.append(half_curl(rates))
+    return found

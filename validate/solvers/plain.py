@@ -10,7 +10,7 @@ numpy's, its own copies, and cannot be written to):
     carried     names of the points that ride on the knuckle without holding it
     instants    (N,)
     inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}}; all that the car has,
-                those that rest too
+                those that rest too; and "jerk", if jerks are asked for
     asked       what is compared, {quantity: [names]}
 
 It answers with a mapping of what it has, any part of what is asked, as arrays or lists:
@@ -43,7 +43,7 @@ from validate.solvers.names import known_names, misspelt
 Array = NDArray[np.float64]
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
-ORDERS = ("position", "velocity", "acceleration")
+ORDERS = ("position", "velocity", "acceleration", "jerk")
 INSTANTS = "instants"
 METHOD = "solve"
 HERE, IMPORTING = Path(__file__).parent, Path(importlib.__file__).parent
@@ -75,14 +75,12 @@ class SolverFailed(Exception):
 def given_to_solver(scene: Scene) -> dict[str, Any]:
     """A scene as plain data, in the form that the top of this file tells; new arrays at every call."""
     # The many digits that laws are rounded from are an extra; this module is imported without it.
-    from validate.formulations.input_rates import rates
+    from validate.formulations.input_rates import laws_of
 
     part, instants = scene.mechanism, scene.instants.copy()
-    still = np.zeros((len(instants), 3))
-    laws = {
-        name: rates(scene.inputs[name], instants) if name in scene.inputs else still
-        for name in part.topology.inputs
-    }
+    driven = laws_of(scene, instants)
+    still = np.zeros_like(next(iter(driven.values())))
+    laws = {name: driven.get(name, still) for name in part.topology.inputs}
     return {
         "suspension": part.name,
         "closure": part.closure,
@@ -93,7 +91,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
         "carried": list(part.topology.carried),
         INSTANTS: _read_only(instants),
         "inputs": {
-            name: {order: _read_only(law[:, d].copy()) for d, order in enumerate(ORDERS)}
+            name: {order: _read_only(rate.copy()) for order, rate in zip(ORDERS, law.T, strict=False)}
             for name, law in laws.items()
         },
         "asked": {quantity: list(names) for quantity, names in asked_numbers(scene).items()},

@@ -48,6 +48,7 @@ each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
 cars = st.sampled_from(["off-axis-strut", "pushrod"])
 some = settings(deadline=None, max_examples=40)
+ORDERS = range(4)
 
 
 @cache
@@ -70,9 +71,11 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
     axes = Rotation.random(random_state=rng).as_matrix()  # columns: rearward, right, up
     tilt = Rotation.from_rotvec(rng.normal(size=3) * 0.2).as_matrix()
     own = np.random.default_rng(int(1e9 * abs(tilt[0, 1])))
+    further = np.random.default_rng(int(1e9 * abs(tilt[0, 2])))
     roll = Rotation.from_rotvec(own.normal(size=3) * 0.2).as_matrix()
     with workdps(DIGITS):
         omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
+        jolt, jolted = (exactly(v) for v in [[10.0], [1000.0]] * further.normal(size=(2, 3)))
         # The knuckle moves as one body by an input, and every other point by itself.
         turn, other_turn = (exactly(1e-3 * v) for v in own.normal(size=(2, 3)))
         knuckle = (*topology.role("knuckle"), *topology.wheel_axis)
@@ -88,14 +91,17 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             p = plus(exactly(unit * turned), exactly(unit * U * rng.normal(size=3)))
             velocity = plus(cross(omega, p), speed)
             acceleration = plus(plus(cross(alpha, p), cross(omega, cross(omega, p))), hard)
-            points[name] = (plus(p, place), velocity, acceleration)
+            # A car that turns on with this acceleration: p' = omega x p, and so on, each apart.
+            carried = [cross(omega, p), plus(cross(alpha, p), cross(omega, cross(omega, p)))]
+            jerk = plus(plus(cross(alpha, carried[0]), cross(alpha, carried[0])), cross(omega, carried[1]))
+            points[name] = (plus(p, place), velocity, acceleration, plus(jerk, jolt))
         in_chassis = {
             name: exactly(unit * (axes @ roll @ mechanism.drawing.vectors[name])) for name in points
         }
         places = {name: state[0] for name, state in points.items()}
         return Car(
             points=points,
-            added=[exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))],
+            added=[*(exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))), jolted],
             turn=(omega, alpha),
             bodies=tuple(topology.bodies),
             damper=topology.role("damper"),
@@ -126,7 +132,7 @@ def axes_of(car: Car) -> CarAxes:
 
 def poses_of(car: Car, mechanism: Mechanism) -> Poses:
     """The car as a solver would report it, at one instant."""
-    states = [{name: rounded(p[d])[None] for name, p in car.points.items()} for d in range(3)]
+    states = [{name: rounded(p[d])[None] for name, p in car.points.items()} for d in ORDERS]
     in_chassis = {name: rounded(p)[None] for name, p in car.in_chassis.items()}
     added = [rounded(v)[None] for v in car.added]
     one = tuple({n: rounded(p)[None] for n, p in of.items()} for of in (car.moving, car.moving_in_chassis))
@@ -147,17 +153,17 @@ def enclosed(vector: Vector, factor: float, off: float = 0.0) -> Enclosed:
     return Enclosed.of(high + corner, low, 8 * U**2 * np.abs(high) + off * (1.0 + 1e-9), U * np.abs(high))
 
 
-def exact_poses_of(car: Car, mechanism: Mechanism, off: Sequence[float] = (0.0, 0.0, 0.0)) -> EnclosedPoses:
+def exact_poses_of(car: Car, mechanism: Mechanism, off: Sequence[float] = (0.0,) * 4) -> EnclosedPoses:
     """The car where it exactly is, or by derivative so far off, in units."""
     unit = float(mechanism.unit)
-    points = [{n: enclosed(p[d], TIME**d / unit, off[d]) for n, p in car.points.items()} for d in range(3)]
+    points = [{n: enclosed(p[d], TIME**d / unit, off[d]) for n, p in car.points.items()} for d in ORDERS]
     added = [enclosed(v, 1.0) for v in car.added]
     in_chassis = {n: enclosed(p, 1.0 / unit) for n, p in car.in_chassis.items()}
     one = tuple(
         {n: enclosed(p, 1.0 / unit) for n, p in of.items()} for of in (car.moving, car.moving_in_chassis)
     )
     slopes = dict.fromkeys(map(ByInput, mechanism.topology.required_inputs), one)
-    powers = [np.array([TIME**d]) for d in range(3)]
+    powers = [np.array([TIME**d]) for d in ORDERS]
     return EnclosedPoses(mechanism, axes_of(car), points, in_chassis, added, powers, slopes)
 
 
@@ -238,13 +244,13 @@ def test_its_proof_covers_a_wrong_number_and_what_is_expected_does_not(
 
 
 @each_effect
-@pytest.mark.parametrize("derivative", range(3))
+@pytest.mark.parametrize("derivative", ORDERS)
 @pytest.mark.parametrize("scene", ["off-axis-strut", "pushrod"])
 def test_its_proof_covers_points_that_may_be_anywhere_in_their_boxes(
     name: str, derivative: int, scene: str
 ) -> None:
     """By derivative, what is made of it is as unsure as the points are, and what is not stays as it is."""
-    mechanism, off = mechanism_of(scene), [1e-7 * (d == derivative) for d in range(3)]
+    mechanism, off = mechanism_of(scene), [1e-7 * (d == derivative) for d in ORDERS]
     car, effect = moving_car(np.random.default_rng(derivative), mechanism), EVERY[name]
     found, true = effect.evaluate(poses_of(car, mechanism)), by_hand(name, car)
     unsure, most = effect.errors(exact_poses_of(car, mechanism, off), found), 0.0
@@ -328,7 +334,7 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     found = EVERY[name].evaluate(poses)
     for quantity, part, array in parts(EVERY[name].evaluate(larger)):
         # Slopes, per mm, are the same.
-        lengthwise = dict.fromkeys(("mm", "mm/s", "mm/s^2", "mm/rad", "N"), scale)
+        lengthwise = dict.fromkeys(("mm", "mm/s", "mm/s^2", "mm/s^3", "mm/rad", "N"), scale)
         factor = {**lengthwise, "rad/mm": 1.0 / scale}.get(QUANTITIES[quantity].unit, 1.0)
         assert np.array_equal(array, factor * found[quantity][part])
 

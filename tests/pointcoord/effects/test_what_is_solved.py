@@ -27,11 +27,11 @@ SAMPLES = 7
 # None, one of each kind, two together and all.
 SUBSETS: list[tuple[str, ...]] = [
     (),
-    *((name,) for name in ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe_by_travel")),
+    *((name,) for name in ("velocity", "jerk", "knuckle_rates", "wheel_angles", "toe_by_travel")),
     ("velocity", "knuckle_rates"),
     OF_A_WHEEL,
 ]
-POWER_OF_TIME = {"mm/s": 1, "rad/s": 1, "mm/s^2": 2, "rad/s^2": 2}
+POWER_OF_TIME = {"mm/s": 1, "rad/s": 1, "mm/s^2": 2, "rad/s^2": 2, "mm/s^3": 3}
 NEEDED = {n: max(POWER_OF_TIME.get(q.unit, 0) for q in effect.quantities) for n, effect in EFFECTS.items()}
 OF_EVERY_POINT = {name for name, effect in EFFECTS.items() if effect.reports_states}
 

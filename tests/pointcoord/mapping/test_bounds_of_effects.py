@@ -28,13 +28,14 @@ RANGES = {
 def with_all_effects(name: str) -> Scene:
     """As many instants as poses are compared with the reference; a map does not look at them.
 
-    What moves the chassis is an input of the scene, as the reference drives nothing else.
+    What moves the chassis is an input of the scene, as the reference drives nothing else. A map has no jerks.
     """
     content = Scene.load(name).model_dump(exclude_none=True)
     content["inputs"].setdefault("heave", {"constant": 0.0})
     scene = Scene.from_mapping(content)
     time = scene.time.model_copy(update={"samples": POSES})
-    return asking_for_all(scene).model_copy(update={"time": time})
+    effects = tuple(name for name in asking_for_all(scene).effects if name != "jerk")
+    return scene.model_copy(update={"time": time, "effects": effects})
 
 
 def states_of(scene: Scene, name: str, seed: int) -> States:

@@ -10,7 +10,10 @@ from curve_files import compared, verdicts
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
+from pointcoord.effects.conventions import CONVENTIONS
+from pointcoord.scene.scene_file import SCENES
 from validate.cli import main
+from validate.curves.numbers import asking_for, found, meant, numbers_of
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
@@ -94,3 +97,51 @@ def test_what_is_no_convention_is_said(
 ) -> None:
     assert main(["table", "double-wishbone", *words]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_scene_says_what_names_mean_in_its_tables_sensitivities_pictures_and_files(tmp_path: Path) -> None:
+    text = (
+        (SCENES / "double-wishbone.toml")
+        .read_text()
+        .replace("effects =", 'convention = "optimumk"\neffects =')
+    )
+    (tmp_path / "car.toml").write_text(text)
+    scene = Scene.load(tmp_path / "car.toml")
+    said = (str(tmp_path / "car.toml"), "--number", "toe", "-o")
+    assert main(["table", *said, str(tmp_path / "table.csv"), "--quiet"]) == 0
+    assert "-toe_by_arcsine [deg]" in (tmp_path / "table.csv").read_text().splitlines()[0]
+    # What the command line says goes before.
+    assert main(["table", *said, str(tmp_path / "ours.csv"), "--convention", "iso", "--quiet"]) == 0
+    assert ",toe [deg]" in (tmp_path / "ours.csv").read_text().splitlines()[0]
+    for convention in ("optimumk", "iso"):
+        path = tmp_path / f"{convention}.csv"
+        (tmp_path / "one.toml").write_text(text.replace("optimumk", convention))
+        one = ("--number", "toe_by_arcsine" if convention == "iso" else "toe", "--point", "tie_rod_outer.x")
+        assert main(["sensitivity", str(tmp_path / "one.toml"), *one, "-o", str(path), "--quiet"]) == 0
+    theirs, ours = (
+        float((tmp_path / f"{convention}.csv").read_text().splitlines()[1].split(",")[1])
+        for convention in ("optimumk", "iso")
+    )
+    assert theirs == -ours != 0.0
+    motion = simulate(asking_for(scene, ["toe_by_arcsine"]))
+    (toe,) = found("toe", meant(numbers_of(asking_for(scene, ["toe_by_arcsine"])), CONVENTIONS["optimumk"]))
+    np.testing.assert_allclose(toe.shown(motion, motion), toe_of_optimumk(), rtol=0, atol=1e-12)
+    rows = [f"{t!r},{v:.6f}" for t, v in zip(motion.times.tolist(), toe_of_optimumk().tolist(), strict=True)]
+    told = "\n".join(["time [s],toe [deg]", *rows, ""])
+    assert set(verdicts(compared(told, {}, scene)).values()) == {"agrees"}
+    assert set(verdicts(compared(told, {"convention": "iso"}, scene)).values()) == {"disagrees"}
+
+
+def test_a_convention_changes_no_number_of_a_scene() -> None:
+    plain, theirs = simulate(CAR), simulate(CAR.model_copy(update={"convention": "adams"}))
+    assert all(np.array_equal(theirs.wheel[name], angle) for name, angle in plain.wheel.items())
+
+
+def test_a_picture_has_the_usual_numbers_of_a_convention(tmp_path: Path) -> None:
+    text = (
+        (SCENES / "double-wishbone.toml").read_text().replace("effects =", 'convention = "adams"\neffects =')
+    )
+    (tmp_path / "car.toml").write_text(text)
+    assert main(["plot", str(tmp_path / "car.toml"), "-o", str(tmp_path / "car.svg"), "--quiet"]) == 0
+    drawn = (tmp_path / "car.svg").read_text()
+    assert "camber by arcsine" in drawn

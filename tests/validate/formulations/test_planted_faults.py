@@ -10,6 +10,7 @@ import pytest
 from built_in_cars import STEERED_CARS
 
 import absolute
+import absolute.rows
 import pointcoord.effects.rigid
 import pointcoord.patches.evaluation
 import pointcoord.patches.patches
@@ -109,6 +110,16 @@ def _beside_the_middle(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(pointcoord.patches.patches, "sum_series", wrong)
 
 
+def _no_mixed_terms(patch: pytest.MonkeyPatch) -> None:
+    """w' x (w x r) and the like left out of what the absolute model carries with its bodies."""
+    right = absolute.rows.carried
+
+    def wrong(vector: np.ndarray, spins: list[np.ndarray], orders: int) -> list[np.ndarray]:
+        return right(vector, spins[:1], orders) if orders > 3 else right(vector, spins, orders)
+
+    patch.setattr(absolute.rows, "carried", wrong)
+
+
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
     """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities."""
     rates = pointcoord.effects.rigid.body_rates
@@ -125,10 +136,13 @@ def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
 
 def _in_inputs(change: Callable[[np.ndarray], np.ndarray], late: float = 0.0) -> Plant:
     """What a model that states its accuracy gets of its inputs: pointcoord has laws of its own."""
-    rates = validate.formulations.modelled.rates
+    laws_of = validate.formulations.modelled.laws_of
+
+    def wrong(scene: Scene, times: np.ndarray) -> dict[str, np.ndarray]:
+        return {name: change(law) for name, law in laws_of(scene, times - late).items()}
 
     def plant(patch: pytest.MonkeyPatch) -> None:
-        patch.setattr(validate.formulations.modelled, "rates", lambda part, t: change(rates(part, t - late)))
+        patch.setattr(validate.formulations.modelled, "laws_of", wrong)
 
     return plant
 
@@ -173,7 +187,7 @@ def _body_frame(patch: pytest.MonkeyPatch) -> None:
 
 
 def _without(*orders: int) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda rates: rates * [0.0 if order in orders else 1.0 for order in range(3)]
+    return lambda rates: rates * [0.0 if order in orders else 1.0 for order in range(rates.shape[-1])]
 
 
 def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
@@ -181,7 +195,7 @@ def _chassis_at_rest(patch: pytest.MonkeyPatch) -> None:
     solve = absolute.solve
 
     def wrong(model: absolute.Model, inputs: dict, chassis: np.ndarray, **options: bool) -> absolute.Solution:
-        return solve(model, inputs, chassis=chassis * np.array([1.0, 0.0, 0.0])[None, :, None], **options)
+        return solve(model, inputs, chassis=chassis * (np.arange(chassis.shape[1]) == 0)[:, None], **options)
 
     patch.setattr(absolute, "solve", wrong)
 
@@ -274,6 +288,8 @@ FAULTS = {
     "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
     "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
     "theta'' forgotten": Fault(_in_inputs(_without(2)), "bounce", "acceleration"),
+    "the jerk of the angle forgotten": Fault(_in_inputs(_without(3)), "bounce-on-a-heaving-chassis", "jerk"),
+    "a second rate of the rows without the bodies' accelerations": Fault(_no_mixed_terms, "steer", "jerk"),
     "theta' and S' forgotten": Fault(_in_inputs(_without(1)), "steer", "velocity"),
     "inputs late by 1e-10 s": Fault(_in_inputs(_without(), 1e-10), "bounce", "position"),
     "an input rounded to single precision": Fault(
@@ -337,6 +353,11 @@ FAULTS = {
 }
 
 
+def with_jerk(scene: Scene) -> Scene:
+    """The scene, asked for jerks too."""
+    return scene.model_copy(update={"effects": (*scene.effects, "jerk")})
+
+
 def heaving(scene: Scene) -> Scene:
     """The scene on a chassis that moves up and down, so that it shows every fault."""
     content = scene.model_dump(mode="json", exclude_none=True)
@@ -355,6 +376,7 @@ def test_a_single_fault_makes_the_comparison_fail(
 ) -> None:
     fault = FAULTS[name]
     scene = OTHER_CARS[car] if car in OTHER_CARS else OWN_SCENES[fault.scene]
+    scene = scene if fault.second == "relative" else with_jerk(scene)  # trees of joints give none
     assert compare(scene, fault.first, fault.second).agreed
     fault.plant(monkeypatch)
     outcome = compare(scene, fault.first, fault.second)
@@ -363,6 +385,7 @@ def test_a_single_fault_makes_the_comparison_fail(
 
 NEAR = 1e-11  # relative: a hundred thousand roundings, which a tolerance for a whole motion let pass
 RATES = [quantity for quantity in QUANTITIES if per_second(quantity) > 0]
+OF_TREES = [quantity for quantity in RATES if quantity != "jerk"]
 
 
 def _scaled(arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -404,14 +427,13 @@ def _off_in_relative(quantity: str) -> Plant:
 
 
 @pytest.mark.parametrize("scene", STEERED_CARS)
-@pytest.mark.parametrize("quantity", RATES)
 @pytest.mark.parametrize(
-    ("plant", "method", "other"),
+    ("plant", "method", "other", "quantity"),
     [
-        (_off_in_pointcoord, "pointcoord", "absolute"),
-        (_off_in_pointcoord, "pointcoord-newton", "absolute"),
-        (_off_in_absolute, "pointcoord", "absolute"),
-        (_off_in_relative, "pointcoord", "relative"),
+        *((_off_in_pointcoord, "pointcoord", "absolute", quantity) for quantity in RATES),
+        *((_off_in_pointcoord, "pointcoord-newton", "absolute", quantity) for quantity in RATES),
+        *((_off_in_absolute, "pointcoord", "absolute", quantity) for quantity in RATES),
+        *((_off_in_relative, "pointcoord", "relative", quantity) for quantity in OF_TREES),
     ],
 )
 def test_a_rate_that_is_a_part_in_1e11_off_in_either_model_is_caught(
@@ -424,7 +446,8 @@ def test_a_rate_that_is_a_part_in_1e11_off_in_either_model_is_caught(
 ) -> None:
     """A model that proves its bounds sees its own fault, and may not widen its tolerance by it."""
     plant(quantity)(monkeypatch)
-    outcome = compare(Scene.load(scene), method, other)
+    asked = Scene.load(scene)
+    outcome = compare(asked if other == "relative" else with_jerk(asked), method, other)
     assert {row.quantity for row in outcome.disagreements} == {quantity}
 
 
@@ -433,6 +456,7 @@ def test_a_rate_that_is_a_part_in_1e11_off_in_either_model_is_caught(
 def test_one_number_at_one_instant_a_ten_millionth_off_is_seen(name: str, other: str) -> None:
     """Of every point, body and angle: off by as much of the largest number of its quantity."""
     scene = Scene.load(name)
+    scene = scene if other == "relative" else with_jerk(scene)
     ours, theirs = (formulation(who).solve(scene) for who in ("pointcoord", other))
     for quantity, arrays in theirs.numbers.items():
         largest = max(float(np.abs(array).max()) for array in arrays.values())

@@ -58,5 +58,5 @@ def test_jets_give_the_exact_derivatives_along_a_parabola(name: str, data: st.Da
     jets = equations.residual([Jet(a, b, c) for a, b, c in zip(y, rate, bend, strict=True)], w)
     for i, jet in enumerate(jets):
         assert jet.value == p0[i]
-        assert jet.rate == (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / 12
-        assert jet.acceleration == (16 * (p1[i] + m1[i]) - (p2[i] + m2[i]) - 30 * p0[i]) / 12
+        assert jet.part(1) == (8 * (p1[i] - m1[i]) - (p2[i] - m2[i])) / 12
+        assert jet.part(2) == (16 * (p1[i] + m1[i]) - (p2[i] + m2[i]) - 30 * p0[i]) / 12

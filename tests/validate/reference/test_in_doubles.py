@@ -17,13 +17,11 @@ from validate.reference.in_doubles import (
     local_places,
     motion_of_a_miss,
     newton_step,
-    order_of,
-    part_of,
     unknown_jets_of,
 )
-from validate.reference.jet import Jet
+from validate.reference.jet import Jet, part_of
 
-QUANTITIES = ("position", "velocity", "acceleration")
+QUANTITIES = ("position", "velocity", "acceleration", "jerk")
 HEAVE = "heave"
 
 
@@ -38,8 +36,11 @@ def inputs_of(car: ReferenceCar, heave: bool) -> list[dict[str, tuple[Any, ...]]
     """Three instants near the drawing, not all with the same rates."""
     moved = []
     for k in range(3):
-        one = {name: (a + Fraction(k, 50), b * (k + 1), c - k) for name, (a, b, c) in car.inputs.items()}
-        moved.append({name: triple for name, triple in one.items() if heave or name != HEAVE})
+        one = {
+            name: (a + Fraction(k, 50), b * (k + 1), c - k, 2 * k + b)
+            for name, (a, b, c) in car.inputs.items()
+        }
+        moved.append({name: law for name, law in one.items() if heave or name != HEAVE})
     return moved
 
 
@@ -64,7 +65,7 @@ def test_poses_and_rates_in_doubles_are_those_of_the_proven_instants(car: Refere
         }
         largest = max(np.abs(vectors).max() for vectors in proven.values())
         for name, vectors in proven.items():
-            found = np.stack([np.broadcast_to(x, 3) for x in order_of(points[name], order)], axis=-1) * unit
+            found = np.stack([np.broadcast_to(x, 3) for x in part_of(points[name], order)], axis=-1) * unit
             found = found + origin if order == 0 else found
             np.testing.assert_allclose(found, vectors, rtol=0.0, atol=1e-10 * largest)
 
@@ -102,13 +103,13 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
     size = design.mechanism.size
     jets, inverse = moving(np.zeros(size))
     found = motion_of_a_miss(inverse.transpose(1, 2, 0), jets, inverse, known)
-    assert found.shape == (3, size, size, 3)
+    assert found.shape == (4, size, size, 3)
     # A central difference leaves step^2 of the third derivative, and rounding over the step.
     step = 1e-5
     for row in range(size):
         ahead, behind = (moving(sign * step * np.eye(size)[row])[0] for sign in (1.0, -1.0))
-        for d in range(3):
-            changes = [part_of(a, d) - part_of(b, d) for a, b in zip(ahead, behind, strict=True)]
+        for d in range(4):
+            changes = [a.part(d) - b.part(d) for a, b in zip(ahead, behind, strict=True)]
             exact = np.array([np.broadcast_to(change, 3) for change in changes]) / (2.0 * step)
             largest = np.abs(found[d]).max()
             np.testing.assert_allclose(found[d, :, row], exact, rtol=0.0, atol=1e-6 * largest)
