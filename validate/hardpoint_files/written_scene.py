@@ -89,9 +89,13 @@ def scene_of(
     driven = driven_inputs(source, kind, tables, places)
     content["inputs"] = {name: {"constant": 1.0} for name in driven}
     scene = Scene.from_mapping(content, source)
-    # Angles of lines, and rates; what is made of the wheel's radius or a damper a table seldom says.
+    # Angles of lines, rates and accelerations; what is made of the wheel's radius or a damper a table seldom says.
     had = [EFFECTS[effect] for effect in scene.mechanism.effects]
-    plain = [e for e in had if all(isinstance(number, Angle) for number in getattr(e, "numbers", ()))]
+    plain = [
+        e
+        for e in had
+        if e.derivative <= 2 and all(isinstance(number, Angle) for number in getattr(e, "numbers", ()))
+    ]
     parts = {e.name for e in plain for o in plain if e.own_names and {*e.own_names} < {*o.own_names}}
     return scene.model_copy(update={"effects": [e.name for e in plain if e.name not in parts]})
 
