@@ -21,7 +21,7 @@ from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers, per_second
-from validate.formulations.protocol import AccuracyError, Formulation, FormulationError, Solution
+from validate.formulations.protocol import NOTHING, AccuracyError, Formulation, FormulationError, Solution
 from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
@@ -398,6 +398,9 @@ def _compared(
     # The smaller of both, so that a wrong number does not widen its own tolerance.
     largest = min(float(side.largest.max()) for side in sides)
     allowed = factor * tolerance(held[0], held[1], largest)
+    # Nor does who gives a number that there is none of, a rounding over a rounding, claim anything of it.
+    lone = np.where(np.isnan(mine), held[1], np.where(np.isnan(other), held[0], 0.0))
+    gap[lone >= NOTHING] = 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST)).max(axis=(0, 2))
     gaps, widths = gap.max(axis=0), allowed.max(axis=0)

@@ -14,6 +14,8 @@ from pointcoord.scene.scene_file import Scene
 
 Array = NDArray[np.float64]
 
+NOTHING = 1e150
+"""Claimed where nothing can be said: wider than any number, and its square is finite."""
 
 Numbers = Mapping[str, Mapping[str, Array]]
 """By quantity, then by point, body or angle: (N, 3), or (N,) of what the car has one number of."""

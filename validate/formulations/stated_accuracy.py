@@ -69,7 +69,7 @@ from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers, asked_of_the_car, is_force, per_second
 from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
-from validate.formulations.protocol import Accuracy, Numbers
+from validate.formulations.protocol import NOTHING, Accuracy, Numbers
 from validate.reference import Design
 from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
@@ -100,7 +100,6 @@ FLATTEST = 1e-3  # of the size: beside a triangle that is flatter a solver takes
 OFF_THE_POSE = 1e-6  # of the size: a pose that the reference's equations move by more is none of theirs
 MOST_STEPS = 8  # of Newton's method, which doubles its digits
 AT_ONCE = 1024  # instants: a matrix of each row's change of the Jacobian is held for each
-NOTHING = 1e150  # claimed where nothing can be said: wider than any number, and its square is finite
 ROOT_3 = sqrt(3.0)
 Way = tuple[str, str | None]
 """The prefix of a part, and what derivatives are taken by in it."""

@@ -89,7 +89,7 @@ def scene_of(
     driven = driven_inputs(source, kind, tables, places)
     content["inputs"] = {name: {"constant": 1.0} for name in driven}
     scene = Scene.from_mapping(content, source)
-    # Angles of lines, rates and accelerations; what is made of the wheel's radius or a damper a table seldom says.
+    # Angles of lines, rates and accelerations; a table seldom says the wheel's radius, or has a damper.
     had = [EFFECTS[effect] for effect in scene.mechanism.effects]
     plain = [
         e

@@ -156,7 +156,10 @@ def test_travel_along_a_line_of_a_moving_body_is_its_length_in_mm() -> None:
 @pytest.mark.parametrize(
     ("laws", "words"),
     [
-        ({"rack": RACK}, ("2 freedoms", "rack", "free are", "1 more of arm_angle, wheel_travel")),
+        (
+            {"rack": RACK},
+            ("2 freedoms", "rack", "free are", "1 more of arm_angle, steering_wheel, wheel_travel"),
+        ),
         (
             {"arm_angle": {"constant": 1.5}, "wheel_travel": {"constant": 0.0}, "rack": RACK},
             ("2 freedoms", "3 are driven", "leave 1 out"),

@@ -76,7 +76,7 @@ FAULTS: dict[str, tuple[str, str, str, str, str]] = {
     "up not a unit vector": ('"left"', '"left"\nup = [0, 0, 2]', "mechanism", "2", "unit"),
     "up along right": ('"left"', '"left"\nup = [0, 1, 0]', "mechanism", "(0.0, 1.0, 0.0)", "right angles"),
     "unknown input": (RACK, RACK + "\nroll = { constant = 0.0 }", "", "roll",
-        "arm_angle, rack, wheel_travel, contact_travel, heave"),
+        "arm_angle, rack, steering_wheel, wheel_travel, contact_travel, heave"),
     "missing input": (RACK, "", "", "arm_angle", "drive 1 more of rack"),
     "two kinds of input": ("constant = 0.0", "constant = 0.0, polynomial = [1.0]", "inputs.rack",
         "constant and polynomial", "exactly one"),

@@ -172,7 +172,7 @@ def test_what_cannot_be_done_is_one_line_that_says_why_and_nothing_is_written(
     [
         ("strut_top        = [460, -180, 470]", "", ["mechanism.points", "strut_top", "missing"]),
         ("wheel_centre ", "wheel_center ", ["mechanism.points", "wheel_center", "allowed", "wheel_centre"]),
-        ("arm_angle =", "arm_angel =", ["arm_angel", "allowed: arm_angle, rack, wheel_travel"]),
+        ("arm_angle =", "arm_angel =", ["arm_angel", "allowed: arm_angle, rack, steering_wheel"]),
         ('type = "macpherson"', 'type = "mcpherson"', ["mechanism.type", "macpherson"]),
         ("[450, -330, -40]", "[452, -320, 20]", ["mechanism.points", "has no length"]),
         ("title =", "title", ["not TOML"]),

@@ -3,9 +3,11 @@
 from typing import Any
 
 import numpy as np
+import pytest
 
 from pointcoord import Scene, simulate
-from validate.comparison.compare import compare, gaps_between
+from validate.comparison.compare import compare, compare_solutions, gaps_between
+from validate.formulations.registry import formulation
 
 CENTRES = (
     "front_view_swing_arm",
@@ -52,3 +54,29 @@ def test_parallel_arms_have_their_centres_at_infinity_and_both_models_say_so() -
 def test_none_beside_a_number_is_the_worst_difference_and_none_beside_none_is_no_difference() -> None:
     mine, other = np.array([1.0, np.nan, np.nan]), np.array([1.0, 2.0, np.nan])
     assert gaps_between(mine, other, "mm").tolist() == [0.0, np.inf, 0.0]
+
+
+def straight_ahead() -> Scene:
+    """A steering wheel that goes through straight ahead at a sample, where no wheel is steered to a side."""
+    content = Scene.load("axle-steer").model_dump(exclude_none=True)
+    content["mechanism"]["rack_per_turn"] = 50.0
+    content["inputs"]["steering_wheel"] = {"sweep": [-6.0, 6.0]}
+    del content["inputs"]["rack"]
+    return Scene.from_mapping(content, "straight ahead")
+
+
+@pytest.mark.parametrize("second", ["absolute", "relative", "mujoco"])
+def test_a_model_that_claims_nothing_of_a_number_may_give_one_where_there_is_none(second: str) -> None:
+    outcome = compare(straight_ahead(), "pointcoord", second)
+    assert outcome.agreed
+    assert any("the wheels are not steered to the same side" in note for note in outcome.notes)
+
+
+def test_a_model_that_has_no_number_where_there_is_one_disagrees() -> None:
+    scene = straight_ahead()
+    ours, theirs = (formulation(name).solve(scene) for name in ("pointcoord", "relative"))
+    holed = theirs.numbers["ackermann"]["ackermann"].copy()
+    holed[7] = np.nan
+    faulty = theirs.with_numbers({"ackermann": {"ackermann": holed}})
+    outcome = compare_solutions(scene, ours, faulty, "holed")
+    assert [row.name for row in outcome.disagreements] == ["ackermann"]

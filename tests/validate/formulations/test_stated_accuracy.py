@@ -13,8 +13,8 @@ from pointcoord.effects.registry import QUANTITIES
 from validate import check
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
-from validate.formulations.protocol import Solution
-from validate.formulations.stated_accuracy import NOTHING, claims_for
+from validate.formulations.protocol import NOTHING, Solution
+from validate.formulations.stated_accuracy import claims_for
 from validate.formulations.trees import linkage_in
 from validate.hard.cars import scene_content
 from validate.peers.in_pinocchio import InPinocchio
