@@ -1,4 +1,4 @@
-"""Effects that report a state of every point: its position or a time derivative of that."""
+"""The position of every point, which every motion reports, and its time derivatives, an effect for each."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.effect import Effect, Poses
+from pointcoord.effects.effect import Effect, Poses, Quantity
 from pointcoord.linkage.topology import Topology
 
 if TYPE_CHECKING:
@@ -50,3 +50,19 @@ class PointStates(Effect):
     def _quantity(self) -> str:
         (quantity,) = self.quantities
         return quantity.name
+
+
+def _states(derivative: int, name: str) -> PointStates:
+    unit = ("mm", "mm/s")[derivative] if derivative < 2 else f"mm/s^{derivative}"
+    return PointStates(
+        name=name,
+        gives=f"{name} of every point, {unit}",
+        sign="components along the user's axes",
+        derivative=derivative,
+        quantities=(Quantity(name, name, unit, "point"),),
+    )
+
+
+POSITION, *RATES = (
+    _states(order, name) for order, name in enumerate(("position", "velocity", "acceleration", "jerk"))
+)

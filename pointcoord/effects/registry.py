@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pointcoord.effects.acceleration import ACCELERATION
 from pointcoord.effects.ackermann import ACKERMANN
 from pointcoord.effects.angle import Angle
 from pointcoord.effects.angles_by_arcsine import ANGLES_BY_ARCSINE
@@ -18,18 +17,16 @@ from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
 from pointcoord.effects.instant_centres import INSTANT_CENTRES
-from pointcoord.effects.jerk import JERK
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.motion_ratio import MOTION_RATIO
-from pointcoord.effects.position import POSITION
+from pointcoord.effects.point_states import POSITION, RATES
 from pointcoord.effects.roll_centre import ROLL_CENTRE
 from pointcoord.effects.screw_axis import SCREW_AXIS
 from pointcoord.effects.spring import SPRING
 from pointcoord.effects.steer_angle import STEER_ANGLE
 from pointcoord.effects.steering_axis import STEERING_AXIS
 from pointcoord.effects.toe import TOE
-from pointcoord.effects.velocity import VELOCITY
 from pointcoord.effects.wheel_angles import WHEEL_ANGLES
 from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 
@@ -51,9 +48,7 @@ _ANGLES_AND_DIMENSIONS = (
 EFFECTS: Mapping[str, Effect] = {
     effect.name: effect
     for effect in (
-        VELOCITY,
-        ACCELERATION,
-        JERK,
+        *RATES,
         KNUCKLE_RATES,
         *_ANGLES_AND_DIMENSIONS,
         *(gradients(effect, way) for way in WAYS for effect in _ANGLES_AND_DIMENSIONS),

@@ -33,7 +33,7 @@ OWN = own_files()
 # Kinds of effects may name the quantity that all of their kind give; conventions are about names.
 KINDS = {
     PACKAGE / "effects" / f"{name}.py"
-    for name in ("gradients", "angle", "car_number", "conventions", "registry")
+    for name in ("gradients", "angle", "car_number", "conventions", "point_states", "registry")
 }
 NAMES = {
     *EFFECTS,
@@ -61,8 +61,9 @@ def named(text: str) -> Iterator[str]:
             yield str(node.module)
 
 
-def test_every_effect_has_a_file_of_its_own_but_gradients() -> None:
-    assert sorted(OWN.values()) == sorted(name for name, effect in EFFECTS.items() if not effect.base)
+def test_every_effect_has_a_file_of_its_own_but_gradients_and_states_of_points() -> None:
+    alone = (name for name, effect in EFFECTS.items() if not (effect.base or effect.reports_states))
+    assert sorted(OWN.values()) == sorted(alone)
 
 
 def test_no_other_file_names_an_effect_or_what_it_gives() -> None:
