@@ -8,7 +8,8 @@ from fractions import Fraction
 from typing import Any
 
 import off_axis_cars
-import wishbone_by_points
+import wishbone_cars
+from closed_forms import ClosedFormCar
 from hypothesis import strategies as st
 from sample_cars import GENERAL_STRUT, WISHBONE, SampleCar
 
@@ -18,8 +19,8 @@ class ClosedForm:
     """A suspension: random cars of it, and where a car's points are by its closed form."""
 
     sample: SampleCar
-    cars: st.SearchStrategy[Any]
-    make: Callable[..., Any]
+    cars: st.SearchStrategy[ClosedFormCar]
+    make: Callable[..., ClosedFormCar]
     steering_axis: tuple[str, str]
     knuckle: tuple[str, str, str]
 
@@ -29,7 +30,7 @@ class ClosedForm:
         return self.sample.type
 
     @property
-    def sample_car(self) -> Any:
+    def sample_car(self) -> ClosedFormCar:
         """The sample as a car of the closed form."""
         points = dict(self.sample.points)
         points.setdefault("rack_centre", points["tie_rod_inner"])
@@ -47,15 +48,24 @@ FORMS = [
     ),
     ClosedForm(
         WISHBONE,
-        wishbone_by_points.wishbone_cars(),
-        wishbone_by_points.WishboneCar,
+        wishbone_cars.wishbone_cars(),
+        wishbone_cars.WishboneCar,
         ("lower_ball_joint", "upper_ball_joint"),
-        wishbone_by_points.KNUCKLE,
+        ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer"),
     ),
 ]
+RANDOM = {"strut as drawn": FORMS[0].cars, "double wishbone": FORMS[1].cars}
+PLAIN: dict[str, ClosedFormCar] = {
+    "strut as drawn": off_axis_cars.OffAxisCar(
+        off_axis_cars.closing(off_axis_cars.BASE, Fraction(1, 2), Fraction(230), (0, 1, 0)),
+        (0, 0, 1),
+        (0, 1, 0),
+    ),
+    "double wishbone": wishbone_cars.LOTUS,
+}
 
 
-def rounded(car: Any, form: ClosedForm) -> Any:
+def rounded(car: ClosedFormCar, form: ClosedForm) -> ClosedFormCar:
     """The car as a scene gives it: every coordinate a double."""
 
     def double(vector: Any) -> tuple[Fraction, ...]:

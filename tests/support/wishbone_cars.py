@@ -1,8 +1,7 @@
 """Double wishbones: random cars, and their closed form in mpmath.
 
 Written apart from the package: three angles, of the lower arm, of the upper arm and about the kingpin, where
-    the
-package intersects spheres.
+the package solves all links together.
 """
 
 from __future__ import annotations

@@ -5,12 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from closed_form_cars import PLAIN, RANDOM
 from closed_forms import PHASES, ClosedFormCar, Points, number, numbers
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 from stencils import OFF, close, derivatives, seven
+from suspensions_in_closed_form import PLAIN, RANDOM
 
 from validate.reference import InfeasibleError
 from validate.reference.vectors import cross, minus, plus
