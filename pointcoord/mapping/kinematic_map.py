@@ -27,6 +27,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pointcoord.effects.effect import Effect
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import InputOutOfRange, MapError, NotComputed, NotCovered
@@ -413,11 +414,8 @@ def kinematic_map(
         raise MapError("tolerance", f"is {tolerance!r}", "a finite number of mm above 0")
     domain.known_at(np.stack(domain.ends))
     for effect in plan_effects(scene.effects).computed:
-        if effect.way:
-            raise MapError("effects", f"has {effect.name!r}", "effects without derivatives by an input")
-        if effect.derivative >= len(STATES):
-            allowed = "effects of rates and accelerations; a motion by the method 'map' gives higher ones"
-            raise MapError("effects", f"has {effect.name!r}", allowed)
+        if others := mapped_instead_of(effect):
+            raise MapError("effects", f"has {effect.name!r}", others)
     closed = close_drawing(mechanism)
     require_the_drawn_car(scene, closing(mechanism, closed.y))
     cover = flood_from_drawing(domain, domain.order_for(tolerance), Limits(tolerance), closed, MOST)
@@ -427,6 +425,15 @@ def kinematic_map(
     if mechanism.topology.left_out:
         _hold_rows(cover.patches)
     return KinematicMap(scene, tolerance, cover.patches.reported, cover.given_up)
+
+
+def mapped_instead_of(effect: Effect) -> str:
+    """What a map gives, in words, where it does not give an effect; empty if it does."""
+    if effect.way:
+        return "effects without derivatives by an input"
+    if effect.derivative >= len(STATES):
+        return "effects of rates and accelerations; a motion by the method 'map' gives higher ones"
+    return ""
 
 
 def _hold_rows(patches: ProvenPatches) -> None:

@@ -31,7 +31,7 @@ def content_of(
         start, stop: s; without a stop there is a single instant.
         samples: instants; three of a motion if not given.
         tolerance: mm.
-        effects: all that the car has if not given.
+        effects: if not given all that the car has and every model gives.
     Raises:
         SceneError: it is no scene, and no effects are given.
     """
@@ -46,9 +46,9 @@ def content_of(
     }
     if effects is not None:
         return content
-    # Gradients follow from the rest, and take as long.
-    had = Scene.from_mapping(content).mechanism.effects
-    return content | {"effects": [name for name in had if not EFFECTS[name].way]}
+    # Gradients follow from the rest, and take as long; trees of joints have no jerks.
+    had = (EFFECTS[name] for name in Scene.from_mapping(content).mechanism.effects)
+    return content | {"effects": [effect.name for effect in had if not effect.way and effect.derivative <= 2]}
 
 
 def _input(law: Law) -> dict[str, Any]:

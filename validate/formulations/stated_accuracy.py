@@ -405,6 +405,8 @@ class _Held:
             if is_force(quantity):
                 continue  # `_of_forces`
             d, of = per_second(quantity), QUANTITIES[quantity].of
+            if d >= len(growth):
+                continue  # the inputs' own derivatives are not known so far
             if of == "point" and d == 0:
                 claims[quantity] = {
                     n: self.unit * (moved[n] + off[:, None] + UNIT_ROUNDOFF * np.abs(states[n][0]) + far)

@@ -24,6 +24,7 @@ from pointcoord.effects.angle import Angle
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mapping.kinematic_map import mapped_instead_of
 from pointcoord.mechanism.file import MECHANISMS, read_tables
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
@@ -414,6 +415,8 @@ class OverMap:
         map: of the driven car, about all of the file's poses.
         sloped: the columns that derivatives are asked by, in words.
         rated: the rates that rows give, likewise. rates: those that every row has.
+        by_pose: the scene with the effects of the file's columns that a map does not give and a pose does,
+            such as gradients and roll centres; None if there are none.
     """
 
     driven: Driven
@@ -421,6 +424,7 @@ class OverMap:
     sloped: tuple[str, ...] = ()
     rated: tuple[str, ...] = ()
     rates: Mapping[str, float] = field(default_factory=dict)
+    by_pose: Scene | None = None
 
     @classmethod
     def of(cls, driven: Driven, measured: Measured) -> OverMap:
@@ -444,7 +448,14 @@ class OverMap:
                 wide = LITTLE * widest(scene_mechanism(driven.scene), name)
                 low, high = low - wide, high + wide
             ranges[name] = low, high
-        return cls(driven, kinematic_map(driven.scene, ranges), sloped, rated, measured.held_rates)
+        scene = driven.scene
+        others = [EFFECTS[name] for name in scene.effects if mapped_instead_of(EFFECTS[name])]
+        columns = {s.meaning.name for s in measured.numbers if QUANTITIES[s.meaning.quantity].of == "car"}
+        told = (e.name for e in others if not e.derivative and columns & {*e.names(scene.mechanism.topology)})
+        by_pose = scene.model_copy(update={"effects": effects}) if (effects := tuple(told)) else None
+        mapped = tuple(name for name in scene.effects if EFFECTS[name] not in others)
+        map = kinematic_map(scene.model_copy(update={"effects": mapped}), ranges)
+        return cls(driven, map, sloped, rated, measured.held_rates, by_pose)
 
     def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
         """Where the map is proven; each number with its proven bound."""
@@ -464,6 +475,8 @@ class OverMap:
         mine = {name: value[covered] for name, value in inputs.items()}
         laws, unrated = self._laws(mine, [rate[covered] for rate in rates])
         found = self._found(mine, laws, covered)
+        if self.by_pose is not None:
+            found = _with_poses(found, self.by_pose, mine)
         slopes = {}
         for words in self.sloped:
             law = {n: np.full(covered.sum(), float(n == input_of(words))) for n in mine if n in self._free}
@@ -504,6 +517,36 @@ class OverMap:
     def _free(self) -> frozenset[str]:
         """Inputs that the map does not hold."""
         return frozenset(n for n, (low, high) in self.map.ranges.items() if low != high)
+
+
+def _with_poses(found: Found, scene: Scene, here: Mapping[str, Array]) -> Found:
+    """With the numbers of effects that single poses give, at the rows that are reached, and their bounds.
+
+    Where that may be off is what points that are as far off as the poses are make of a number.
+    """
+    # Their packages are an extra that files without such columns need not.
+    from validate.formulations.stated_accuracy import accuracy_at
+
+    rows = found.reached
+    poses = solve_poses(scene, here)
+    still = {name: np.stack([value, *np.zeros((2, len(value)))], axis=-1) for name, value in here.items()}
+    places = {name: place[rows] for name, place in found.numbers[PLACES].items()}
+    off = np.maximum(poses.bound, poses.carried_bound)
+    claims = accuracy_at(scene, np.where(np.isfinite(off), off, 0.0), places, still).claims
+    given = {
+        q: {n: array for n, array in channel.items() if n in claims.get(q, {})}
+        for q, channel in poses.numbers.items()
+        if QUANTITIES[q].of == "car" and channel.computed
+    }
+    every = slice(None)
+    numbers, bounds = (
+        spread(part, every, rows) for part in (given, {q: claims[q] for q in given if q in claims})
+    )
+    return replace(
+        found,
+        numbers={q: found.numbers.get(q, {}) | numbers.get(q, {}) for q in {**found.numbers, **numbers}},
+        bounds={q: found.bounds.get(q, {}) | bounds.get(q, {}) for q in {**found.bounds, **bounds}},
+    )
 
 
 Poses = OverTime | OverMap

@@ -189,7 +189,7 @@ def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found
     Where that says nothing of a number, its bound is NaN.
     """
     # Their packages are an extra that printed files need not.
-    from validate.formulations.input_rates import rates
+    from validate.formulations.input_rates import laws_of
     from validate.formulations.stated_accuracy import accuracy_at
 
     rows, scene = here.reached, driven.scene
@@ -213,7 +213,7 @@ def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found
         slopes = {per: replace(slope, bounds=by(slope.laws)) for per, slope in here.slopes.items()}
         return replace(here, bounds=by(here.laws), slopes=slopes)
     times = measured.independent[0].values[rows]
-    own = replace(here, bounds=bounds({name: rates(law, times) for name, law in scene.inputs.items()}))
+    own = replace(here, bounds=bounds(laws_of(scene, times)))
     return replace(own, slopes={TIME: own})
 
 

@@ -1,4 +1,4 @@
-"""Units of files, and what they are in ours: mm, s and rad, and these by times, lengths and angles."""
+"""Units of files, and what they are in ours: mm, s, rad, N and %, and these by times, lengths and angles."""
 
 from __future__ import annotations
 
@@ -33,8 +33,15 @@ ANGLES = {
     "arcmin": math.pi / 10800.0,
 }
 TIMES = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": 60.0}
-KINDS = {"mm": {name: float(size) for name, size in LENGTHS.items()}, "rad": ANGLES, "s": TIMES}
-_PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([12]?))?")
+FORCES = {"N": 1.0, "kN": 1000.0, "lbf": 4.4482216152605}
+KINDS = {
+    "mm": {name: float(size) for name, size in LENGTHS.items()},
+    "rad": ANGLES,
+    "s": TIMES,
+    "N": FORCES,
+    "%": {"%": 1.0},
+}
+_PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([1-9]?))?")
 
 
 def length_called(word: str) -> str:
@@ -96,7 +103,8 @@ def allowed_units(ours: str) -> str:
 
 def _taken_apart(unit: str) -> tuple[float, str, str, int] | None:
     """Its size in ours, the kinds of what is above and below the fraction, and how often the one below is."""
-    text = unit.strip().replace(" ", "").replace("\N{SUPERSCRIPT TWO}", "^2")
+    text = unit.strip().replace(" ", "")
+    text = text.replace("\N{SUPERSCRIPT TWO}", "^2").replace("\N{SUPERSCRIPT THREE}", "^3")
     found = _PARTS.fullmatch(text)
     if found is None:
         return None
@@ -105,7 +113,7 @@ def _taken_apart(unit: str) -> tuple[float, str, str, int] | None:
     kind = next((kind for kind, units in KINDS.items() if above in units), None)
     under = next((kind for kind, units in KINDS.items() if below in units), "")
     times = 0 if below is None else int(power or 1)
-    # A square is in use of a time only.
+    # Powers are in use of a time only.
     if kind is None or (below is not None and not under) or (times > 1 and under != "s"):
         return None
     size = KINDS[kind][above] / (KINDS[under][below] ** times if below is not None else 1.0)

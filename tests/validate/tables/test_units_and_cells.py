@@ -15,6 +15,11 @@ def test_units_are_what_they_are_of_ours() -> None:
     assert factor_of("deg", "mm") is None
     assert factor_of("m/s", "mm/s^2") is None
     assert factor_of("furlong", "mm") is None
+    assert factor_of("m/s^3", "mm/s^3") == 1000.0
+    assert factor_of("m/s\N{SUPERSCRIPT THREE}", "mm/s^2") is None
+    assert factor_of("kN", "N") == 1000.0
+    assert factor_of("%", "%") == 1.0
+    assert factor_of("%", "rad") is None
 
 
 @pytest.mark.parametrize(("word", "unit"), [("Metres", "m"), ("inch", "in"), ("mm", "mm"), ("deg", "")])

@@ -1,0 +1,111 @@
+"""Files over travels and inputs of what a map does not give: gradients, roll centres, ratios, jerks."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from curve_files import compared, verdicts
+
+from pointcoord import Scene
+from pointcoord.effects.registry import QUANTITIES, number_called
+from validate.formulations.registry import formulation
+
+OVER_TRAVEL = (
+    "toe_by_travel",
+    "camber_by_rack",
+    "roll_centre_height",
+    "front_view_swing_arm",
+    "damper_per_wheel",
+    "camber",
+)
+EFFECTS = (
+    "wheel_angles",
+    "toe_by_travel",
+    "camber_by_rack",
+    "roll_centre",
+    "instant_centres",
+    "motion_ratio",
+)
+
+
+def asking(name: str, effects: tuple[str, ...], samples: int = 9) -> Scene:
+    scene = Scene.load(name)
+    time = scene.time.model_copy(update={"samples": samples})
+    return scene.model_copy(update={"effects": effects, "time": time})
+
+
+def file_of(scene: Scene, over: str, numbers: tuple[str, ...], wrong: dict[str, Any] | None = None) -> str:
+    """A table of the absolute model's numbers over an input, five decimals, and of what is done to some."""
+    solved = formulation("absolute").solve(scene).numbers
+    values = {name: array for part in solved.values() for name, array in part.items() if name in numbers}
+    columns = {over: scene.functions[over].series(scene.instants, 0)[:, 0]}
+    heads = [f"{over} [mm]"]
+    for name in numbers:
+        number = number_called(name)
+        assert number is not None
+        unit = number.quantity.unit
+        heads.append(f"{name} [{unit.replace('rad', 'deg', 1)}]")
+        change = (wrong or {}).get(name, lambda x: x)
+        columns[name] = change(np.degrees(values[name]) if unit.startswith("rad") else values[name])
+    rows = [
+        ",".join([f"{row[0]:.9g}", *(f"{value:.5f}" for value in row[1:])])
+        for row in zip(*columns.values(), strict=True)
+    ]
+    return "\n".join([",".join(heads), *rows, ""])
+
+
+def test_gradients_centres_and_ratios_over_a_travel_are_held_to_their_digits() -> None:
+    scene = asking("wheel-travel", EFFECTS)
+    found = compared(file_of(scene, "wheel_travel", OVER_TRAVEL), {}, scene)
+    assert {
+        name: verdict for name, verdict in verdicts(found).items() if name in OVER_TRAVEL
+    } == dict.fromkeys(OVER_TRAVEL, "agrees")
+    # To half of the last digit and hardly more: our own bounds are far below it.
+    tolerances = {row.name: row.tolerance for row in found.outcome.rows}
+    assert tolerances["roll_centre_height"] == pytest.approx(5e-6, rel=0.1)
+    assert tolerances["toe_by_travel"] == pytest.approx(np.radians(5e-6), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("toe_by_travel", lambda x: -x),
+        ("roll_centre_height", lambda x: x + 2e-5),
+        ("damper_per_wheel", lambda x: 1.0 / x),
+        ("front_view_swing_arm", lambda x: x * 1.000001),
+    ],
+)
+def test_one_of_them_that_is_wrong_disagrees_alone(name: str, change: Any) -> None:
+    scene = asking("wheel-travel", EFFECTS)
+    found = compared(file_of(scene, "wheel_travel", OVER_TRAVEL, {name: change}), {}, scene)
+    assert [row.name for row in found.outcome.disagreements] == [name]
+
+
+def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
+    scene, numbers = asking("axle-steer", ("steer_angle", "ackermann"), 10), ("ackermann", "ackermann_error")
+    found = compared(file_of(scene, "rack", numbers), {"columns": {"rack": {"printed": 0}}}, scene)
+    assert {verdicts(found)[name] for name in numbers} == {"agrees"}
+    off = compared(
+        file_of(scene, "rack", numbers, {"ackermann": lambda x: x + 1e-3}),
+        {"columns": {"rack": {"printed": 0}}},
+        scene,
+    )
+    assert [row.name for row in off.outcome.disagreements] == ["ackermann"]
+
+
+def test_a_scene_may_ask_for_jerks_which_a_file_over_a_travel_has_not() -> None:
+    scene = asking("wheel-travel", (*EFFECTS, "jerk"))
+    found = compared(file_of(scene, "wheel_travel", ("camber",)), {}, scene)
+    assert verdicts(found)["camber"] == "agrees"
+    assert QUANTITIES["jerk"].words in found.absent
+
+
+def test_jerks_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen() -> None:
+    scene = asking("bounce-and-steer", ("jerk",), 21)
+    motion = formulation("absolute").solve(scene)
+    for factor, verdict in ((1.0, "agrees"), (1.001, "disagrees")):
+        jerk = motion.numbers["jerk"]["wheel_centre"] * [factor, 1.0, 1.0]
+        heads = ["time [s]", *(f"jerk.wheel_centre.{axis} [m/s^3]" for axis in "xyz")]
+        rows = [[t, *(j * 1e-3)] for t, j in zip(scene.instants.tolist(), jerk, strict=True)]
+        text = "\n".join([",".join(heads), *(",".join(f"{float(x):.9f}" for x in row) for row in rows), ""])
+        assert verdicts(compared(text, {}, scene))["wheel_centre"] == verdict
