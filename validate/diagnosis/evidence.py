@@ -5,7 +5,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -22,7 +22,7 @@ from validate.comparison.compare import Outcome
 from validate.comparison.given import given as given_numbers
 from validate.comparison.tolerance import largest_numbers, tolerance
 from validate.formulations.asked_numbers import per_second
-from validate.formulations.protocol import Solution
+from validate.formulations.protocol import Numbers, Solution
 
 Array = NDArray[np.float64]
 Row = tuple[str, str]
@@ -100,6 +100,12 @@ class Solved:
         return None
 
 
+def numbers_not_given(numbers: Numbers, given: Collection[Row]) -> dict[Row, Array]:
+    """Numbers of the car, of all that there are, that are not given."""
+    every = {(q, n): a for q, of in numbers.items() if QUANTITIES[q].of == "car" for n, a in of.items()}
+    return {row: array for row, array in every.items() if row not in given}
+
+
 @dataclass(frozen=True)
 class Evidence:
     """Given and held numbers at the same instants.
@@ -113,6 +119,7 @@ class Evidence:
         other_cars: whether the instants are those of the scene, so that other cars are solved there.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
+        not_given: our numbers of the car that are not given, (N,).
         units: of rows that have another than their quantity, such as of derivatives, in words.
         theirs: the units that rows are given in, where these are not ours, and how many of ours each is.
     """
@@ -128,6 +135,7 @@ class Evidence:
     other_cars: bool = True
     own: Rows = field(default_factory=dict)
     known: Mapping[str, Array] = field(default_factory=dict)
+    not_given: Rows = field(default_factory=dict)
     units: Mapping[Row, str] = field(default_factory=dict)
     theirs: Mapping[Row, tuple[str, float]] = field(default_factory=dict)
 
@@ -163,18 +171,26 @@ class Evidence:
             allowed=allowed,
             wrong=tuple(row for row in rows if row in disagree),
             solved=Solved(scene),
+            not_given=numbers_not_given(two.numbers, rows),
         )
 
     def thinned(self, count: int) -> Evidence:
         """The same at so many instants at most, evenly."""
         some = np.unique(np.linspace(0, len(self.times) - 1, min(count, len(self.times))).astype(np.intp))
-        given, held, allowed, own = (
+        given, held, allowed, own, not_given = (
             {row: array[some] for row, array in rows.items()}
-            for rows in (self.given, self.held, self.allowed, self.own)
+            for rows in (self.given, self.held, self.allowed, self.own, self.not_given)
         )
         known = {point: places[some] for point, places in self.known.items()}
         return replace(
-            self, times=self.times[some], given=given, held=held, allowed=allowed, own=own, known=known
+            self,
+            times=self.times[some],
+            given=given,
+            held=held,
+            allowed=allowed,
+            own=own,
+            known=known,
+            not_given=not_given,
         )
 
     def in_words(self, row: Row, amount: Array | float) -> str:
@@ -281,9 +297,9 @@ class Evidence:
             ("one sample early", slice(None, -1), slice(1, None)),
         )
         for words, theirs, ours in ends:
-            allowed, own, held = (
+            allowed, own, held, not_given = (
                 {row: values[ours] for row, values in rows.items()}
-                for rows in (self.allowed, self.own, self.held)
+                for rows in (self.allowed, self.own, self.held, self.not_given)
             )
             times = self.times[ours]
             limits = {"start": float(times[0]), "stop": float(times[-1]), "samples": len(times)}
@@ -300,6 +316,7 @@ class Evidence:
                     allowed=allowed,
                     own=own,
                     known={point: places[ours] for point, places in self.known.items()},
+                    not_given=not_given,
                     solved=Solved(scene),
                 ),
             )

@@ -13,7 +13,7 @@ from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
-from validate.diagnosis.evidence import Evidence, Solved
+from validate.diagnosis.evidence import Evidence, Solved, numbers_not_given
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
@@ -221,6 +221,7 @@ def _explained(
         units={row: columns[0].series.meaning.unit for row, columns in whole.items()},
         theirs=theirs,
         known={} if over_time else {n: a[told] for n, a in ours.numbers[PLACES].items()},
+        not_given={row: array[told] for row, array in numbers_not_given(ours.numbers, whole).items()},
     )
     try:
         return explain_evidence(evidence)

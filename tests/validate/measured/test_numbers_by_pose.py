@@ -109,3 +109,13 @@ def test_jerks_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen() -> Non
         rows = [[t, *(j * 1e-3)] for t, j in zip(scene.instants.tolist(), jerk, strict=True)]
         text = "\n".join([",".join(heads), *(",".join(f"{float(x):.9f}" for x in row) for row in rows), ""])
         assert verdicts(compared(text, {}, scene))["wheel_centre"] == verdict
+
+
+@pytest.mark.parametrize(("told", "meant"), [("damper_per_wheel", "wheel_per_damper"), ("camber", "kingpin")])
+def test_the_numbers_of_another_name_are_told_though_the_file_gives_no_such(told: str, meant: str) -> None:
+    scene = asking("wheel-travel", EFFECTS)
+    right = file_of(scene, "wheel_travel", (meant,))
+    found = compared(right.replace(meant, told), {}, scene)
+    assert [row.name for row in found.outcome.disagreements] == [told]
+    first = found.outcome.explanations[0]
+    assert f"the numbers of {meant}" in first.words

@@ -39,11 +39,12 @@ def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
 
 def anothers(evidence: Evidence) -> Iterator[Hypothesis]:
     """A row with the numbers of another one of its quantity, such as the wheel centre's for the contact's."""
+    numbers = {**evidence.held, **evidence.not_given}
     for row in evidence.wrong:
-        for other in evidence.held:
+        for other in numbers:
             if other[0] != row[0] or other == row:
                 continue
-            allowed = np.maximum(evidence.allowed[row], evidence.allowed[other])
-            if evidence.left(row, evidence.held[other], allowed) <= 1.0:
-                rows = {row: (evidence.held[other], allowed)}
+            allowed = np.maximum(evidence.allowed[row], evidence.allowed.get(other, 0.0))
+            if evidence.left(row, numbers[other], allowed) <= 1.0:
+                rows = {row: (numbers[other], allowed)}
                 yield Hypothesis((row, other), f"the numbers of {other[1]}", rows, cost=1.3)
