@@ -171,14 +171,14 @@ class RowStack:
             rates: [o', w], [o'', w'] and so on of the bodies, each (..., bodies, 2, 3).
         """
         order = len(rates) + 1
-        held = [rate.take(self._holders[1:], -3) for rate in rates]
-        spins, speeds = ([each[..., kind, :] for each in held] for kind in (1, 0))
-        arms = np.matvec(placed.rotation.take(self._holders[1:], -3), self._local[1:])
-        along = carried(placed.a, [spin[..., 0, :, :] for spin in spins], order + 1)
-        apart = [turned[..., 1, :, :] - turned[..., 0, :, :] for turned in carried(arms, spins, order + 1)]
-        for n, speed in enumerate(speeds, 1):
-            apart[n] += self._offset[:, None] * (speed[..., 1, :, :] - speed[..., 0, :, :])
-        apart[0] = placed.e
+        held = [rate.take(self._holders, -3) for rate in rates]
+        vectors = np.matvec(placed.rotation.take(self._holders, -3), self._local)
+        vectors[..., 0, :, :] = placed.a
+        turned = carried(vectors, [each[..., 1, :] for each in held], order + 1)
+        along = [each[..., 0, :, :] for each in turned]
+        apart = [placed.e, *(each[..., 2, :, :] - each[..., 1, :, :] for each in turned[1:])]
+        for n, each in enumerate(held, 1):
+            apart[n] += self._offset[:, None] * (each[..., 2, :, 0, :] - each[..., 1, :, 0, :])
         drift = _product(along, apart, order)
         if self._distances.size:
             drift[..., self._distances] = _of_length([e[..., self._distances, :] for e in apart])

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
-from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
@@ -21,7 +20,7 @@ from validate.commands.usage import (
     place_of_result,
     told_as,
 )
-from validate.curves.numbers import TIME, TRAVEL, Curves, Number, asking_for, found, meant, numbers_of, usual
+from validate.curves.numbers import TIME, TRAVEL, Curves, Number, as_meant, found, usual
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -98,11 +97,7 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     target = place_of_result(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
     scene, name = load_scene(options.scene), name_of(options.scene)
-    convention = CONVENTIONS[scene.convention]
-    asked = {n.path[-1] for n in numbers_of(scene) if n.missing is None and len(n.path) < 3}
-    had = {number for e in scene.mechanism.effects for number in EFFECTS[e].names(scene.mechanism.topology)}
-    scene = asking_for(scene, [number for number, _ in map(convention.number, asked) if number in had])
-    numbers = meant(numbers_of(scene), convention)
+    scene, numbers = as_meant(scene)
     chosen = _curves(options, numbers, name)
 
     def write(motion: Motion) -> str:

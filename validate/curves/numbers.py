@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, NotComputed, Scene
-from pointcoord.effects.conventions import Convention
+from pointcoord.effects.conventions import CONVENTIONS, Convention
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
 from pointcoord.wording import meant as hint
@@ -112,10 +112,16 @@ def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
     return scene.model_copy(update={"effects": effects})
 
 
-def meant(numbers: Sequence[Number], convention: Convention) -> tuple[Number, ...]:
-    """The same under the names that a convention gives them, with the signs that they have there."""
+def as_meant(scene: Scene) -> tuple[Scene, tuple[Number, ...]]:
+    """A scene that asks for what its numbers' names mean by its convention too, and all its numbers under the
+    names and with the signs that they have there."""
+    convention, part = CONVENTIONS[scene.convention], scene.mechanism
+    asked = (n.path[-1] for n in numbers_of(scene) if n.missing is None and len(n.path) < 3)
+    had = {number for effect in part.effects for number in EFFECTS[effect].names(part.topology)}
+    scene = asking_for(scene, [number for number, _ in map(convention.number, asked) if number in had])
+    numbers = numbers_of(scene)
     ours = {number.path[-1]: number for number in numbers if number.of_the_car}
-    return tuple(_meant(number, ours, convention) for number in numbers)
+    return scene, tuple(_meant(number, ours, convention) for number in numbers)
 
 
 def _meant(number: Number, ours: Mapping[str, Number], convention: Convention) -> Number:

@@ -55,8 +55,7 @@ def scene_rows(task: Task, name: str) -> list[Row]:
         return [of_all]
     reference = as_solution(scene, instants)
     rows: list[Row] = []
-    # What a model does not give, as trees of joints give no jerk, it says nothing of.
-    for quantity in (quantity for quantity in asked_numbers(scene) if quantity in solution.numbers):
+    for quantity in asked_numbers(scene):
         # The reference's own error is that of numbers as large as the largest ones that a number is made of.
         dust, of_car = DUST * scales(reference.numbers)[quantity], QUANTITIES[quantity].of == "car"
         for one in (n for n in solution.numbers[quantity] if n in reference.numbers[quantity]):

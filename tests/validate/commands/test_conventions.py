@@ -10,10 +10,9 @@ from curve_files import compared, verdicts
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
-from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.scene.scene_file import SCENES
 from validate.cli import main
-from validate.curves.numbers import asking_for, found, meant, numbers_of
+from validate.curves.numbers import as_meant, found
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
@@ -123,8 +122,8 @@ def test_a_scene_says_what_names_mean_in_its_tables_sensitivities_pictures_and_f
         for convention in ("optimumk", "iso")
     )
     assert theirs == -ours != 0.0
-    motion = simulate(asking_for(scene, ["toe_by_arcsine"]))
-    (toe,) = found("toe", meant(numbers_of(asking_for(scene, ["toe_by_arcsine"])), CONVENTIONS["optimumk"]))
+    asked, numbers = as_meant(scene)
+    motion, (toe,) = simulate(asked), found("toe", numbers)
     np.testing.assert_allclose(toe.shown(motion, motion), toe_of_optimumk(), rtol=0, atol=1e-12)
     rows = [f"{t!r},{v:.6f}" for t, v in zip(motion.times.tolist(), toe_of_optimumk().tolist(), strict=True)]
     told = "\n".join(["time [s],toe [deg]", *rows, ""])
