@@ -58,7 +58,8 @@ def test_a_drawing_that_is_moved_and_turned_moves_alike(scene: str) -> None:
 def test_a_drawing_of_another_size_moves_alike(scene: str) -> None:
     mechanism = plain_scene(scene)
     lengths = {name: 3 for name, drive in mechanism["inputs"].items() if set(LENGTHS) & set(drive)}
-    other = carried(mechanism, lambda point: 3 * point)
+    radius = {"wheel_radius": 3.0 * (mechanism["wheel_radius"] or 0.0)}
+    other = {**carried(mechanism, lambda point: 3 * point), **radius}
     assert compared(scene, other, lambda point: 3 * point, lengths) <= 3 * EXACT
 
 

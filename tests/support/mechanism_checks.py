@@ -107,42 +107,72 @@ def exact_states(scene: str, indices: Sequence[int]) -> list[tuple[Points, Point
         ]
         for d in range(3)
     )
-    chassis = {name: drive for name, drive in mechanism["inputs"].items() if "moves" in drive}
     found = []
     for y, *jets in zip(follow(equations, path), path, speeds, bends, strict=True):
         exact = refined(equations, y, jets[0])
         states = {name: [jet[name] for jet in jets] for name in path[0]}
         with mp.workdps(DIGITS):
             three = (equations.points(exact), *rates(equations, exact, states))
-            shifts = [
-                sum(
-                    (equations.axes[drive["along"]] * jet[name] for name, drive in chassis.items()),
-                    vector([0, 0, 0]),
-                )
-                for jet in jets
-            ]
-            moved = (
-                {name: at + shift for name, at in one.items()}
-                for one, shift in zip(three, shifts, strict=True)
+            moved = [on_the_ground(equations, mechanism, jets, p) for p in zip(*_listed(three), strict=True)]
+            found.append(
+                tuple(dict(zip(three[0], places, strict=True)) for places in zip(*moved, strict=True))
             )
-            found.append(tuple(moved))
     return found
 
 
-def right_form(scene: str, path: Sequence[Inputs], radius: float | None = None) -> list[Points]:
-    """The poses of a scene's mechanism by its closed form."""
+def _listed(three: Sequence[Points]) -> list[list[Array]]:
+    return [[one[name] for name in three[0]] for one in three]
+
+
+def on_the_ground(
+    equations: Equations, mechanism: Tables, jets: Sequence[Inputs], states: Sequence[Array]
+) -> list[Array]:
+    """Place, velocity and acceleration of a point of the chassis, as the ground sees them.
+
+    A turn by w about an axis with the cross product K is R = 1 + sin w K + (1 - cos w) K K, and its
+    derivative by w is K R.
+    """
+    place, velocity, acceleration = states
+    for name, drive in mechanism["inputs"].items():
+        if "turns" in drive:
+            w, w1, w2 = (mpf(jet[name]) for jet in jets)
+            k = np.cross(equations.axes[drive["along"]], np.eye(3, dtype=object)).T
+            turned = np.eye(3, dtype=object) + mpmath.sin(w) * k + (1 - mpmath.cos(w)) * k @ k
+            first = w1 * k @ turned
+            second = w2 * k @ turned + w1**2 * k @ k @ turned
+            about = vector(mechanism["points"][drive["about"]])
+            acceleration = second @ (place - about) + 2 * first @ velocity + turned @ acceleration
+            velocity = first @ (place - about) + turned @ velocity
+            place = about + turned @ (place - about)
+    for name, drive in mechanism["inputs"].items():
+        if "moves" in drive:
+            shifts = [equations.axes[drive["along"]] * mpf(jet[name]) for jet in jets]
+            place, velocity, acceleration = (
+                state + shift for state, shift in zip((place, velocity, acceleration), shifts, strict=True)
+            )
+    return [place, velocity, acceleration]
+
+
+def right_form(scene: str, path: Sequence[Inputs]) -> list[Points]:
+    """The poses of a scene's mechanism by its closed form, in the chassis' axes."""
     part = scene_file(scene)["mechanism"]
     type = f"{part['type']} collinear" if part.get("closure") == "collinear" else part["type"]
-    return _axle(part, path) if type == "axle" else closed_form(type, part["points"], path, radius)
+    if any("." in name for name in path[0]):
+        return _axle(part, path)
+    return closed_form(type, part["points"], path, part.get("wheel_radius"))
 
 
 def _axle(part: Tables, path: Sequence[Inputs]) -> list[Points]:
-    """Each corner alone; the left one is the right one's mirror image, and so is the rack's motion."""
+    """Each corner alone; the left one is the right one's mirror image, and so are rack and roll."""
     corners = {}
     for corner, way in (("left", -1), ("right", 1)):
         with mp.workdps(DIGITS):
-            inputs = [{"wheel_travel": i[f"{corner}.wheel_travel"], "rack": way * i["rack"]} for i in path]
-        corners[corner] = closed_form("double_wishbone", part["points"], inputs)
+            own = [{n.removeprefix(f"{corner}."): v for n, v in i.items()} for i in path]
+            inputs = [
+                {n: way * v if n in ("rack", "roll") else v for n, v in one.items() if "." not in n}
+                for one in own
+            ]
+        corners[corner] = closed_form("double_wishbone", part["points"], inputs, part.get("wheel_radius"))
     with mp.workdps(DIGITS):
         return [
             {f"left.{name}": place * MIRROR for name, place in left.items()}
@@ -166,8 +196,8 @@ def farthest(found: Sequence[Points], right: Sequence[Points]) -> float:
 def closed_form_check(scene: str) -> Check:
     """The points of a scene against its closed form."""
     path = scene_inputs(scene, instants(scene, 3))
-    right = right_form(scene, path)
-    return Check(scene, path, lambda found: {"position": farthest(found, right)}, {"position": EXACT})
+    right, radius = right_form(scene, path), scene_file(scene)["mechanism"].get("wheel_radius")
+    return Check(scene, path, lambda found: {"position": farthest(found, right)}, {"position": EXACT}, radius)
 
 
 def _angles(points: Points) -> tuple[Any, Any]:

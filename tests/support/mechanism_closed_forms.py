@@ -23,7 +23,7 @@ Points = dict[str, Array]
 Inputs = Mapping[str, Any]
 Move = Callable[[Array], Array]
 
-UP, LEFT = vector([0, 0, 1]), vector([0, -1, 0])
+UP, LEFT, FORWARD = vector([0, 0, 1]), vector([0, -1, 0]), vector([-1, 0, 0])
 # Steps in which the first instant's input is reached from the drawing.
 STEPS = 8
 
@@ -180,12 +180,16 @@ def contact(p: Points, radius: Any) -> Array:
     return p["wheel_centre"] - mpf(radius) * unit(UP - axis * (axis @ UP))
 
 
-def measured(name: str, p: Points, drawn: Points, radius: Any) -> Any:
+def measured(name: str, p: Points, drawn: Points, radius: Any, inputs: Inputs) -> Any:
     """What an input that is no turn reads at a pose."""
     if name == "arm_angle":
         return acos(unit(p["lower_ball_joint"] - p["lower_arm_front"]) @ UP)
     if name == "damper_length":
         return sqrt(sum((p["damper_top"] - p["damper_rocker"]) ** 2))
+    if name == "ground_height":
+        roll = turn((p["roll_axis"], p["roll_axis"] + FORWARD), mpf(inputs["roll"]))
+        rolled = {point: roll(place) for point, place in p.items()}
+        return (contact(rolled, radius) - contact(drawn, radius)) @ UP
     if name == "contact_travel":
         return (contact(p, radius) - contact(drawn, radius)) @ UP
     return {"wheel_travel": lambda: (p["wheel_centre"] - drawn["wheel_centre"]) @ UP}[name]()
@@ -194,25 +198,24 @@ def measured(name: str, p: Points, drawn: Points, radius: Any) -> Any:
 def closed_form(
     type: str, points: Mapping[str, Any], path: Sequence[Inputs], radius: Any = None
 ) -> list[Points]:
-    """All points at each of some inputs, mm, in the car axes of the shipped scenes."""
+    """All points at each of some inputs, mm, in the chassis' axes of the shipped scenes."""
     with mp.workdps(DIGITS):
         p = {name: vector(place) for name, place in points.items()}
         p.setdefault("rack_centre", p.get("tie_rod_inner"))
         p = {name: place for name, place in p.items() if place is not None}
         form, found, angle = FORMS[type], [], mpf(0)
-        sought = [
-            k for k in path[0] if k not in ("rack", "heave", "crank", "turn", "arm_turn", "rocker_turn")
-        ]
+        known = ("rack", "heave", "roll", "crank", "turn", "arm_turn", "rocker_turn")
+        sought = [name for name in path[0] if name not in known]
         if not sought:
             turns = [next(mpf(inputs[k]) for k in inputs if k not in ("rack", "heave")) for inputs in path]
             return [form(p, angle, inputs) for angle, inputs in zip(turns, path, strict=True)]
         (name,) = sought
-        start = measured(name, form(p, angle, {"rack": 0}), p, radius)
+        start = measured(name, form(p, angle, {"rack": 0}), p, radius, {"roll": 0})
         ways = [{**path[0], name: start + (path[0][name] - start) * k / STEPS} for k in range(1, STEPS)]
         for inputs in [*ways, *path]:
 
             def miss(angle: Any, inputs: Inputs = inputs) -> Any:
-                return measured(name, form(p, angle, inputs), p, radius) - mpf(inputs[name])
+                return measured(name, form(p, angle, inputs), p, radius, inputs) - mpf(inputs[name])
 
             angle = mpmath.findroot(miss, (angle, angle + mpf("1e-3")), tol=mpf(10) ** (-2 * DIGITS + 12))
             found.append(form(p, angle, inputs))

@@ -1,7 +1,7 @@
 """Any mechanism as quadratic equations: the witness of the tests, written apart from the packages.
 
 The unknowns y are the place and the nine entries of the rotation matrix of each body, free points, places on
-lines, and the sine of the lean of each wheel whose contact point is driven. Every row is
+lines, and the cosine and sine of the lean of each wheel whose contact point is driven. Every row is
 
     U_i(y) . V_i(y) + W_i(y) = f_i(w),     U, V, W affine in y,
 
@@ -35,6 +35,40 @@ def unit(v: Array) -> Array:
     return v / sqrt(v @ v)
 
 
+def with_the_ground(m: Mapping[str, Any]) -> dict[str, Any]:
+    """The mechanism with a body that stands to the chassis as the ground does.
+
+    The chassis is turned and then displaced as the ground sees it. The same joints lead back from the
+    chassis, the first one first, with their lines reversed: each has the value of its input.
+    """
+    up, right = np.array(m["up"]), np.array(m["right"])
+    axes = {"up": up, "right": right, "forward": np.cross(up, right)}
+    axes |= {"down": -up, "left": -right, "rearward": -axes["forward"]}
+    bodies, points = (
+        {b: list(ps) for b, ps in m["bodies"].items()},
+        {n: list(p) for n, p in m["points"].items()},
+    )
+    slides, inputs, ground = dict(m["slides"]), dict(m["inputs"]), "chassis"
+    moving = [(n, d) for key in ("turns", "moves") for n, d in m["inputs"].items() if key in d]
+    for name, drive in moving:
+        before, ground, way = ground, f"ground by {name}", axes[drive["along"]]
+        ends = [f"{ground} {k}" for k in range(2)]
+        start = np.array(points[drive.get("about", bodies["chassis"][0])])
+        points |= {end: (start - 100 * k * way).tolist() for k, end in enumerate(ends)}
+        bodies[ground] = ends
+        if "turns" in drive:
+            bodies[before] = [*bodies[before], *ends]
+            inputs[name] = {"angle": ground, "from": "drawing", "on": before}
+            continue
+        through = [f"{end} before" for end in ends]
+        points |= {end: points[other] for end, other in zip(through, ends, strict=True)}
+        bodies[before] = [*bodies[before], *through]
+        line = {"body": before, "through": through[0], "along": through[1]}
+        slides[f"slide of {ground}"] = {"points": ends, "turns": False, **line}
+        inputs[name] = {"travel": [f"slide of {ground}"]}
+    return {**m, "bodies": bodies, "points": points, "slides": slides, "inputs": inputs, "ground": ground}
+
+
 def beside(axis: Array) -> Array:
     """A unit vector across a unit vector."""
     other = vector(np.eye(3)[np.argmin(np.abs(axis.astype(float)))])
@@ -45,10 +79,14 @@ class Equations:
     """The equations of a mechanism in plain data; lengths are measured from a point of it, in its size."""
 
     def __init__(self, mechanism: Mapping[str, Any]) -> None:
+        self.named = tuple(mechanism["points"])
         with mp.workdps(DIGITS):
             self._build(mechanism)
 
     def _build(self, m: Mapping[str, Any]) -> None:
+        if any(drive.get("over") == "ground" for drive in m["inputs"].values()):
+            m = with_the_ground(m)
+        self.ground = m.get("ground", "chassis")
         up, right = vector(m["up"]), vector(m["right"])
         self.axes = {"up": up, "right": right, "down": -up, "left": -right}
         self.axes |= {"forward": np.cross(up, right), "rearward": np.cross(right, up)}
@@ -97,7 +135,7 @@ class Equations:
         for drive in self.inputs.values():
             if "contact" in drive:
                 lean = unit(drawn[drive["contact"][1]] - drawn[drive["contact"][0]]) @ self.axes["up"]
-                add(tuple(drive["contact"]), [sqrt(1 - lean**2)])
+                add(tuple(drive["contact"]), [sqrt(1 - lean**2), lean])
         self.start = np.array(values, dtype=object)
 
     def _unknown(self, key: Any, width: int = 1) -> Array:
@@ -163,12 +201,15 @@ class Equations:
                 self._product(self.turned(slide["body"], across), self.turned(rider, third))
         for drive in self.inputs.values():
             if "contact" in drive:
-                sides = np.concatenate([self._unknown(tuple(drive["contact"])), [self._lean(drive)]])
+                sides = self._unknown(tuple(drive["contact"]), 2)
                 self._product(sides, sides, mpf(1))
+                inner, centre = (self.drawn[p] for p in drive["contact"])
+                axis = self.turned(self.holders[drive["contact"][1]][0], unit(centre - inner))
+                self._row(self.turned(self._base(drive), self.axes["up"]), axis, -sides[1])
 
-    def _lean(self, drive: Mapping[str, Any]) -> Array:
-        inner, centre = (self.drawn[p] for p in drive["contact"])
-        return self.axes["up"] @ self.turned(self.holders[drive["contact"][1]][0], unit(centre - inner))
+    def _base(self, drive: Mapping[str, Any]) -> str:
+        """The body over which a height counts."""
+        return self.ground if drive.get("over") == "ground" else "chassis"
 
     def _drive(self, name: str, drive: Mapping[str, Any], radius: float | None) -> Any:
         """The rows of an input; returns its value in the drawing."""
@@ -206,12 +247,16 @@ class Equations:
             return sqrt(sum((drawn[second] - drawn[first]) ** 2)) * self.unit
         along = self.axes[drive.get("along", "up")]
         point = drive["height"] if "height" in drive else drive["contact"][1]
-        rise = along @ (self.point(point) - self._constant(drawn[point]))
+        base, less = self._base(drive), 0 * self._constant(along)[0]
+        place = self._constant(drawn[point])
+        if base != "chassis":
+            start = self.bodies[base][0]
+            place = self._unknown(base, 3) + self.turned(base, drawn[point] - drawn[start])
         if "contact" in drive:
             side, radius = tuple(drive["contact"]), mpf(radius) / self.unit
-            rise = rise - radius * self._unknown(side)[0]
-            rise[-1] += radius * self.start[self._at[side]]
-        self._linear(rise, name, linear)
+            less = radius * self._unknown(side)[0]
+            less[-1] -= radius * self.start[self._at[side]]
+        self._row(self.turned(base, along), self.point(point) - place, -less, name, linear)
         return mpf(0)
 
     # Values.
@@ -261,4 +306,4 @@ class Equations:
         """Points of a pose in the chassis' frame, mm, (3,)."""
         with mp.workdps(DIGITS):
             y = np.append(y, 1)
-            return {name: self.point(name) @ y * self.unit + self.origin for name in self.drawn}
+            return {name: self.point(name) @ y * self.unit + self.origin for name in self.named}

@@ -108,9 +108,10 @@ def _one_mechanism(tables: Tables, given: Plain, right: Any) -> tuple[Tables, Pl
     if "parts" not in tables:
         return tables, given
     whole: Tables = {key: dict(tables.get(key, {})) for key in ("rods", "slides", "roles", "stand_ins")}
-    whole["bodies"] = {"chassis": [], **tables.get("bodies", {})}
+    whole["bodies"] = {**tables.get("bodies", {}), "chassis": []}
     whole |= {"title": tables["title"], "inputs": dict(tables.get("inputs", {}))}
-    points: Plain = {name: place for name, place in given.items() if "." in name}
+    whole_car = {point for listed in tables.get("bodies", {}).values() for point in listed}
+    points: Plain = {name: place for name, place in given.items() if "." in name or name in whole_car}
     whole["sides"] = {prefix: part.get("side", "left") for prefix, part in tables["parts"].items()}
     for prefix, part in tables["parts"].items():
         inner = mechanism_file(part["mechanism"])
@@ -134,6 +135,7 @@ def _one_mechanism(tables: Tables, given: Plain, right: Any) -> tuple[Tables, Pl
                 )
                 mirrored = [a - beside * b for a, b in zip(place, right, strict=True)]
                 points.setdefault(name, mirrored)
+    whole["bodies"]["chassis"] += tables.get("bodies", {}).get("chassis", [])
     return whole, points
 
 

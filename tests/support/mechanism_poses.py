@@ -135,6 +135,6 @@ def rates(e: Equations, y: Array, inputs: Mapping[str, Sequence[Any]]) -> tuple[
         ahead, behind = both(speed)
         pulled = solved(second * rate**2 + first * bend - (ahead + behind - 2 * e.exact_residual(y, 0)))
         velocity, acceleration = (
-            {name: e.point(name)[:, :-1] @ part * e.unit for name in e.drawn} for part in (speed, pulled)
+            {name: e.point(name)[:, :-1] @ part * e.unit for name in e.named} for part in (speed, pulled)
         )
         return velocity, acceleration

@@ -16,6 +16,7 @@ that all are made of joints and of ball joints that close loops:
     a driven hinge         itself
     directions at right    two points along the first one, as far along the second one: bodies on two slides
     angles                 each, which stand on one slide
+    the ground             a body on a driven joint for each input that moves the chassis, which goes back
     a wheel's contact      a body on a hinge about the wheel's axis, one radius down of which is driven; a
     point                  line across it stays level, likewise
 
@@ -31,6 +32,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import combinations, count
 from typing import Any, Literal
 
@@ -544,12 +546,10 @@ class _Cutter:
             p, axis = given["height"], self.directions[given.get("along", "up")]
             still = Place(CHASSIS, self.drawn[p])
             self._height(label, name, "length", (self.points[p], still), axis, CHASSIS, 1.0, 0.0)
-        elif given.get("over", CHASSIS) != CHASSIS:
-            problem = "is a height over the ground, and the tree stands on the chassis"
-            raise CutError(name, problem, "a height over the chassis, or a model that turns the ground")
         elif "contact" in given:
-            rim, up = self._contact(label, name, *given["contact"]), self.directions["up"]
-            self._height(label, name, "length", (rim, Place(CHASSIS, rim.at)), up, CHASSIS, 1.0, 0.0)
+            base = self._ground if given.get("over") == "ground" else CHASSIS
+            rim, up = self._contact(label, name, base, *given["contact"]), self.directions["up"]
+            self._height(label, name, "length", (rim, Place(base, rim.at)), up, base, 1.0, 0.0)
         else:
             p, q = given["distance"]
             length = self._distance(q, p, f"{name} has no direction")
@@ -630,8 +630,28 @@ class _Cutter:
         self.driven.append(Driven(name, kind, drawn, end.body, size / long, -start / long, per_input))
         self.loops.append(Loop(name, self._slides(f"{label} beside", end, across(axis)), first))
 
-    def _contact(self, label: str, name: str, inner: str, centre: str) -> Place:
-        """The lowest point of a wheel, as a place of a body that turns about the wheel's axis."""
+    @cached_property
+    def _ground(self) -> str:
+        """The body that the ground is.
+
+        The chassis stands on the ground as its inputs move it one after the other, turns before displacements
+        and each in the ground's axes. From the chassis the same joints lead back, the first one first.
+        """
+        moves = [(name, given) for name, given in self.inputs.items() if "moves" in given]
+        turns = [(name, given) for name, given in self.inputs.items() if "turns" in given]
+        body = CHASSIS
+        for name, given in [*turns, *moves]:
+            turned, axis = "turns" in given, self.directions[given["along"]]
+            at = self.drawn[given["about"]] if turned else np.zeros(3)
+            joint = Joint(f"ground by {name}", body, "hinge" if turned else "slide", at, axis)
+            self.joints.append(joint)
+            kind: Literal["turn", "length"] = "turn" if turned else "length"
+            self.driven.append(Driven(name, kind, 0.0, joint.body, -1.0, 0.0))
+            body = joint.body
+        return body
+
+    def _contact(self, label: str, name: str, base: str, inner: str, centre: str) -> Place:
+        """The lowest point of a wheel over a body, as a place of a body that turns about the wheel's axis."""
         up = self.directions["up"]
         holder = next((b for b in self.holders[inner] if b in self.holders[centre]), None)
         if holder is None or not self.radius > 0.0:
@@ -647,7 +667,7 @@ class _Cutter:
         rim = f"{label} rim"
         self.joints.append(Joint(rim, holder, "hinge", hub, axle))
         tip = Place(rim, hub + np.cross(axle, down))
-        self._level(f"{label} level", name, CHASSIS, up, Place(rim, hub), tip)
+        self._level(f"{label} level", name, base, up, Place(rim, hub), tip)
         return Place(rim, hub + self.radius * down)
 
 

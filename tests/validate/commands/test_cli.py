@@ -53,7 +53,7 @@ def test_the_main_job_prints_every_scene_and_ends_with_0(
     (warning,) = err.splitlines()
     assert warning.startswith(f"pointcoord: warning: {', '.join(PAPER_SCENES)}: closing the drawing moves ")
     head, blank, titles, *lines = out.splitlines()
-    assert (head, blank) == ("pointcoord and absolute; pointcoord-newton and absolute: 22 scenes", "")
+    assert (head, blank) == ("pointcoord and absolute; pointcoord-newton and absolute: 23 scenes", "")
     line = re.compile(r"(\S+) +agrees +\d+\.\d s +\d+%  .* at .* s(, .*)?")
     scenes = [found[1] for one in lines[: len(DEFAULT_SCENES)] if (found := line.fullmatch(one))]
     assert scenes == list(DEFAULT_SCENES)
