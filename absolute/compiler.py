@@ -124,7 +124,7 @@ class _Compiler:
             self.corners,
             self._loads(),
             self._dampers(),
-            self._ball_joints(),
+            self._reported_joints(),
             frozenset(self.bodies).difference(self.named),
             frozenset(self.unturned),
             self.turns,
@@ -209,19 +209,24 @@ class _Compiler:
                 rows[part] = self._distance_row(f"rod {name}", *corner.ends("damper"))[0]
         return rows
 
-    def _ball_joints(self) -> dict[str, str]:
-        """Points of ball joints whose force is determined, and the body on which it is given: the knuckle, or
-        the first that moves."""
-        sliding = {point for slide in self.slides.values() for point in slide["points"]}
+    def _reported_joints(self) -> dict[tuple[str, ...], tuple[str, str]]:
+        """The point of each ball joint or both of each hinge whose force is determined: the joint's rows and
+        the body on which the force is given, the knuckle or the first that moves. It lists the points."""
+        taken = {point for slide in self.slides.values() for point in slide["points"]}
+        turned = {given.get("angle") for given in self.of["inputs"].values()}
         knuckles = {corner.knuckle for corner in self.corners.values()}
-        reported = {}
-        for point in self.points:
-            held = [body for body, names in self.named.items() if point in names]
-            if len(held) != 2 or point in sliding:
+        reported: dict[tuple[str, ...], tuple[str, str]] = {}
+        for first, second in combinations(self.named, 2):
+            moving = [body for body in (first, second) if body != CHASSIS]
+            body = next((body for body in moving if body in knuckles), moving[0])
+            shared = tuple(p for p in self.named[body] if p in self.named[first] and p in self.named[second])
+            others = [names for one, names in self.named.items() if one not in (first, second)]
+            if not shared or taken.intersection(shared) or any({*names} & {*shared} for names in others):
                 continue
-            if len({*self.named[held[0]]} & {*self.named[held[1]]}) == 1:
-                moving = [body for body in held if body != CHASSIS]
-                reported[point] = next((body for body in moving if body in knuckles), moving[0])
+            if len(shared) == 1:
+                reported[shared] = f"ball joint {shared[0]}", body
+            elif not turned.intersection((first, second)):
+                reported[shared] = f"hinge of {second} on {first}", body
         return reported
 
     def _extent(self) -> tuple[Array, float]:

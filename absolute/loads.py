@@ -1,4 +1,4 @@
-"""Statics: tensions of rods and forces of ball joints under loads at the wheels, without mass and friction.
+"""Statics: tensions of rods and forces of joints under loads at the wheels, without mass and friction.
 
 Bodies are in equilibrium where the loads do no work in any motion that the rows allow. With J the rows'
 Jacobian, and w the loads by the velocities on which they work,
@@ -7,7 +7,10 @@ Jacobian, and w the loads by the velocities on which they work,
 
 and f of a row is the work of the loads for each mm that the row grows while all others are held. So f of a
 rod is its tension, and the rows of a ball joint, which say where its point of the second body is from that of
-the first, push the second body by -f.
+the first, push the second body by -f. Those of a hinge are of one of its points and of two right angles, of
+which each turns the second body by -f as its rate goes with that body's angular velocity. With d from the
+first of its points P, Q to the second, a force F and a moment M about P are F_Q = M x d / (d . d) at Q, the
+rest of F at P, and a moment about d, which a hinge has none of. Along d only both forces together are known.
 
 Chassis and inputs hold the mechanism; but in a corner with a damper its length is held, and the input that
 moves the wheel is free.
@@ -32,8 +35,9 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
 
     Returns:
         rod_force: name of a rod, or `damper` with its part in front where one holds -> (N,) tension, N.
-        joint_force: point of a ball joint -> (N, 3) force, N, on the body that `Model.ball_joints` names, as
-            the ground sees it.
+        joint_force: point of a ball joint -> (N, 3) force, N, on the body that `Model.reported_joints` names,
+            as the ground sees it; of a hinge both points, and there what is across its line.
+        hinge_thrust: first point of a hinge -> (N,) force at both along the line to the second, N.
         Not numbers where the pose is singular while dampers are held.
     Raises:
         DescriptionError: there is no load, or a role that one needs; rows follow from each other, so that
@@ -60,13 +64,26 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
     with np.errstate(all="ignore"):
         found = solved(jacobian.swapaxes(1, 2), acting)[..., 0]
         found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
-    joints = {}
-    for point, body in model.ball_joints.items():
-        rows = [row for row, owner in enumerate(owners) if owner == f"ball joint {point}"]
-        force = (found[:, rows, None] * placed.a[:, rows]).sum(axis=1)
-        joints[point] = motion.turned(-force if stack.second[rows[0]] == bodies[body] else force)
+    joints, thrusts = {}, {}
+    for points, (owner, body) in model.reported_joints.items():
+        rows = [row for row, name in enumerate(owners) if name == owner]
+        second = stack.second[rows[0]]
+        pushed = found[:, rows, None] * (-1.0 if second == bodies[body] else 1.0)
+        force = (pushed[:, :3] * placed.a[:, rows[:3]]).sum(axis=1)
+        if len(points) == 1:
+            joints[points[0]] = motion.turned(force)
+            continue
+        start, end = (motion.place(point)[0] for point in points)
+        line = (end - start) / np.sqrt(np.vecdot(end - start, end - start))[:, None]
+        meeting = placed.origin[:, second] + placed.arms[:, 1, rows[0]]
+        moment = (pushed[:, 3:] * cross(placed.arms[:, 1, rows[3:]], placed.a[:, rows[3:]])).sum(axis=1)
+        moment += cross(meeting - start, force)
+        at_end = cross(moment, line) / np.vecdot(line, end - start)[:, None]
+        thrusts[points[0]] = np.vecdot(line, force)
+        across = force - thrusts[points[0]][:, None] * line
+        joints |= {points[0]: motion.turned(across - at_end), points[1]: motion.turned(at_end)}
     rods = {name[4:]: found[:, row] for row, name in enumerate(owners) if name.startswith("rod ")}
-    return {"rod_force": rods, "joint_force": joints}
+    return {"rod_force": rods, "joint_force": joints, "hinge_thrust": thrusts}
 
 
 def _require_determined(mechanism: Mechanism) -> None:

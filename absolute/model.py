@@ -172,7 +172,8 @@ class Model:
         corners: part -> its wheel; "" for a mechanism without parts.
         loads: part -> what acts on its wheel.
         dampers: part -> row of the length of its damper, where there are loads.
-        ball_joints: point that two bodies share, and no other -> the one whose force is reported.
+        reported_joints: point of a ball joint that two bodies share, and no other, or both of such a hinge ->
+            whose rows it has, and the body of the two whose force is reported.
         aids: bodies that are there for the equations only and are not reported.
         unturned: those of them that are a point with the axes of the car.
         turns: by which inputs of these names turn the whole car, one after the other; their lines stand.
@@ -186,7 +187,7 @@ class Model:
     corners: Mapping[str, Corner]
     loads: Mapping[str, Load]
     dampers: Mapping[str, Row]
-    ball_joints: Mapping[str, str]
+    reported_joints: Mapping[tuple[str, ...], tuple[str, str]]
     aids: frozenset[str]
     unturned: frozenset[str]
     turns: Mapping[str, Turn]

@@ -229,12 +229,14 @@ def _laws(draw: st.DrawFn, car: Car, names: Sequence[str], stop: float) -> dict[
         for name, one in known.items()
         if one.moves_the_chassis
     }
-    beside = {n: _law(shape, 0.0, _step(car, n)) for n, shape in chassis.items() if shape is not None}
     for halved in range(HALVED + 1):
         share = 0.5**halved if halved < HALVED else 0.0
         # The least digits that can be read, but for the drawing itself.
         at = {name: round(value, 6) if share else value for name, value in home.items()}
-        laws = {n: _law(shape, at[n], share * _step(car, n)) for n, shape in drawn.items()} | beside
+        laws = {n: _law(shape, at[n], share * _step(car, n)) for n, shape in drawn.items()}
+        # A wheel on the ground may not reach as far as the chassis goes.
+        beside = {n: shape for n, shape in chassis.items() if shape is not None}
+        laws |= {n: _law(shape, 0.0, share * _step(car, n)) for n, shape in beside.items()}
         if _is_solved(Scene.from_mapping(content_of(car, laws, stop=stop, samples=5))):
             return laws
     raise AssertionError("an accepted car cannot rest at its drawing")  # it is accepted because it can

@@ -1,4 +1,4 @@
-r"""What rods and ball joints carry of loads at the wheels: statics at each pose, by virtual work.
+r"""What rods and joints carry of loads at the wheels: statics at each pose, by virtual work.
 
 A load acts on the knuckle at the contact point. If a rod were longer by dl, all else held, the contact point
 would move by dc and the knuckle turn by dt, and
@@ -9,6 +9,8 @@ N the rod's tension. Likewise N of the damper, which holds its corner in place o
 wheel: that input is free. With W_q and l_q the work and the damper's length per unit of that input, and W_s
 and l_s along another way s, what s makes with the damper held is W_s - W_q l_s / l_q. At a ball joint the
 half of the one body moves by e from that of the other, on which the force f acts: f . e = F . dc + M . dt.
+At each of the two points of a hinge this gives the force across their line. Along it only both together are
+determined: a body that is stretched between them does not move as one.
 """
 
 from __future__ import annotations
@@ -37,7 +39,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 ROD_FORCE = Quantity("rod_force", "force in the rod", "N", "car")
-JOINT_FORCE = Quantity("joint_force", "force at the ball joint", "N", "joint")
+JOINT_FORCE = Quantity("joint_force", "force at the joint", "N", "joint")
+HINGE_THRUST = Quantity("hinge_thrust", "force along the hinge", "N", "car")
 HOLDING = "damper"
 ROLES = ("wheel_axis", "knuckle")
 AXES = np.eye(3)
@@ -77,16 +80,20 @@ class Loads(Effect):
         return "the wheel's travel does not change the damper's length there"
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
-        """Every rod and damper, and every ball joint."""
+        """Every rod and damper, every ball joint, both points of every hinge, and its first one for both."""
         dampers = (f"{wheel.prefix}{HOLDING}" for wheel in _held(topology))
-        return {ROD_FORCE.name: (*topology.rods, *dampers), JOINT_FORCE.name: tuple(topology.joints)}
+        return {
+            ROD_FORCE.name: (*topology.rods, *dampers),
+            JOINT_FORCE.name: _joined(topology),
+            HINGE_THRUST.name: tuple(points[0] for points in topology.joints if len(points) == 2),
+        }
 
     def ways(self, topology: Topology) -> tuple[Way, ...]:
-        """The inputs that are free, the lengths of rods, and three gaps of each ball joint."""
+        """The inputs that are free, the lengths of rods, and three gaps of each point of a joint."""
         return (
             *(wheel.way(BY_TRAVEL) for wheel in _held(topology)),
             *map(ByLength, topology.rods),
-            *(ByGap(point, axis) for point in topology.joints for axis in range(3)),
+            *(ByGap(point, axis) for point in _joined(topology) for axis in range(3)),
         )
 
     def needs(self, topology: Topology) -> Collection[str]:
@@ -146,6 +153,11 @@ class Loads(Effect):
         return ""
 
 
+def _joined(topology: Topology) -> tuple[str, ...]:
+    """The points of all joints."""
+    return tuple(point for points in topology.joints for point in points)
+
+
 def _held(topology: Topology) -> tuple[Wheel, ...]:
     """The corners that a damper holds."""
     return wheels_of(topology, (HOLDING,))
@@ -199,8 +211,8 @@ def _forces(
         rods[rod] = ratio(held(along(way)).work, root(dot(moving, moving)).slope)
     for i, (wheel, _) in enumerate(damped):
         rods[f"{wheel.prefix}{HOLDING}"] = ratio(free[i].work, free[i].dampers[i])
-    joints = {}
-    for point in topology.joints:
+    joints, thrusts = {}, {}
+    for point in _joined(topology):
         parts = []
         for axis in range(3):
             opening = ByGap(point, axis)
@@ -209,7 +221,14 @@ def _forces(
             parts.append(times(share, gap))
         force = parts[0] + parts[1] + parts[2]
         joints[point] = -force if point in topology.chassis else force
-    return {ROD_FORCE.name: rods, JOINT_FORCE.name: joints}
+    for points in topology.joints:
+        if len(points) == 2:
+            line = loaded[0][0].seen.line(*points)
+            parts = [dot(joints[point], line) for point in points]
+            thrusts[points[0]] = ratio(parts[0] + parts[1], root(dot(line, line)))
+            for point, part in zip(points, parts, strict=True):
+                joints[point] = joints[point] - times(ratio(part, dot(line, line)), line)
+    return {ROD_FORCE.name: rods, JOINT_FORCE.name: joints, HINGE_THRUST.name: thrusts}
 
 
 def _length(corner: Corner[Any], role: str) -> Any:
@@ -220,8 +239,9 @@ def _length(corner: Corner[Any], role: str) -> Any:
 
 LOADS = Loads(
     name="loads",
-    gives="what rods and ball joints carry of the loads at the wheels, N",
-    sign="tension of a rod or damper: positive; components along the user's axes",
+    gives="what rods and joints carry of the loads at the wheels, N",
+    sign="tension of a rod or damper: positive; components along the user's axes; a thrust from the first "
+    "point of a hinge to the second",
     derivative=0,
-    quantities=(ROD_FORCE, JOINT_FORCE),
+    quantities=(ROD_FORCE, JOINT_FORCE, HINGE_THRUST),
 )

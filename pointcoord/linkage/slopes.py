@@ -1,8 +1,8 @@
 r"""How poses move along a way, what else is known being held: the implicit function theorem.
 
 With y = [u, w] and the known coordinates w(q), C(y) = 0 gives C_u u_q = -C_w w_q. A way is by an input, by a
-length that a constraint keeps, or by a gap: one half of a ball joint, the point as some of the rows read it,
-moves from the other. Of these rows R a gap adds the derivative by the point, C_u u_q = -R C_p.
+length that a constraint keeps, or by a gap: one half of a joint, the point as some of the rows read it, moves
+from the other. Of these rows R a gap adds the derivative by the point, C_u u_q = -R C_p.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class ByLength:
 
 @dataclass(frozen=True)
 class ByGap:
-    """By the gap of a ball joint, of one unit along an axis: of the half that is not the reported body's.
+    """By the gap of a joint at a point, of a unit along an axis: of the half that is not the reported body's.
 
     A half of the chassis stays, and the other one moves by as much the other way.
     """
@@ -130,8 +130,9 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
     if isinstance(way, ByGap) and way.point not in topology.chassis:
         moved[layout.vector(way.point)[way.axis]] = 1.0
-        there = {*topology.moving, *topology.chassis} - {way.point}
-        others = {i for name in topology.joints[way.point] if name in there for i in layout.vector(name)}
+        there = {*topology.moving, *topology.chassis}
+        beside = next(others for points, others in topology.joints.items() if way.point in points)
+        others = {i for name in beside if name in there for i in layout.vector(name)}
         for numbers in topology.rows_of:
             read = {i for row in numbers for i in system.reads[row]}
             if not read.isdisjoint(layout.vector(way.point)) and not read.isdisjoint(others):

@@ -41,8 +41,8 @@ class Topology:
             centre; knuckle, the points that stand for the body that carries the wheel.
         sides: the side of the car that each part is on, left or right; empty without parts.
         rods: the two ends of each rod.
-        joints: points that are a ball joint of two bodies and no more, with the points of the body whose
-            force on the other one is asked for; none where that is the chassis.
+        joints: the point of each ball joint of two bodies and no more, or both of a hinge, with the other
+            points of the body whose force on the other one is asked for; none where that is the chassis.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
         chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
@@ -62,7 +62,7 @@ class Topology:
     roles: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     sides: Mapping[str, str] = field(default_factory=dict)
     rods: Mapping[str, Piece] = field(default_factory=dict)
-    joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    joints: Mapping[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)

@@ -257,7 +257,7 @@ class _Compiler:
             roles=roles,
             sides=structure.sides,
             rods=structure.rods,
-            joints=structure.ball_joints(self.driven),
+            joints=structure.joints(self.driven),
             stand_ins=structure.stand_ins,
             chassis_motion=along,
             chassis_turns=turns,

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, StrictBool, TypeAdapter, ValidationError
@@ -121,24 +122,28 @@ class Structure:
         """By role, of the whole or of a part, the body that carries a wheel."""
         return {role: str(who) for role, who in self.roles.items() if role.rpartition(".")[2] == "knuckle"}
 
-    def ball_joints(self, driven: Collection[str]) -> dict[str, tuple[str, ...]]:
-        """Points that hold two bodies at each other and nothing else, with those of the body that holds.
+    def joints(self, driven: Collection[str]) -> dict[tuple[str, ...], tuple[str, ...]]:
+        """The point of each ball joint, or both of each hinge, with the other points of the body that holds.
 
-        What is held is the knuckle, or the moving body that comes first; of the chassis no points are named.
-        Where a rod, a slide or an input takes hold of the point too, nothing says of which of the two halves.
+        What is held is the knuckle, or the moving body that comes first, and points are as it lists them; of
+        the chassis none are named. Where a rod, a slide or an input takes hold of a point too, nothing says
+        of which of the two halves, nor at which point an input turns a hinge.
         """
         others = {end for ends in self.rods.values() for end in ends}
         others |= {point for one in self.slides.values() for point in (*one.points, one.through, one.along)}
-        for one in (self.inputs[name] for name in driven if not self.inputs[name].moves_the_chassis):
-            others |= set() if one.named("body") else {*one.named("point")}
+        inputs = [self.inputs[name] for name in driven if not self.inputs[name].moves_the_chassis]
+        others |= {p for one in inputs if not one.named("body") for p in one.named("point")}
+        turned = {body for one in inputs for body in one.named("body")}
         found = {}
-        for point in self.points:
-            bodies, knuckles = self.bodies_of(point), self.knuckles.values()
-            if len(bodies) != 2 or len(self.shared(*bodies)) != 1 or point in others:
-                continue
-            held = next((b for b in bodies if b in knuckles), next(b for b in bodies if b != CHASSIS))
+        for bodies in combinations(self.bodies, 2):
+            held = next((b for b in bodies if b in self.knuckles.values()), None)
+            held = held or next(b for b in bodies if b != CHASSIS)
             (holding,) = (body for body in bodies if body != held)
-            found[point] = () if holding == CHASSIS else self.bodies[holding]
+            shared = self.shared(held, holding)
+            alone = all(len(self.bodies_of(point)) == 2 and point not in others for point in shared)
+            if shared and alone and not (len(shared) == 2 and turned.intersection(bodies)):
+                beside = tuple(point for point in self.bodies[holding] if point not in shared)
+                found[shared] = () if holding == CHASSIS else beside
         return found
 
     def left_out(self, given: Collection[str]) -> dict[str, str]:

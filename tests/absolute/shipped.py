@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from mechanism_checks import instants, scene_inputs
+from mechanism_checks import instants, on_the_ground, scene_inputs
 from mechanism_equations import DIGITS, Equations
 from mechanism_files import plain_scene
 from mechanism_poses import follow, rates, refined
@@ -48,8 +48,9 @@ def shipped(scene: str, count: int = 5) -> Motion:
 
 
 def exact(motion: Motion) -> list[tuple[dict[str, Any], ...]]:
-    """Points and their first and second rates at every instant by the witness, the chassis at rest."""
+    """Points and their first and second rates at every instant by the witness, the chassis not displaced."""
     equations, found = Equations(motion.plain), []
+    turns = {name: drive for name, drive in motion.plain["inputs"].items() if "turns" in drive}
     jets = [
         {name: [mpf(x) for x in law[k].tolist()] for name, law in motion.inputs.items()}
         for k in range(len(next(iter(motion.inputs.values()))))
@@ -59,7 +60,9 @@ def exact(motion: Motion) -> list[tuple[dict[str, Any], ...]]:
     for y, goal, jet in zip(follow(equations, path), path, jets, strict=True):
         y = refined(equations, y, goal)
         with mp.workdps(DIGITS):
-            found.append((equations.points(y), *rates(equations, y, jet)))
+            states = equations.points(y), *rates(equations, y, jet)
+            orders = [{name: jet[name][k] for name in turns} for k in range(3)]
+            found.append(on_the_ground(equations, motion.plain | {"inputs": turns}, orders, states))
     return found
 
 

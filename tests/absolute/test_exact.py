@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from mechanism_checks import CLOSED, PRINTED, Check, closed_form_check
 from mechanism_equations import DIGITS
 from mechanism_equations import vector as to_many
-from mechanism_files import SCENES, mechanism_file, plain, scene_file
+from mechanism_files import SCENES, mechanism_file, plain, plain_scene, scene_file
 from mechanism_poses import Stuck
 from mpmath import mp, mpf
 from shipped import EPS, ORDERS, Motion, error, exact, off, redrawn, shipped
@@ -135,7 +135,11 @@ def checked(check: Check) -> None:
         assert value <= check.limits[name] + (own if name in ("position", "track") else own / 10.0), name
 
 
-@pytest.mark.parametrize("scene", CLOSED)
+# Closed forms are in the chassis' axes; one that turns is held to the witness, which is held to them.
+RESTS = [scene for scene in CLOSED if not any("turns" in of for of in plain_scene(scene)["inputs"].values())]
+
+
+@pytest.mark.parametrize("scene", RESTS)
 def test_a_shipped_scene_is_where_its_closed_form_says(scene: str) -> None:
     checked(closed_form_check(scene))
 

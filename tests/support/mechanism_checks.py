@@ -113,21 +113,29 @@ def exact_states(scene: str, indices: Sequence[int]) -> list[tuple[Points, Point
         states = {name: [jet[name] for jet in jets] for name in path[0]}
         with mp.workdps(DIGITS):
             three = (equations.points(exact), *rates(equations, exact, states))
-            moved = [on_the_ground(equations, mechanism, jets, p) for p in zip(*_listed(three), strict=True)]
-            found.append(
-                tuple(dict(zip(three[0], places, strict=True)) for places in zip(*moved, strict=True))
-            )
+            found.append(on_the_ground(equations, mechanism, jets, three))
     return found
 
 
-def _listed(three: Sequence[Points]) -> list[list[Array]]:
-    return [[one[name] for name in three[0]] for one in three]
-
-
 def on_the_ground(
+    equations: Equations, mechanism: Tables, jets: Sequence[Inputs], states: Sequence[Points]
+) -> tuple[Points, Points, Points]:
+    """Places, velocities and accelerations in the chassis' frame, as the ground sees them.
+
+    Args:
+        jets: values, rates and accelerations of the inputs.
+    """
+    here: dict[str, list[Array]] = {
+        name: _of_a_point(equations, mechanism, jets, [one[name] for one in states]) for name in states[0]
+    }
+    position, velocity, acceleration = ({name: three[k] for name, three in here.items()} for k in range(3))
+    return position, velocity, acceleration
+
+
+def _of_a_point(
     equations: Equations, mechanism: Tables, jets: Sequence[Inputs], states: Sequence[Array]
 ) -> list[Array]:
-    """Place, velocity and acceleration of a point of the chassis, as the ground sees them.
+    """Place, velocity and acceleration of one point.
 
     A turn by w about an axis with the cross product K is R = 1 + sin w K + (1 - cos w) K K, and its
     derivative by w is K R.

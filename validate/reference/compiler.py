@@ -64,6 +64,7 @@ class Compiler:
         self.frames: dict[str, tuple[Vector, Vector]] = {}
         self.rods: dict[str, int] = {}
         self.joints: dict[str, tuple[str, int]] = {}
+        self.closing: dict[str, tuple[int, Vector, Vector]] = {}
         self.numbers = 0
         self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
         self.free: dict[str, Vector] = {}
@@ -134,7 +135,7 @@ class Compiler:
             raise BadInputError(f"the body {name}", "three points with another body", "at most two")
         # A hinge is told by both its points: bodies with two come first.
         ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
-        if len(shared[CHASSIS]) == 2:
+        if len(shared[CHASSIS]) == 2 and self.hangs:
             tied = set(shared[CHASSIS])
             body = self._hinged(name, points, *shared[CHASSIS])
         else:
@@ -161,8 +162,10 @@ class Compiler:
         axis = minus(self.table[both[1]], self.table[both[0]])
         if dot(axis, axis) == 0:
             raise BadInputError(f"the hinge of {name} and {other}", "both points in one place", "a line")
-        for side in across(axis):
-            self.row(f"hinge of {name} and {other}", dot(self.bodies[other].turned(side), apart))
+        first, second = (self.bodies[other].turned(side) for side in across(axis))
+        self.closing[both[1]] = len(self.rows), first, second
+        for side in (first, second):
+            self.row(f"hinge of {name} and {other}", dot(side, apart))
         self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
 
     def _hinged(self, name: str, points: Sequence[str], a: str, b: str) -> Body:

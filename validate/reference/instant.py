@@ -42,7 +42,7 @@ class Instant:
         angular_acceleration: of the same, rad/s^2.
         effects: those that were asked for, by name, with its part's prefix if there are parts, see
             `effects.registry`; rad, mm, these per mm, and %.
-        rod_force, joint_force: where loads are given, of rods, dampers and ball joints, N; see `loads`.
+        rod_force, joint_force, hinge_thrust: where loads are given, of rods, dampers, joints, N; see `loads`.
         left_out: those of these three that there are none of, and why: the car lacks what they need, or they
             are undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
             infinity, wheels that are steered apart).
@@ -61,6 +61,7 @@ class Instant:
     effects: Mapping[str, Fraction]
     rod_force: Mapping[str, Fraction]
     joint_force: Mapping[str, Triple]
+    hinge_thrust: Mapping[str, Fraction]
     left_out: Mapping[str, str]
     radius: Fraction
     error_bound: Mapping[str, Fraction]
@@ -146,11 +147,13 @@ def prove_instant(
     if design.loads:
         bounds["rod_force"] = max((ball.rad() for ball in statics.rods.values()), default=arb(0))
         bounds["joint_force"] = _largest_radius(statics.joints.values())
+        bounds["hinge_thrust"] = max((ball.rad() for ball in statics.thrusts.values()), default=arb(0))
     return Instant(
         **{"jerk": {}, **{quantity: _centres(of) for quantity, of in vectors.items()}},
         effects={name: centre_of(ball) for name, ball in told.items()},
         rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
         joint_force=_centres(statics.joints),
+        hinge_thrust={name: centre_of(ball) for name, ball in statics.thrusts.items()},
         left_out={**left_out, **statics.left_out},
         radius=radius,
         error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},

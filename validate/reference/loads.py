@@ -1,4 +1,4 @@
-r"""The forces in rods and ball joints that loads on the wheels make, by virtual work.
+r"""The forces in rods and joints that loads on the wheels make, by virtual work.
 
 The chassis and every driven input hold the mechanism, but where a corner has a damper its length is held and
 the input that moves the wheel is free. A force f and a moment m act on the knuckle at the contact point c.
@@ -8,8 +8,10 @@ With q_j = f . dc/dy_j + m . dtheta/dy_j and the Jacobian C' of what holds,
 
 gives the work l_i of the load for each unit by which row i is violated, all other rows held. So a rod of the
 length d, whose row |a - b|^2 - d^2 is violated by 2 d e where it is e longer, has the tension 2 d l. The rows
-p - p' of a ball joint say how far its halves are apart: it pulls the body of p by -l, and the other by l. The
-equations are those of the mechanism with rows for every joint.
+p - p' of a ball joint say how far its halves are apart: it pulls the body of p by -l, and the other by l.
+A hinge has these rows at one point of its line, and at another one the two products of p - p' with sides s
+that are square to the line: there it pulls by -(l s + l' s'). Along the line only one row holds, so that of
+the two forces along it the sum is known. The equations are those of the mechanism with rows for every joint.
 """
 
 from __future__ import annotations
@@ -18,10 +20,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
+from itertools import combinations
 
 from flint import arb, ctx
 
-from validate.reference.compiler import CHASSIS
+from validate.reference.compiler import CHASSIS, at
 from validate.reference.design import Design, Known, ball_vector
 from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
@@ -35,7 +38,7 @@ from validate.reference.krawczyk import column
 from validate.reference.mechanism import Mechanism, compiled
 from validate.reference.vectors import Vector, cross, dot, each, length, minus, plus, times
 
-ROD_FORCE, JOINT_FORCE = "rod_force", "joint_force"
+ROD_FORCE, JOINT_FORCE, HINGE_THRUST = "rod_force", "joint_force", "hinge_thrust"
 
 
 @dataclass(frozen=True)
@@ -44,14 +47,18 @@ class Statics:
 
     Attributes:
         rods: tension, of every rod by its name and of every damper that holds, `left.damper`.
-        joints: in the scene's axes, of every point that is a ball joint of just two bodies, which share no
-            other point, and is on no slide: on the body of a role knuckle if it is one of them, else on the
-            one that the mechanism's file names first and that is not the chassis.
+        joints: in the scene's axes, of every point that is a ball joint of just two bodies, or one of both
+            points of their hinge, and is on no slide: on the body of a role knuckle if it is one of them,
+            else on the one that the mechanism's file names first and that is not the chassis. Of a hinge,
+            which no input turns, what is across its line.
+        thrusts: of both points of a hinge along its line, from the first point, which names it, to the
+            second, as the body lists them.
         left_out: why, by quantity.
     """
 
     rods: Mapping[str, arb]
     joints: Mapping[str, Vector]
+    thrusts: Mapping[str, arb]
     left_out: Mapping[str, str]
 
 
@@ -63,7 +70,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         enclosure: of the unknowns.
     """
     if not design.loads:
-        return Statics({}, {}, {})
+        return Statics({}, {}, {}, {})
     lack = _lacking(design)
     if lack:
         return _none(f"needs {lack}")
@@ -95,20 +102,33 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         name: 2 * length(minus(places[ends[0]], places[ends[1]])) * solved[row]
         for name, (row, ends) in rods.items()
     }
-    pulls: dict[str, Vector] = {}
-    for point, pulled in _joints(design).items():
-        body, row = mechanism.joints[point]
-        pull = (solved[row], solved[row + 1], solved[row + 2])
-        pulls[point] = chassis.turned(times(pull, -1 if pulled == body else 1))
+    pulls, thrusts = dict[str, Vector](), dict[str, arb]()
+    for points, pulled in _joints(design).items():
+        met = next(point for point in points if point in mechanism.joints)
+        body, row = mechanism.joints[met]
+        sense = -1 if pulled == body else 1
+        pull = times((solved[row], solved[row + 1], solved[row + 2]), sense)
+        if len(points) == 2:
+            (other,) = (point for point in points if point != met)
+            row, *sides = mechanism.closing[other]
+            one, two = (at(side, [*unknown, *numbers], as_ball) for side in sides)
+            pulls[other] = chassis.turned(
+                times(plus(times(one, solved[row]), times(two, solved[row + 1])), sense)
+            )
+            line = minus(places[points[1]], places[points[0]])
+            along = dot(pull, line)
+            thrusts[points[0]] = along / length(line)
+            pull = minus(pull, times(line, along / dot(line, line)))
+        pulls[met] = chassis.turned(pull)
     within = scale * as_ball(Fraction(1, 10**digits))
-    every = [*tension.values(), *(x for pull in pulls.values() for x in pull)]
+    every = [*tension.values(), *thrusts.values(), *(x for pull in pulls.values() for x in pull)]
     if not all(x.is_finite() and x.rad() <= within for x in every):
         return _none("cannot be proven in this pose, which is all but singular under its loads")
-    return Statics(tension, pulls, {})
+    return Statics(tension, pulls, thrusts, {})
 
 
 def _none(why: str) -> Statics:
-    return Statics({}, {}, {ROD_FORCE: why, JOINT_FORCE: why})
+    return Statics({}, {}, {}, dict.fromkeys((ROD_FORCE, JOINT_FORCE, HINGE_THRUST), why))
 
 
 def _lacking(design: Design) -> str:
@@ -153,22 +173,21 @@ def _equations(design: Design, precision: int) -> Equations:
     return equations_in(mechanism, range(mechanism.size), as_ball)
 
 
-def _joints(design: Design) -> dict[str, str]:
-    """The body that the force of each ball joint is given on."""
+def _joints(design: Design) -> dict[tuple[str, ...], str]:
+    """The body that the force of each ball joint or hinge is given on, by the points that it lists of it."""
     bodies: Mapping[str, Sequence[str]] = design.plain["bodies"]
     on_slides = {point for slide in design.plain["slides"].values() for point in slide["points"]}
+    turned = {spec.get("angle") for spec in design.plain["inputs"].values()}
     knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
     found = {}
-    for point in design.names:
-        holders = [body for body, points in bodies.items() if point in points]
-        if (
-            len(holders) != 2
-            or point in on_slides
-            or len(set(bodies[holders[0]]) & set(bodies[holders[1]])) > 1
-        ):
-            continue
+    for holders in combinations(bodies, 2):
         wanted = [body for body in holders if body in knuckles]
-        found[point] = (wanted or [body for body in holders if body != CHASSIS])[0]
+        body = (wanted or [body for body in holders if body != CHASSIS])[0]
+        points = tuple(point for point in bodies[body] if all(point in bodies[other] for other in holders))
+        third = {point for other, own in bodies.items() if other not in holders for point in own}
+        if not points or {*points} & (on_slides | third) or (len(points) == 2 and turned & {*holders}):
+            continue
+        found[points] = body
     return found
 
 

@@ -36,6 +36,8 @@ class Mechanism:
         rods: of each the row of its length.
         joints: of each point whose place two bodies say in rows the body, place - place of the other, and the
             first of the three rows.
+        closing: of the second point of each hinge that has such rows the first of the two more rows that make
+            it one, and what each of them takes the product of place - place with.
     """
 
     size: int
@@ -51,6 +53,7 @@ class Mechanism:
     driving: Mapping[str, int]
     rods: Mapping[str, int]
     joints: Mapping[str, tuple[str, int]]
+    closing: Mapping[str, tuple[int, Vector, Vector]]
 
     @property
     def fixed(self) -> frozenset[str]:
@@ -88,7 +91,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     """The equations of a description, its points taken from `table`, local.
 
     Args:
-        hangs: whether a body hangs on a point of one before it; else each joint has its rows.
+        hangs: whether a body hangs on a point or a hinge of one before it; else each joint has its rows.
     Raises:
         BadInputError: something in the description cannot be.
     """
@@ -121,6 +124,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
         driving=driving,
         rods=compiler.rods,
         joints=compiler.joints,
+        closing={point: (row, final(u), final(v)) for point, (row, u, v) in compiler.closing.items()},
     )
 
 

@@ -1,4 +1,4 @@
-"""Forces of rods, dampers and ball joints: closed forms, balances of bodies, laws of mirrors and turns."""
+"""Forces of rods, dampers and joints: closed forms, balances of bodies, laws of mirrors and turns."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 RADIUS = 300.0
 LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
 UP = {"force": [0.0, 0.0, 3000.0]}
+FORCES = ("rod_force", "joint_force", "hinge_thrust")
 
 
 def loaded(name: str, loads: Any, inputs: Mapping[str, Any] | None = None, **mechanism: Any) -> Motion:
@@ -114,11 +115,11 @@ def test_a_damper_beside_a_hinge_carries_the_moment_about_it() -> None:
 
 
 def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
-    motion = loaded("pushrod", LOAD)
+    steered = {"wheel_travel": {"polynomial": [-20.0, 50.0]}, "rack": {"polynomial": [0.0, 9.0]}}
+    motion = loaded("pushrod", LOAD, steered)
     at, joint = motion.position, motion.joint_force
-    assert [*joint] == ["lower_ball_joint", "upper_ball_joint"]
     contact = contact_of(motion)
-    ball = {name: (force, at[name]) for name, force in joint.items()}
+    ball = {name: (joint[name], at[name]) for name in ("lower_ball_joint", "upper_ball_joint")}
     force = np.broadcast_to(LOAD["force"], contact.shape)
     tie_rod = pull(motion, "tie_rod", "tie_rod_outer", "tie_rod_inner"), at["tie_rod_outer"]
     assert_balanced(contact, (force, contact), tie_rod, *ball.values(), moment=LOAD["moment"])
@@ -143,17 +144,66 @@ def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
         (pull(motion, "damper", low, top), at[low]),
     ]
     for body, (first, second) in hinges.items():
-        line = at[second] - at[first]
-        turn = sum(np.cross(place - at[first], force) for force, place in own[body])
-        about = np.einsum("ni,ni->n", turn, line / np.linalg.norm(line, axis=-1, keepdims=True))
-        assert np.abs(about).max() < 1e-7, body  # N mm, of forces of 1e4 N on arms of 300 mm
+        line = (at[second] - at[first]) / np.linalg.norm(at[second] - at[first], axis=-1, keepdims=True)
+        thrust = motion.hinge_thrust[first][:, None] * line
+        held = [(joint[first] + thrust, at[first]), (joint[second], at[second])]
+        assert_balanced(at[first], *own[body], *held)
+        # Along the line only both together are determined.
+        assert max(np.abs(np.vecdot(line, joint[end])).max() for end in (first, second)) < 1e-8
+    assert {*joint} == {*ball, *(end for both in hinges.values() for end in both)}
+
+
+TURNED_KNUCKLE = {
+    "bodies": {
+        "chassis": ["arm_front", "arm_rear", "link_inner"],
+        "arm": ["arm_front", "arm_rear", "king_low", "king_top"],
+        "knuckle": ["king_top", "king_low", "link_outer", "inner", "centre"],
+    },
+    "rods": {"link": ["link_inner", "link_outer"]},
+    "inputs": {"travel": {"height": "centre"}},
+    "roles": {"knuckle": "knuckle", "wheel_axis": ["inner", "centre"]},
+}
+
+
+def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm() -> None:
+    points = {
+        "arm_front": (-200.0, 300.0, 300.0),
+        "arm_rear": (180.0, 320.0, 310.0),
+        "king_low": (10.0, 640.0, 180.0),
+        "king_top": (25.0, 600.0, 420.0),
+        "link_inner": (-140.0, 310.0, 260.0),
+        "link_outer": (-130.0, 630.0, 250.0),
+        "inner": (0.0, 650.0, 300.0),
+        "centre": (0.0, 750.0, 310.0),
+    }
+    car = {**TURNED_KNUCKLE, "side": "right", "points": points, "wheel_radius": RADIUS, "loads": LOAD}
+    scene = {"effects": ["loads"], "mechanism": car, "inputs": {"travel": {"polynomial": [-20.0, 45.0]}}}
+    motion = simulate(Scene.from_mapping({**scene, "time": {"start": 0.0, "stop": 1.0, "samples": 5}}))
+    at, contact = motion.position, contact_of(motion, "inner", "centre")
+    hinges = {}
+    for first, second in (("king_top", "king_low"), ("arm_front", "arm_rear")):
+        line = (at[second] - at[first]) / np.linalg.norm(at[second] - at[first], axis=-1, keepdims=True)
+        thrust = motion.hinge_thrust[first][:, None] * line
+        hinges[first] = [
+            (motion.joint_force[first] + thrust, at[first]),
+            (motion.joint_force[second], at[second]),
+        ]
+    acting = [
+        (np.broadcast_to(LOAD["force"], contact.shape), contact),
+        (pull(motion, "link", "link_outer", "link_inner"), at["link_outer"]),
+        *hinges["king_top"],
+    ]
+    up = np.zeros_like(contact)
+    up[:, 2] = -sum(force[:, 2] for force, _ in acting)
+    assert_balanced(contact, *acting, (up, at["centre"]), moment=LOAD["moment"])
+    assert_balanced(at["arm_front"], *((-f, place) for f, place in hinges["king_top"]), *hinges["arm_front"])
 
 
 def test_a_force_that_is_off_by_a_billionth_is_no_balance() -> None:
     motion = loaded("pushrod", LOAD)
     contact = contact_of(motion)
     force = np.broadcast_to(LOAD["force"], contact.shape)
-    ball = [(each, motion.position[name]) for name, each in motion.joint_force.items()]
+    ball = [(each, motion.position[name]) for name, each in motion.joint_force.items() if "ball" in name]
     tie_rod = pull(motion, "tie_rod", "tie_rod_outer", "tie_rod_inner"), motion.position["tie_rod_outer"]
     with pytest.raises(AssertionError):
         assert_balanced(contact, (force * (1.0 + 1e-9), contact), tie_rod, *ball, moment=LOAD["moment"])
@@ -250,7 +300,8 @@ def test_mirrored_loads_of_an_axle_make_mirrored_forces_and_one_wheels_load_none
     )
     assert "left.tie_rod" in both.rod_force
     proven, of_alone = both.proof(rates=True).proven, alone.proof(rates=True).proven
-    for quantity, mirror in (("rod_force", 1.0), ("joint_force", np.array([1.0, -1.0, 1.0]))):
+    mirrors = {"rod_force": 1.0, "hinge_thrust": 1.0, "joint_force": np.array([1.0, -1.0, 1.0])}
+    for quantity, mirror in mirrors.items():
         for name, right in both.numbers[quantity].items():
             if not name.startswith("right."):
                 continue
@@ -269,7 +320,7 @@ def test_mirrored_loads_of_an_axle_make_mirrored_forces_and_one_wheels_load_none
 def test_forces_are_linear_in_the_loads() -> None:
     doubled = {name: (2.0 * np.array(vector)).tolist() for name, vector in LOAD.items()}
     one, twice = loaded("pushrod", LOAD), loaded("pushrod", doubled)
-    for quantity in ("rod_force", "joint_force"):
+    for quantity in FORCES:
         for name, array in one.numbers[quantity].items():
             assert np.array_equal(twice.numbers[quantity][name], 2.0 * array)
 
@@ -294,10 +345,8 @@ def test_a_load_in_other_units_has_its_moment_in_these() -> None:
 def test_every_force_is_proven_to_some_roundings(name: str) -> None:
     motion = loaded(name, LOAD)
     proof = motion.proof(rates=True)
-    largest = max(
-        float(np.abs(a).max()) for q in ("rod_force", "joint_force") for a in motion.numbers[q].values()
-    )
-    for quantity in ("rod_force", "joint_force"):
+    largest = max(float(np.abs(a).max()) for q in FORCES for a in motion.numbers[q].values())
+    for quantity in FORCES:
         for number, array in motion.numbers[quantity].items():
             assert np.isfinite(array).all()
             assert (proof.proven[quantity][number] <= 1e-11 * largest).all(), number

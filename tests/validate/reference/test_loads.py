@@ -168,7 +168,25 @@ def test_wishbones_hold_the_knuckle_and_the_damper_holds_them_by_rocker_and_push
     found = drawn(wishbones())
     assert near(found.joint_force[lower], tuple(want[:3]))
     assert near(found.joint_force[upper], tuple(want[3:6]))
-    assert set(found.joint_force) == {lower, upper}
+    # What is left of each body's balance are the forces at its hinge.
+    push = times(pushed, want[7])
+    hinged: dict[str, list[tuple[Vector, str]]] = {
+        "lower_arm": [(times(want[:3], -1), lower), (push, "pushrod_outer")],
+        "upper_arm": [(times(want[3:6], -1), upper)],
+        "rocker": [(times(push, -1), "pushrod_inner"), (times(pulled, want[8]), "damper_rocker")],
+    }
+    assert set(found.joint_force) == {lower, upper, *(f"{b}_{n}" for b in hinged for n in ("front", "rear"))}
+    for body, forces in hinged.items():
+        first, second = f"{body}_front", f"{body}_rear"
+        line = minus(p[second], p[first])
+        force, moment = (0, 0, 0), (0, 0, 0)
+        for acting, at in forces:
+            force, moment = minus(force, acting), minus(moment, cross(minus(p[at], p[first]), acting))
+        at_second = times(cross(moment, line), Fraction(1, dot(line, line)))
+        along = times(line, Fraction(dot(force, line), dot(line, line)))
+        assert near(found.joint_force[second], at_second)
+        assert near(found.joint_force[first], minus(minus(force, along), at_second))
+        assert abs(found.hinge_thrust[first] - number(dot(force, line)) / size(line)) < WITHIN
     ways = {"tie_rod": tie, "pushrod": pushed, "damper": pulled}
     for (name, way), density in zip(ways.items(), want[6:], strict=True):
         assert abs(found.rod_force[name] - number(density) * size(way)) < WITHIN, name
