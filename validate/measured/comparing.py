@@ -34,6 +34,7 @@ TOO_COARSE = (
     "what its rows are taken by is rounded so coarsely that no number could tell its curve from a level line"
 )
 FEWEST = 5  # rows that other cars are solved at
+MOST = 400  # of a grid, along which the motion turns back and forth
 
 
 @dataclass(frozen=True)
@@ -257,14 +258,20 @@ def _on_the_grid(scene: Scene, times: Array) -> Scene | None:
 def _by_rows(driven: Driven, values: Sequence[Array], rows: Rows) -> tuple[Rows, Scene | None]:
     """Some rows of a file as a motion, one at each whole second, and their order in it.
 
-    From row to row what they are taken by goes along smoothly, so rows are put in order where they are not.
+    From row to row what they are taken by goes along smoothly, so rows are put in order where they are not:
+    of a grid to and fro by turns.
     """
-    if len(values) > 1 or len(rows) < FEWEST:
+    if len(rows) < FEWEST or (len(values) > 1 and len(rows) > MOST):
         return rows, None
-    steps = np.diff(values[0][rows])
-    if not ((steps >= 0.0).all() or (steps <= 0.0).all()):
-        rows = rows[np.argsort(values[0][rows], kind="stable")]
-    inputs, _ = driven.inputs([values[0][rows]])
+    first = values[0][rows]
+    steps = np.diff(first)
+    if len(values) > 1:
+        _, line = np.unique(first, return_inverse=True)
+        to_and_fro = np.where(line % 2, -1.0, 1.0) * values[1][rows]
+        rows = rows[np.lexsort((to_and_fro, line))]
+    elif not ((steps >= 0.0).all() or (steps <= 0.0).all()):
+        rows = rows[np.argsort(first, kind="stable")]
+    inputs, _ = driven.inputs([one[rows] for one in values])
     times = np.arange(float(len(rows))).tolist()
     laws = {
         name: {"table": {"times": times, "values": value.tolist()}}

@@ -124,6 +124,33 @@ def test_rows_in_any_order_have_their_misread_hardpoint() -> None:
 
 
 @pytest.mark.parametrize(
+    ("coordinate", "amount", "words"),
+    [
+        ("tie_rod_outer__z", 5.0, "tie_rod_outer.z drawn 5 mm too high"),
+        ("upper_ball_joint__y", -3.0, "upper_ball_joint.y drawn 3 mm too far in"),
+    ],
+)
+def test_a_grid_of_travel_and_rack_has_its_misread_hardpoint(
+    coordinate: str, amount: float, words: str
+) -> None:
+    scene = asked("double-wishbone", "wheel_travel")
+    rows = []
+    for rack in (-20.0, 0.0, 20.0):
+        held = scene.model_copy(update={"inputs": {**scene.inputs, "rack": {"constant": rack}}})
+        wheel = simulate(moved(held, **{coordinate: amount})).numbers["wheel"]
+        travels = np.linspace(*RANGES["wheel_travel"], ROWS)
+        rows += list(zip(travels, np.full(ROWS, rack), *map(np.degrees, wheel.values()), strict=True))
+    order = np.random.default_rng(3).permutation(len(rows))
+    lines = [",".join(["wheel_travel", "rack", *wheel])]
+    lines += [",".join(f"{x:.4f}" for x in rows[i]) for i in order]
+    columns: Content = {n: {"is": f"wheel.{n}", "unit": "deg"} for n in wheel}
+    columns |= {n: {"is": is_, "unit": "mm", "printed": 0} for n, is_ in COLUMNS.items()}
+    found = compared("\n".join(lines), {"columns": columns}, scene).outcome
+    (said,) = (one.words for one in found.explanations)
+    assert words in said
+
+
+@pytest.mark.parametrize(
     ("change", "words"),
     [
         (late, "camber, kingpin, toe, caster: one sample late, the first one twice"),
