@@ -189,6 +189,13 @@ FAULTS = (
           lambda t, p: t["parts"]["left"].pop("mirrored"), "axle-steer", "position", 1.0),
     Fault("axle", "one end of the rack stands still",
           lambda t, p: t["inputs"].update(rack={"travel": "left.rack"}), "axle-steer", "stuck"),
+    Fault("rolling_axle", "the car rolls the other way",
+          rename("roll", "forward", "rearward", "inputs"), "axle-roll", "position", 10.0),
+    Fault("rolling_axle", "the car rolls about a wheel centre's height and side",
+          lambda t, p: p.update(points=p["points"] | {"roll_axis": [0, 718, 210]}),
+          "axle-roll", "position", 1.0),
+    Fault("rolling_axle", "a wheel keeps its height in the chassis",
+          lambda t, p: t["inputs"]["left.ground_height"].pop("over"), "axle-roll", "position", 5.0),
 )
 # fmt: on
 
