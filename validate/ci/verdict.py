@@ -29,6 +29,7 @@ from validate.output.report import (
 )
 from validate.output.table import Cell, Table
 from validate.plain_text import gathered, shown, some_of
+from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NUMBERS = 8  # numbers in a sentence: the table's notes have them all
@@ -154,8 +155,11 @@ def next_step(record: Record, verbose: bool = False) -> str:
     elif verdicts - {"agrees"}:
         table = "" if verbose else "-v prints the table of every quantity, "
         steps.append(f"{table}--report DIR makes a page with both models in motion")
-    if name := words.get((NOT_TESTED, "refused")):
-        steps.append(f"pointcoord plan {name} says how far each input can go and what holds it there")
+    refused = [one for one in record.examined if standing(one) == (NOT_TESTED, "refused")]
+    failed = {r.formulation: one for one in refused for r in one.refusals if r.error == SolverFailed.__name__}
+    steps += [f"mend {solver} as the message about it says" for solver in failed]
+    if left := [one.name for one in refused if one not in failed.values()]:
+        steps.append(f"pointcoord plan {left[-1]} says how far each input can go and what holds it there")
     if name := words.get((NOT_TESTED, "wrong input")):
         steps.append(f"mend {name} as the message about it says")
     if name := words.get((NOT_TESTED, "failed")):

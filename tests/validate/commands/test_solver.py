@@ -164,8 +164,10 @@ def test_a_mistake_is_told_in_one_line(
 def test_a_traceback_is_shown_where_it_is_asked_for(solvers: Path, capfd: pytest.CaptureFixture[str]) -> None:
     for more in ([], ["--traceback"]):
         assert run("raises", "off-axis-strut.toml", *more) == 3
-        err = capfd.readouterr().err
+        out, err = capfd.readouterr()
         assert "off-axis-strut.toml: KeyError: 'strut' at raises.py:2" in err
+        # No input goes too far: what is to be mended is the solver.
+        assert out.splitlines()[-1] == "Next: mend own.raises:solve as the message about it says."
         assert ("Traceback (most recent call last)" in err) == bool(more)
 
 
