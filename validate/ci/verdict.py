@@ -193,7 +193,7 @@ def undecided(examined: Examined) -> Iterator[str]:
         yield from (f"{pair_of(outcome)}: {line.strip()}" for line in silent_lines(outcome))
         rows = sorted(outcome.undecided, key=lambda row: row.verdict == "not given")
         reasons = gathered((f"{row.verdict}: {row.why}", about(row.quantity, row.name)) for row in rows)
-        yield from (f"{pair_of(outcome)}: {', '.join(w)}: {reason}" for reason, w in reasons.items())
+        yield from (f"{pair_of(outcome)}: {some_of(w, NUMBERS)}: {reason}" for reason, w in reasons.items())
 
 
 def silence(examined: Examined) -> str:
