@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from sample_cars import SampleCar, by_drawn_car
-from suspensions_in_closed_form import FORMS, ClosedForm
+from suspensions_in_closed_form import FORMS, Suspension
 
 from pointcoord import Scene, simulate, standing
 
@@ -23,7 +23,7 @@ def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
 @pytest.mark.parametrize("name", ["arm_angle", "rack"])
 def test_an_input_reaches_as_far_as_the_closed_form_has_an_assembly(
-    make_scene: Callable[..., Scene], form: ClosedForm, name: str
+    make_scene: Callable[..., Scene], form: Suspension, name: str
 ) -> None:
     car, inputs = form.sample_car, form.sample.drawn_inputs
     low, high = standing(make_scene(car=form.sample)).reach[name]

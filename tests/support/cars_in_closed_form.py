@@ -41,7 +41,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import mpmath
 import numpy as np
@@ -112,6 +112,19 @@ def _each(function: Callable[[Any], Any], values: Array) -> Array:
     found = np.empty(len(flat), dtype=object)
     found[:] = flat
     return found.reshape(np.shape(values))
+
+
+class Drawn(Protocol):
+    """A car as drawn, in numbers of any kind."""
+
+    @property
+    def points(self) -> Mapping[str, Sequence[Any]]: ...
+    @property
+    def up(self) -> Sequence[Any]: ...
+    @property
+    def right(self) -> Sequence[Any]: ...
+    @property
+    def closure(self) -> str: ...
 
 
 @dataclass(frozen=True)
@@ -200,9 +213,10 @@ class ClosedForm(ABC):
     steering: ClassVar[tuple[str, str]]  # points of the kingpin
     links: ClassVar[tuple[tuple[str, str], ...]]  # pairs of points at their drawn distance
     upper_lock: ClassVar[str]  # what locks besides arm and tie rod
+    upper_side_of: ClassVar[str]  # the sign of the drawing at the knuckle's upper end, by its name
 
     @classmethod
-    def of(cls, car: Car, number: Callable[[float], Any] = float) -> Self:
+    def of(cls, car: Drawn, number: Callable[[Any], Any] = float) -> Self:
         """Taken from a car; without a rack_centre the drawn tie_rod_inner is on the rack's line.
 
         Args:
@@ -227,7 +241,7 @@ class ClosedForm(ABC):
 
     @classmethod
     @abstractmethod
-    def own_of(cls, p: Mapping[str, Array], car: Car) -> tuple[dict[str, Any], Array]:
+    def own_of(cls, p: Mapping[str, Array], car: Drawn) -> tuple[dict[str, Any], Array]:
         """What the drawing fixes besides, and a vector along the kingpin as drawn.
 
         Args:
@@ -330,9 +344,10 @@ class StrutForm(ClosedForm):
     steering = (BALL, TOP)
     links = ((FRONT, BALL), (BALL, OUTER), (OUTER, LOWER), (OUTER, INNER), (LOWER, BALL))
     upper_lock = "strut"
+    upper_side_of = "slide_side"
 
     @classmethod
-    def own_of(cls, p: Mapping[str, Array], car: Car) -> tuple[dict[str, Any], Array]:
+    def own_of(cls, p: Mapping[str, Array], car: Drawn) -> tuple[dict[str, Any], Array]:
         """The axis in the knuckle; the kingpin of a collinear strut is drawn along the knuckle's own line."""
         ball, top, lower, beyond = p[BALL], p[TOP], p[LOWER], p[ROD_END] - p[TOP]
         if car.closure == "drawn":
@@ -382,9 +397,10 @@ class WishboneForm(ClosedForm):
         *((BALL, OUTER), (UPPER_BALL, OUTER), (OUTER, INNER)),
     )
     upper_lock = "upper_arm"
+    upper_side_of = "upper_side"
 
     @classmethod
-    def own_of(cls, p: Mapping[str, Array], car: Car) -> tuple[dict[str, Any], Array]:
+    def own_of(cls, p: Mapping[str, Array], car: Drawn) -> tuple[dict[str, Any], Array]:
         """The upper arm's side; the kingpin is drawn from one ball joint to the other."""
         pivot, upper, ball = p[UPPER_FRONT], p[UPPER_BALL], p[BALL]
         side = sign(dot(np.cross(p[UPPER_REAR] - pivot, ball - pivot), upper - pivot))

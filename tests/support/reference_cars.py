@@ -8,8 +8,8 @@ from fractions import Fraction
 from typing import Any
 
 from lotus_front import POINTS as LOTUS
-from off_axis_cars import BASE, closing
 from plain_mechanisms import close_car, count_car, design_of, solve_car
+from suspensions_in_closed_form import OFF_AXIS as STRUT
 
 from validate.reference import Instant
 from validate.reference.design import Design, Known, values_only
@@ -40,7 +40,7 @@ FRONT_AXLE = {
     "spring_rate": Fraction(63, 2),
     "spring_free_length": 720,
 }
-OFF_AXIS = closing(BASE, Fraction(1, 2), Fraction(230), (0, 1, 0))
+OFF_AXIS = STRUT.points
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 
-from closed_forms import number
+from exact_vectors import number
 from mpmath import mpf
 
 from validate.reference.vectors import Vector, minus, plus, times

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
 from numpy.typing import NDArray
-from suspensions_in_closed_form import FORMS, ClosedForm, rounded
+from suspensions_in_closed_form import FORMS, ExactCar, Suspension, rounded
 
 from pointcoord import KinematicMap, NotCovered, Scene, kinematic_map
 
@@ -17,31 +15,18 @@ Array = NDArray[np.float64]
 DIGITS = 60
 
 
-def scene_of(form: ClosedForm, car: Any) -> Scene:
-    def doubles(vector: Any) -> tuple[float, ...]:
-        return tuple(float(c) for c in vector)
-
-    p = {name: np.array(doubles(place)) for name, place in car.points.items()}
-    outboard = (p["wheel_centre"] - p["lower_arm_front"]) @ np.array(doubles(car.right))
+def scene_of(car: ExactCar) -> Scene:
     return Scene.from_mapping(
         {
             "effects": ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"),
-            "mechanism": {
-                "type": form.type,
-                "side": "right" if outboard > 0.0 else "left",
-                "points": {name: doubles(place) for name, place in car.points.items()},
-                "up": doubles(car.up),
-                "right": doubles(car.right),
-            },
+            "mechanism": car.part,
             "inputs": {"arm_angle": {"constant": 1.0}, "rack": {"constant": 0.0}},
             "time": {"start": 0.0, "stop": 0.0, "samples": 1},
         }
     )
 
 
-def map_near_the_drawing(
-    form: ClosedForm, car: Any, angle: float, travel: float, tolerance: float = 1e-9
-) -> KinematicMap:
+def map_near_the_drawing(car: ExactCar, angle: float, travel: float, tolerance: float = 1e-9) -> KinematicMap:
     with mpmath.workdps(DIGITS):
         drawn = [float(value) for value in car.drawn]
     middle = round(drawn[0] * 64) / 64, round(drawn[1] * 8) / 8
@@ -49,7 +34,7 @@ def map_near_the_drawing(
         "arm_angle": (middle[0] - angle, middle[0] + angle),
         "rack": (middle[1] - travel, middle[1] + travel),
     }
-    return kinematic_map(scene_of(form, car), ranges, tolerance)
+    return kinematic_map(scene_of(car), ranges, tolerance)
 
 
 def at_shares(map: KinematicMap, share: tuple[float, float]) -> tuple[float, float]:
@@ -61,10 +46,10 @@ def at_shares(map: KinematicMap, share: tuple[float, float]) -> tuple[float, flo
 
 
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
-def test_every_covered_pose_of_a_wide_range_is_on_the_branch_of_the_drawing(form: ClosedForm) -> None:
+def test_every_covered_pose_of_a_wide_range_is_on_the_branch_of_the_drawing(form: Suspension) -> None:
     # So wide that assemblies end inside it.
-    car = rounded(form.sample_car, form)
-    map = map_near_the_drawing(form, car, 0.625, 160.0, 1e-6)
+    car = rounded(form.sample_car)
+    map = map_near_the_drawing(car, 0.625, 160.0, 1e-6)
     assert 0.3 < map.share_covered < 1.0
     generator = np.random.default_rng(5)
     shares = generator.integers(-1024, 1025, (60, 2)) / 1024
@@ -81,7 +66,7 @@ def test_every_covered_pose_of_a_wide_range_is_on_the_branch_of_the_drawing(form
                 continue
             assert pose is not None
             found = map(value).position
-            for name, place in pose.points.items():
+            for name, place in pose.items():
                 error = max(abs(mpf(float(a)) - e) for a, e in zip(found[name], place, strict=True))
                 assert error <= map.bound.position, (name, float(error))
     assert 0 < refused < len(shares)

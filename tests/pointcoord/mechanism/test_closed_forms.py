@@ -11,14 +11,15 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from closed_forms import PHASES, cross, dot, minus, number, numbers
+from exact_vectors import number, numbers
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
-from suspensions_in_closed_form import FORMS, ClosedForm, rounded
+from suspensions_in_closed_form import FORMS, PHASES, ExactCar, Suspension, rounded
 
 from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.method import METHODS
+from validate.reference.vectors import cross, dot, minus
 
 Points = dict[str, Any]
 Law = tuple[float, float, float]
@@ -28,30 +29,20 @@ coefficients = st.integers(-32, 32).map(lambda n: n / 64)
 laws = st.tuples(coefficients, coefficients)
 
 
-def scene_of(form: ClosedForm, car: Any, inputs: dict[str, Law], samples: int) -> Scene:
-    def doubles(vector: Any) -> tuple[float, ...]:
-        return tuple(float(c) for c in vector)
-
-    p = {name: np.array(doubles(place)) for name, place in car.points.items()}
-    right = np.array(doubles(car.right))
-    outboard = (p["wheel_centre"] - p["lower_arm_front"]) @ right
+def scene_of(car: ExactCar, inputs: dict[str, Law], samples: int) -> Scene:
     return Scene.from_mapping(
         {
             "effects": ("velocity", "acceleration", "knuckle_rates", "wheel_angles"),
-            "mechanism": {
-                "type": form.type,
-                "side": "right" if outboard > 0.0 else "left",
-                "points": {name: doubles(place) for name, place in car.points.items()},
-                "up": doubles(car.up),
-                "right": doubles(car.right),
-            },
+            "mechanism": car.part,
             "inputs": {name: {"polynomial": law} for name, law in inputs.items()},
             "time": {"start": 0.0, "stop": 0.5 if samples > 1 else 0.0, "samples": samples},
         }
     )
 
 
-def exact(form: ClosedForm, car: Any, inputs: dict[str, Law], instant: float) -> dict[str, dict[str, Any]]:
+def exact(
+    form: Suspension, car: ExactCar, inputs: dict[str, Law], instant: float
+) -> dict[str, dict[str, Any]]:
     """Every quantity by name, each a list of numbers of many digits."""
 
     def at(t: mpf) -> Points:
@@ -61,7 +52,7 @@ def exact(form: ClosedForm, car: Any, inputs: dict[str, Law], instant: float) ->
         )
         pose = car.drawn_pose(theta, travel, heave)
         assert pose is not None
-        return dict(pose.points)
+        return dict(pose)
 
     before, here, after = (at(mpf(instant) + k * STEP) for k in (-1, 0, 1))
     speed = {n: [(b - a) / (2 * STEP) for a, b in zip(before[n], after[n], strict=True)] for n in here}
@@ -89,7 +80,7 @@ def exact(form: ClosedForm, car: Any, inputs: dict[str, Law], instant: float) ->
     }
 
 
-def body_rates(form: ClosedForm, place: Points, speed: Points, change: Points) -> tuple[Any, Any]:
+def body_rates(form: Suspension, place: Points, speed: Points, change: Points) -> tuple[Any, Any]:
     """omega and alpha from the rates of two edges and of their normal: E' = omega x E, and once more."""
 
     def edges(states: Points) -> tuple[Any, Any]:
@@ -122,7 +113,7 @@ def body_rates(form: ClosedForm, place: Points, speed: Points, change: Points) -
 @settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8), phases=PHASES)
 @given(data=st.data(), arm=laws, rack=laws, heave=laws, away=coefficients)
 def test_every_number_is_within_its_proven_bound_of_the_closed_form(
-    form: ClosedForm,
+    form: Suspension,
     method: Any,
     data: st.DataObject,
     arm: tuple[float, float],
@@ -131,7 +122,7 @@ def test_every_number_is_within_its_proven_bound_of_the_closed_form(
     away: float,
 ) -> None:
     with mpmath.workdps(DIGITS):
-        car = rounded(data.draw(form.cars), form)
+        car = rounded(data.draw(form.cars))
         theta, travel = car.drawn
         first = round(float(theta) * 64) / 64 + 0.5 * away
         inputs = {
@@ -140,7 +131,7 @@ def test_every_number_is_within_its_proven_bound_of_the_closed_form(
             "heave": (0.0, *(64.0 * c for c in heave)),
         }
         try:
-            motion = simulate(scene_of(form, car, inputs, 3), method)
+            motion = simulate(scene_of(car, inputs, 3), method)
         except AssemblyError:
             assume(False)
         proven = motion.proof(rates=True).proven

@@ -14,7 +14,7 @@ from mechanism_poses import placed
 from numpy.typing import NDArray
 from relative_cars import plain_car
 from sample_cars import GENERAL_STRUT, SAMPLES, SampleCar
-from suspensions_in_closed_form import FORMS, ClosedForm, rounded
+from suspensions_in_closed_form import FORMS, Suspension, rounded
 
 from validate.peers import program
 from validate.peers.errors import PeerError
@@ -57,9 +57,9 @@ def solved(program_of: ProgramOf, linkage: Linkage, driven: Array, tolerance: fl
 @searched
 @given(data=st.data(), arm=st.floats(-0.25, 0.25), rack=st.floats(-25.0, 25.0))
 def test_every_point_is_where_the_closed_form_says(
-    program_of: ProgramOf, form: ClosedForm, data: st.DataObject, arm: float, rack: float
+    program_of: ProgramOf, form: Suspension, data: st.DataObject, arm: float, rack: float
 ) -> None:
-    car: Any = rounded(data.draw(form.cars), form)
+    car: Any = rounded(data.draw(form.cars))
     points = {name: [float(c) for c in place] for name, place in car.points.items()}
     axes = {"up": [float(c) for c in car.up], "right": [float(c) for c in car.right]}
     linkage = linkage_of(plain(mechanism_file(form.type), {"points": points, **axes}, ("arm_angle", "rack")))
@@ -78,9 +78,9 @@ def test_every_point_is_where_the_closed_form_says(
     # Nearer to where two assemblies meet rounding is raised by more than a thousand.
     assume(np.linalg.cond(engine.misses()[1][:, engine.unknown]) < 1e3)
     for name, place in numbers(linkage, None, poses)["position"].items():
-        if name in exact.points:
+        if name in exact:
             # 16 roundings of a car of 1024 mm, raised a thousand times: 2e-9; most are far from that.
-            assert np.abs(place[0] - np.array([float(c) for c in exact.points[name]])).max() < 1e-9, name
+            assert np.abs(place[0] - np.array([float(c) for c in exact[name]])).max() < 1e-9, name
 
 
 @by_program

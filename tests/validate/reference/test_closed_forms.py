@@ -5,12 +5,12 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from closed_forms import PHASES, ClosedFormCar, Points, number, numbers
+from exact_vectors import Points, number, numbers
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
 from stencils import OFF, close, derivatives, seven
-from suspensions_in_closed_form import PLAIN, RANDOM
+from suspensions_in_closed_form import PHASES, PLAIN, RANDOM, ExactCar
 
 from validate.reference import InfeasibleError
 from validate.reference.vectors import cross, minus, plus
@@ -27,7 +27,7 @@ def apart(one: Points, other: Points) -> mpf:
     return max(abs(x) for name in one for x in minus(one[name], numbers(other[name])))
 
 
-def drawn(kind: str, data: st.DataObject) -> ClosedFormCar:
+def drawn(kind: str, data: st.DataObject) -> ExactCar:
     """A random car."""
     return data.draw(RANDOM[kind])
 
@@ -47,8 +47,8 @@ def test_the_pose_is_the_closed_form_s_to_the_proven_radius(
             car.solve(inputs)
         return
     reference = car.solve(inputs)
-    assert set(reference.position) == set(pose.points)
-    assert apart(reference.position, pose.points) <= reference.error_bound["position"] + WITHIN
+    assert set(reference.position) == set(pose)
+    assert apart(reference.position, pose) <= reference.error_bound["position"] + WITHIN
     assert reference.error_bound["position"] < reference.radius < mpf("1e-55")
 
 
@@ -83,8 +83,7 @@ def test_velocities_and_accelerations_are_the_derivatives_of_the_closed_form(
 
     def at(t: mpf) -> Points | None:
         inputs = [x + y * t + z * t * t / 2 for x, y, z in values.values()]
-        pose = car.drawn_pose(*inputs)
-        return None if pose is None else pose.points
+        return car.drawn_pose(*inputs)
 
     moments = seven(at)
     assume(None not in moments)
@@ -122,7 +121,7 @@ def test_the_search_finds_the_closed_form_s_assemblies_and_no_other(kind: str, t
     theta, rack = car.drawn[0] + mpf(turn), car.drawn[1] + 11
     inputs = {"arm_angle": (theta, 0, 0), "rack": (rack, 0, 0)}
     listed = car.count(inputs, starts=600)
-    known = [pose.points for pose in car.poses(theta, rack)]
+    known = [*car.poses(theta, rack)]
     # The strut's rod may also point the other way along its axis, which the closed form leaves out.
     ways = 2 if car.suspension == "macpherson" else 1
     assert len(listed.found) == ways * len(known) > 0

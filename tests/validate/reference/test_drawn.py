@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
-from closed_forms import Points, numbers, size
+from exact_vectors import Points, numbers, size
 from mpmath import mpf
-from off_axis_cars import BASE, OffAxisCar, closing
 from plain_mechanisms import close_car, solve_car
+from suspensions_in_closed_form import OFF_AXIS as CAR
+from suspensions_in_closed_form import ExactCar
 
 from validate.reference import Instant
 from validate.reference.vectors import cross, dot, minus, plus, times
-
-UP, RIGHT = (0, 0, 1), (0, 1, 0)
-CAR = OffAxisCar(closing(BASE, Fraction(1, 2), Fraction(230), RIGHT), UP, RIGHT)
 
 
 def apart(one: Points, other: Points) -> mpf:
@@ -22,8 +20,8 @@ def apart(one: Points, other: Points) -> mpf:
     return max(abs(x) for name in one for x in minus(one[name], numbers(other[name])))
 
 
-def solve(car: OffAxisCar, inputs: dict[str, tuple[object, ...]], **settings: object) -> Instant:
-    return solve_car(car.points, inputs, **{**car.frame, "closure": "drawn", **settings})
+def solve(car: ExactCar, inputs: dict[str, tuple[object, ...]], **settings: object) -> Instant:
+    return solve_car(car.points, inputs, **{**car.kind, "closure": "drawn", **settings})
 
 
 def test_what_is_drawn_comes_back_with_strut_lower_above_the_strut_top_or_below_the_ball_joint() -> None:
@@ -35,7 +33,7 @@ def test_what_is_drawn_comes_back_with_strut_lower_above_the_strut_top_or_below_
         pose = car.drawn_pose(car.drawn[0] + mpf("0.1"), car.drawn[1] + 5)
         assert pose is not None
         inputs = {"arm_angle": (car.drawn[0] + mpf("0.1"), 0, 0), "rack": (car.drawn[1] + 5, 0, 0)}
-        assert apart(solve(car, inputs).position, pose.points) < mpf("1e-70")
+        assert apart(solve(car, inputs).position, pose) < mpf("1e-70")
 
 
 def test_a_rod_end_drawn_beside_the_axis_moves_onto_it_and_nothing_else_moves() -> None:

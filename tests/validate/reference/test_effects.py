@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from closed_forms import rational_turn, turned
+from exact_vectors import rational_turn, turned
 from flint import arb
 from mpmath import mpf
 from reference_cars import Inputs, ReferenceCar

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from closed_forms import number, unit
+from exact_vectors import number, unit
 from mechanism_drawings import described
 from mpmath import mpf
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from closed_forms import number, rational_turn, size, turned
+from exact_vectors import number, rational_turn, size, turned
 from mechanism_drawings import described, joined
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism

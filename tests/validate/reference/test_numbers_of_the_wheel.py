@@ -11,7 +11,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from closed_forms import number, numbers, size
+from exact_vectors import number, numbers, size
 from mechanism_drawings import described, five_link
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
