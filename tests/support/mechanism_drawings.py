@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
 
-from plain_mechanisms import full_input, plain_mechanism
+from mechanism_files import full_input
+from plain_mechanisms import plain_mechanism
 from reference_cars import CARS
 from vdsim import FIVE_LINK, TRAILING_ARM, WHEEL_CENTRE
 

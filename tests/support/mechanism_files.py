@@ -55,7 +55,7 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
         if name not in given and name in tables["bodies"]["chassis"]:
             given[name] = given[other]
     absent = {name: other for name, other in tables.get("stand_ins", {}).items() if name not in given}
-    inputs = {name: _input(tables["inputs"][name]) for name in driven}
+    inputs = {name: full_input(tables["inputs"][name]) for name in driven}
     return {
         "name": tables["title"],
         "bodies": {body: [p for p in ps if p not in absent] for body, ps in tables["bodies"].items()},
@@ -94,10 +94,11 @@ def _slide(slide: Tables) -> Tables:
     }
 
 
-def _input(drive: Tables) -> Tables:
+def full_input(drive: Mapping[str, Any]) -> Tables:
+    """An input's table with what may be left out."""
     if "travel" in drive:
         travel = drive["travel"]
-        return {"travel": [travel] if isinstance(travel, str) else travel}
+        return {**drive, "travel": [travel] if isinstance(travel, str) else travel}
     if "height" in drive:
         return {"along": "up", **drive}
     return {"on": "chassis", **drive} if drive.get("from") == "drawing" else dict(drive)

@@ -2,85 +2,24 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
-from functools import cache
-from pathlib import Path
 from typing import Any
 
-import pointcoord
+from mechanism_files import mechanism_file, plain
+
 from validate.reference import Design, Instant, closed_drawing, count_assemblies, instants_of
 from validate.reference.effects.registry import ANGLES
 from validate.reference.route import CLEAR
 
-MECHANISMS = Path(pointcoord.__file__).parent / "mechanisms"
 DRIVEN = ("arm_angle", "rack", "heave")
-UP, RIGHT = (0, 0, 1), (0, 1, 0)
 Points = Mapping[str, Sequence[Any]]
 
 
-@cache
-def _tables(name: str) -> dict[str, Any]:
-    return tomllib.loads((MECHANISMS / f"{name}.toml").read_text(encoding="utf-8"))
-
-
 def plain_mechanism(
-    name: str,
-    points: Points,
-    driven: Sequence[str] = DRIVEN,
-    up: Sequence[Any] = UP,
-    right: Sequence[Any] = RIGHT,
-    side: str = "left",
-    closure: str = "drawn",
-    wheel_radius: object = None,
-    car: Mapping[str, object] | None = None,
+    name: str, points: Points, driven: Sequence[str] = DRIVEN, **settings: Any
 ) -> dict[str, Any]:
-    """A shipped file and a drawing, mm, flattened."""
-    tables = _tables(name)
-    closing = {} if closure == "drawn" else tables["closures"][closure]
-    merged = {k: {**tables.get(k, {}), **closing.get(k, {})} for k in ("rods", "slides", "inputs", "roles")}
-    stand_ins = tables.get("stand_ins", {})
-    chassis = tables["bodies"]["chassis"]
-    drawn = {**{p: points[q] for p, q in stand_ins.items() if p in chassis and q in points}, **points}
-
-    def there(who: Any) -> Any:
-        return who if isinstance(who, str) else [p if p in drawn else stand_ins[p] for p in who]
-
-    return {
-        "name": name,
-        "bodies": {body: [p for p in ps if p in drawn] for body, ps in tables["bodies"].items()},
-        "rods": merged["rods"],
-        "slides": {
-            slide: {
-                "points": spec.get("points", [spec.get("point")]),
-                "body": spec.get("body", "chassis"),
-                "through": spec["through"],
-                "along": spec["along"],
-                "turns": spec.get("turns", True),
-            }
-            for slide, spec in merged["slides"].items()
-        },
-        "inputs": {one: full_input(merged["inputs"][one]) for one in driven},
-        "roles": {role: there(who) for role, who in merged["roles"].items()},
-        "points": drawn,
-        "up": up,
-        "right": right,
-        "side": side,
-        "wheel_radius": wheel_radius,
-        "car": car or {},
-    }
-
-
-def full_input(spec: Mapping[str, Any]) -> dict[str, Any]:
-    """An input's table with what may be left out."""
-    full = dict(spec)
-    if isinstance(full.get("travel"), str):
-        full["travel"] = [full["travel"]]
-    if "height" in full:
-        full.setdefault("along", "up")
-    if full.get("from") == "drawing":
-        full.setdefault("on", "chassis")
-    return full
+    """A shipped file and a drawing, mm, flattened; settings are those of a scene's mechanism."""
+    return plain(mechanism_file(name), {"points": points, **settings}, driven)
 
 
 def design_of(points: Points, suspension: str = "macpherson", **settings: Any) -> Design:
