@@ -78,8 +78,8 @@ def test_positions_are_within_the_tolerance_and_rates_within_as_much_of_themselv
     assert off(motion, exact, "position") <= tolerance + rounding(exact)
     # A rate is right to the part of the largest one of its kind that the tolerance is of the car's size.
     # Where a pose may be off by a tolerance its rates are off by omega times that of themselves (see
-    # `newton`), omega below its condition number. What rounding leaves is what the finest motion has of it: by
-    # a map of narrow boxes, whose width divides each rate, much more than by series. Boxes differ: twice that.
+    # `newton`), omega below its condition number. What rounding leaves is what the finest motion has of it:
+    # by a map of narrow boxes, whose width divides each rate, more than by series. Boxes differ: twice that.
     condition = float(exact.proof().condition.max())
     assume(condition < 1e3)
     part = tolerance / motion.unit

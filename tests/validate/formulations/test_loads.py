@@ -15,8 +15,8 @@ from validate.comparison.compare import Outcome, compare, compare_solutions
 from validate.formulations.registry import formulation
 
 LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
-# With a damper at the wheel, behind a pushrod and driven; without one; rods alone; a hinge alone; two wheels, and
-# these on the ground under a car that rolls.
+# With a damper at the wheel, behind a pushrod and driven; without one; rods alone; a hinge alone; two wheels,
+# and these on the ground under a car that rolls.
 CARS = (
     "off-axis-strut",
     "pushrod",
