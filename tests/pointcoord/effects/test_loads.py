@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hinged_knuckle import hinged_knuckle
 from mpmath import cos, mpf, sin, sqrt, workdps
 from numpy.typing import NDArray
 
@@ -153,32 +154,8 @@ def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
     assert {*joint} == {*ball, *(end for both in hinges.values() for end in both)}
 
 
-TURNED_KNUCKLE = {
-    "bodies": {
-        "chassis": ["arm_front", "arm_rear", "link_inner"],
-        "arm": ["arm_front", "arm_rear", "king_low", "king_top"],
-        "knuckle": ["king_top", "king_low", "link_outer", "inner", "centre"],
-    },
-    "rods": {"link": ["link_inner", "link_outer"]},
-    "inputs": {"travel": {"height": "centre"}},
-    "roles": {"knuckle": "knuckle", "wheel_axis": ["inner", "centre"]},
-}
-
-
 def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm() -> None:
-    points = {
-        "arm_front": (-200.0, 300.0, 300.0),
-        "arm_rear": (180.0, 320.0, 310.0),
-        "king_low": (10.0, 640.0, 180.0),
-        "king_top": (25.0, 600.0, 420.0),
-        "link_inner": (-140.0, 310.0, 260.0),
-        "link_outer": (-130.0, 630.0, 250.0),
-        "inner": (0.0, 650.0, 300.0),
-        "centre": (0.0, 750.0, 310.0),
-    }
-    car = {**TURNED_KNUCKLE, "side": "right", "points": points, "wheel_radius": RADIUS, "loads": LOAD}
-    scene = {"effects": ["loads"], "mechanism": car, "inputs": {"travel": {"polynomial": [-20.0, 45.0]}}}
-    motion = simulate(Scene.from_mapping({**scene, "time": {"start": 0.0, "stop": 1.0, "samples": 5}}))
+    motion = simulate(hinged_knuckle(LOAD, RADIUS))
     at, contact = motion.position, contact_of(motion, "inner", "centre")
     hinges = {}
     for first, second in (("king_top", "king_low"), ("arm_front", "arm_rear")):
