@@ -10,9 +10,8 @@ from pointcoord import Scene
 TABLES = {
     "bodies": {
         "chassis": ["arm_front", "arm_rear", "link_inner"],
-        # The two bodies list the points of their hinge each in another order.
-        "knuckle": ["king_top", "king_low", "link_outer", "inner", "centre"],
         "arm": ["arm_front", "arm_rear", "king_low", "king_top"],
+        "knuckle": ["king_top", "king_low", "link_outer", "inner", "centre"],
     },
     "rods": {"link": ["link_inner", "link_outer"]},
     "inputs": {"travel": {"height": "centre"}},
