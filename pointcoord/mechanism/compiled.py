@@ -335,14 +335,19 @@ class _Compiler:
         return Normal(f"normal of the {body}", *self.choices.triangles[body])
 
     def _bodies(self, solved: Collection[str]) -> Iterator[Constraint]:
-        """The sides of each triangle that nothing before holds, and the rods that are links."""
-        held = [frozenset(self.structure.bodies[CHASSIS])]
-        for body, names in self.structure.moving_bodies():
-            a, b, c = self.choices.triangles[body]
+        """The sides of each triangle that nothing else holds, and the rods that are links."""
+        moving = self.structure.moving_bodies()
+        bodies = [(self.choices.triangles[body], {*names} & {*solved}) for body, names in moving]
+        before = [{*self.structure.bodies[CHASSIS]}]
+        for triangle, points in bodies:
+            a, b, c = triangle
             for start, end in ((b, a), (c, a), (c, b)):
-                if not any({start, end} <= before for before in held):
+                side = {start, end}
+                # A body that has one of the two as a further point holds their distance, first or last.
+                further = any(side <= others and not side <= {*corners} for corners, others in bodies)
+                if not further and not any(side <= others for others in before):
                     yield Link(start, end)
-            held.append(frozenset(name for name in names if name in solved))
+            before.append(points)
         for ends in self.structure.rods.values():
             if ends not in self._on_axes.values():
                 yield Link(*ends)

@@ -7,10 +7,11 @@ from typing import Any
 
 from pointcoord import Scene
 
-TABLES = {
+TABLES: dict[str, Any] = {
     "bodies": {
         "chassis": ["arm_front", "arm_rear", "link_inner"],
         "arm": ["arm_front", "arm_rear", "king_low", "king_top"],
+        # Lists the points of its hinge in another order than the arm.
         "knuckle": ["king_top", "king_low", "link_outer", "inner", "centre"],
     },
     "rods": {"link": ["link_inner", "link_outer"]},
@@ -29,13 +30,19 @@ POINTS = {
 }
 
 
-def hinged_knuckle(load: Mapping[str, Any], radius: float, samples: int = 5) -> Scene:
-    """It goes down and up under a load."""
+def hinged_knuckle(
+    load: Mapping[str, Any],
+    radius: float,
+    samples: int = 5,
+    bodies: tuple[str, ...] = ("chassis", "arm", "knuckle"),
+) -> Scene:
+    """It goes down and up under a load, with its bodies listed in an order."""
+    tables = {**TABLES, "bodies": {body: TABLES["bodies"][body] for body in bodies}}
     wheel = {"side": "right", "points": POINTS, "wheel_radius": radius, "loads": load}
     return Scene.from_mapping(
         {
             "effects": ["loads"],
-            "mechanism": {**TABLES, **wheel},
+            "mechanism": {**tables, **wheel},
             "inputs": {"travel": {"polynomial": [-20.0, 45.0]}},
             "time": {"start": 0.0, "stop": 1.0, "samples": samples},
         }

@@ -1,6 +1,7 @@
 """Forces of rods, dampers and joints: closed forms, balances of bodies, laws of mirrors and turns."""
 
 from collections.abc import Mapping
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -154,8 +155,9 @@ def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
     assert {*joint} == {*ball, *(end for both in hinges.values() for end in both)}
 
 
-def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm() -> None:
-    motion = simulate(hinged_knuckle(LOAD, RADIUS))
+@pytest.mark.parametrize("bodies", list(permutations(("chassis", "arm", "knuckle"))))
+def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm(bodies: tuple[str, ...]) -> None:
+    motion = simulate(hinged_knuckle(LOAD, RADIUS, bodies=bodies))
     at, contact = motion.position, contact_of(motion, "inner", "centre")
     hinges = {}
     for first, second in (("king_top", "king_low"), ("arm_front", "arm_rear")):
