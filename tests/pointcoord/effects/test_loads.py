@@ -156,7 +156,9 @@ def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
 
 
 @pytest.mark.parametrize("bodies", list(permutations(("chassis", "arm", "knuckle"))))
-def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm(bodies: tuple[str, ...]) -> None:
+def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm(
+    bodies: tuple[str, ...],
+) -> None:
     motion = simulate(hinged_knuckle(LOAD, RADIUS, bodies=bodies))
     at, contact = motion.position, contact_of(motion, "inner", "centre")
     hinges = {}
