@@ -54,7 +54,7 @@ class Known:
     def driven_at(self, name: str, rate: arb) -> Known:
         """One input at a rate, rad/s or mm/s, and all else at rest, at the same instant; in balls."""
         inputs = {one: Jet(jet.value, rate if one == name else arb(0)) for one, jet in self.inputs.items()}
-        numbers = [w for drive in self.mechanism.drives.values() for w in drive.numbers(inputs)]
+        numbers = self.mechanism.numbers(inputs, as_ball)
         return replace(self, numbers=numbers, chassis=self.chassis.still())
 
     def handed(self, unknown: Sequence[arb]) -> bool:
@@ -221,7 +221,7 @@ class Design:
     def known(self, driven: Driven) -> Known:
         """What the equations take as given, as jets of balls at the present precision, local."""
         inputs = {name: balls(jet) for name, jet in driven.items()}
-        numbers = [w for drive in self.mechanism.drives.values() for w in drive.numbers(inputs)]
+        numbers = self.mechanism.numbers(inputs, as_ball)
         return self._known(numbers, inputs)
 
     def known_as_drawn(self) -> Known:

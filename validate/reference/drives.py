@@ -28,6 +28,7 @@ from flint import arb
 from validate.reference.chassis import ChassisMotion
 from validate.reference.compiler import CHASSIS, Compiler, Exact, Table
 from validate.reference.directions import directed
+from validate.reference.dual import angle
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
@@ -40,7 +41,8 @@ class Drive:
     """An input of a mechanism.
 
     Attributes:
-        numbers: the numbers w of the values of the inputs that it reads, rad or mm, as jets of balls.
+        numbers: the numbers w of the values of the inputs that it reads, rad or mm, as jets of any kind of
+            number, and a fraction in that kind.
         reads: the input itself, and those besides that its numbers hang on.
         drawn: these numbers as drawn.
         input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
@@ -48,7 +50,7 @@ class Drive:
         turns: whether it is an angle of any number of turns.
     """
 
-    numbers: Callable[[Mapping[str, Jet]], Sequence[Jet]]
+    numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
     reads: tuple[str, ...]
     drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
@@ -85,9 +87,10 @@ def _angle(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         beside = (as_ball(d2) - numbers[0] * numbers[0]).nonnegative_part()
         return arb.atan2(beside.sqrt(), numbers[0])
 
-    return _own(
-        name, lambda value: [value.sin_cos()[1] * as_ball(d2).sqrt()], lambda: [as_ball(height)], angle
-    )
+    def numbers(value: Jet, exact: Exact) -> list[Jet]:
+        return [value.sin_cos()[1] * root(exact(d2))]
+
+    return _own(name, numbers, lambda: [as_ball(height)], angle)
 
 
 def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -108,9 +111,9 @@ def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) 
     # At the angle itself g1 cos + g2 sin / |n| is positive; half a turn from it negative.
     compiler.positive.append(products[0] * cosine * nn + products[1] * sine)
 
-    def numbers(value: Jet) -> list[Jet]:
+    def numbers(value: Jet, exact: Exact) -> list[Jet]:
         sin, cos = value.sin_cos()
-        return [sin, cos * (1 / as_ball(nn).sqrt())]
+        return [sin, cos * (1 / root(exact(nn)))]
 
     return _own(
         name,
@@ -128,18 +131,18 @@ def _of_unknowns(
 
 
 def _travel(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    return _slid(compiler, name, spec["travel"], lambda: arb(1))
+    return _slid(compiler, name, spec["travel"], lambda exact: exact(Fraction(1)))
 
 
 def _steers(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     given = compiler.plain.get("rack_per_turn")
     if given is None:
         raise BadInputError("rack_per_turn", None, f"a number of mm, which inputs.{name} needs")
-    return _slid(compiler, name, spec["steers"], lambda: travel_per_radian(compiler.plain))
+    return _slid(compiler, name, spec["steers"], partial(travel_per_radian, compiler.plain))
 
 
-def travel_per_radian(plain: Mapping[str, Any]) -> arb:
-    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm.
+def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scalar:
+    """What a rack goes as the steering wheel turns, rack_per_turn / (2 pi), mm, in a kind of number.
 
     Raises:
         BadInputError: rack_per_turn is no number other than 0.
@@ -147,11 +150,14 @@ def travel_per_radian(plain: Mapping[str, Any]) -> arb:
     per_turn = as_fraction(plain["rack_per_turn"], "rack_per_turn")
     if per_turn == 0:
         raise BadInputError("rack_per_turn", plain["rack_per_turn"], "a number of mm other than 0")
-    return as_ball(per_turn) / (2 * arb.pi())
+    quarter = angle(exact(Fraction(1)), exact(Fraction(0)))
+    return exact(per_turn) / (4 * quarter)
 
 
-def _slid(compiler: Compiler, name: str, slides: Sequence[str], per_input: Callable[[], arb]) -> Drive:
-    """Slides that go `per_input` mm per mm or rad of the input, a ball at the present precision."""
+def _slid(
+    compiler: Compiler, name: str, slides: Sequence[str], per_input: Callable[[Exact], Scalar]
+) -> Drive:
+    """Slides that go `per_input` mm per mm or rad of the input."""
     drawn, lengths, unit = [], [], compiler.unit
     for slide in slides:
         shares, along, squared = compiler.lines[slide]
@@ -160,17 +166,17 @@ def _slid(compiler: Compiler, name: str, slides: Sequence[str], per_input: Calla
         off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
-    per_input()  # what it refuses is refused here
+    per_input(as_ball)  # what it refuses is refused here
 
-    def numbers(value: Jet) -> list[Jet]:
-        local = value * (per_input() * as_ball(1 / unit))
-        return [local * (1 / as_ball(squared).sqrt()) for squared in lengths]
+    def numbers(value: Jet, exact: Exact) -> list[Jet]:
+        local = value * (per_input(exact) * exact(1 / unit))
+        return [local * (1 / root(exact(squared))) for squared in lengths]
 
     return _own(
         name,
         numbers,
         lambda: [as_ball(one) for one in drawn],
-        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(),
+        lambda w: w[0] * as_ball(unit) * as_ball(lengths[0]).sqrt() / per_input(as_ball),
         required=False,
     )
 
@@ -179,7 +185,7 @@ def _height(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     along = directed(compiler.plain, spec.get("along", "up"))
     drawn = dot(compiler.table[spec["height"]], along)
     compiler.row(name, dot(compiler.place(spec["height"]), along) - compiler.number())
-    return _risen(name, compiler.unit, lambda: as_ball(drawn))
+    return _risen(name, compiler.unit, lambda exact: exact(drawn))
 
 
 def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
@@ -198,8 +204,8 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     if over not in (CHASSIS, "ground"):
         raise BadInputError(f"inputs.{name}: over", over, "'chassis' or 'ground'")
 
-    def drawn() -> arb:
-        return as_ball(high) - as_ball(r * r - m * m * share2).sqrt()
+    def drawn(exact: Exact) -> Scalar:
+        return exact(high) - root(exact(r * r - m * m * share2))
 
     if over == "ground":
         return _over_ground(compiler, name, (inner, centre), (r * r, share2), drawn)
@@ -222,7 +228,7 @@ def _over_ground(
     name: str,
     axis: tuple[str, str],
     disc: tuple[Fraction, Fraction],
-    drawn: Callable[[], arb],
+    drawn: Callable[[Exact], Scalar],
 ) -> Drive:
     """A contact height along the true up, which the chassis' inputs turn in the chassis' frame.
 
@@ -246,42 +252,44 @@ def _over_ground(
     compiler.row(name, dot(compiler.place(centre), seen) + lift - drop - level)
     moving = tuple(n for n, spec in plain["inputs"].items() if {"moves", "turns"} & {*spec})
 
-    def numbers(inputs: Mapping[str, Jet]) -> list[Jet]:
-        chassis = ChassisMotion.of(plain, compiler.table, compiler.unit, inputs, as_ball)
-        zero = Jet(arb(0), arb(0), arb(0))
-        nowhere, upward = (zero, zero, zero), each(as_ball, up)
+    def numbers(inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
+        chassis = ChassisMotion.of(plain, compiler.table, compiler.unit, inputs, exact)
+        zero = inputs[name] * 0
+        nowhere, upward = (zero, zero, zero), each(exact, up)
         ways = ([zero + int(i == k) for i in range(3)] for k in range(3))
         ground = [zero + dot(chassis.turned((a, b, c)), upward) for a, b, c in ways]
-        risen = inputs[name] * as_ball(1 / compiler.unit) + drawn()
+        risen = inputs[name] * exact(1 / compiler.unit) + drawn(exact)
         return [*ground, zero + dot(chassis.moved(nowhere), upward), risen]
 
     return Drive(
         numbers,
         (name, *moving),
-        lambda: [*each(as_ball, up), arb(0), drawn()],
-        lambda w: (w[4] - drawn()) * as_ball(compiler.unit),
+        lambda: [*each(as_ball, up), arb(0), drawn(as_ball)],
+        lambda w: (w[4] - drawn(as_ball)) * as_ball(compiler.unit),
     )
 
 
 def _own(
     name: str,
-    numbers: Callable[[Jet], Sequence[Jet]],
+    numbers: Callable[[Jet, Exact], Sequence[Jet]],
     drawn: Callable[[], Sequence[arb]],
     input_of: Callable[[Sequence[arb]], arb],
     required: bool = True,
     turns: bool = False,
 ) -> Drive:
     """An input whose numbers hang on its own value alone."""
-    return Drive(lambda inputs: numbers(inputs[name]), (name,), drawn, input_of, required, turns)
+    return Drive(
+        lambda inputs, exact: numbers(inputs[name], exact), (name,), drawn, input_of, required, turns
+    )
 
 
-def _risen(name: str, unit: Fraction, drawn: Callable[[], arb]) -> Drive:
+def _risen(name: str, unit: Fraction, drawn: Callable[[Exact], Scalar]) -> Drive:
     """An input that counts, in mm, from the drawing on."""
     return _own(
         name,
-        lambda value: [value * as_ball(1 / unit) + drawn()],
-        lambda: [drawn()],
-        lambda w: (w[0] - drawn()) * as_ball(unit),
+        lambda value, exact: [value * exact(1 / unit) + drawn(exact)],
+        lambda: [drawn(as_ball)],
+        lambda w: (w[0] - drawn(as_ball)) * as_ball(unit),
     )
 
 
@@ -292,7 +300,7 @@ def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     compiler.row(name, dot(apart, apart) - compiler.number())
     return _own(
         name,
-        lambda value: [value * value * as_ball(1 / unit**2)],
+        lambda value, exact: [value * value * exact(1 / unit**2)],
         lambda: [as_ball(d2)],
         lambda w: w[0].sqrt() * as_ball(unit),
     )

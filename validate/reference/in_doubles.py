@@ -12,7 +12,6 @@ from functools import lru_cache, partial
 from math import comb
 
 import numpy as np
-from flint import arb
 from numpy.typing import NDArray
 
 from validate.reference.chassis import ChassisMotion
@@ -40,20 +39,8 @@ def known_in_doubles(design: Design, laws: Mapping[str, Array], count: int) -> K
         count: N.
     """
     still = np.zeros((count, max((law.shape[-1] for law in laws.values()), default=3)))
-    numbers: list[Jet] = []
-    for drive in design.mechanism.drives.values():
-        read = [laws.get(one, still).tolist() for one in drive.reads]
-        found = [
-            [
-                [float(jet.part(order)) for order in range(still.shape[-1])]
-                for jet in drive.numbers(
-                    {n: Jet(*(arb(x) for x in law)) for n, law in zip(drive.reads, now, strict=True)}
-                )
-            ]
-            for now in zip(*read, strict=True)
-        ]
-        numbers += [Jet(*one) for one in np.array(found).transpose(1, 2, 0)]
     driven = {name: Jet(*np.array(laws.get(name, still), dtype=float).T) for name in design.inputs}
+    numbers = design.mechanism.numbers(driven, float)
     chassis = ChassisMotion.of(design.plain, design.table, design.unit, driven, float)
     return Known(design.mechanism, equations_in_doubles(design), numbers, chassis, driven)
 

@@ -12,6 +12,7 @@ from flint import arb
 from validate.reference.compiler import Compiler, Exact, Reader, Table, at
 from validate.reference.drives import Drive, drive_of
 from validate.reference.errors import BadInputError
+from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, Vector, cross, dot, each
 
@@ -60,6 +61,10 @@ class Mechanism:
         """The points of the chassis."""
         constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.places.items())
         return frozenset(name for name, rests in constant if rests)
+
+    def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
+        """The numbers w of all inputs, of jets of any kind of number and a fraction in that kind."""
+        return [w for drive in self.drives.values() for w in drive.numbers(inputs, exact)]
 
     @property
     def drawn_numbers(self) -> list[arb]:

@@ -23,7 +23,7 @@ from validate.reference.errors import (
     NotDecidedError,
     TooManyStepsError,
 )
-from validate.reference.exact import MOST_DIGITS, centre_of, with_more_digits
+from validate.reference.exact import MOST_DIGITS, as_ball, centre_of, with_more_digits
 from validate.reference.fold import fold_ahead, pose_before
 from validate.reference.jet import Jet
 from validate.reference.way import Pose, Way, bending, next_pose, start_pose
@@ -168,7 +168,7 @@ def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:
             if name in turns:
                 a, b = turns[name]
                 there = balls(Jet(a + Fraction(k, count) * (b - a)))
-                numbers += [jet.value for jet in one.numbers({name: there})]
+                numbers += [jet.value for jet in one.numbers({name: there}, as_ball)]
             else:
                 numbers += [x + (y - x) * k / count for x, y in zip(first[name], last[name], strict=True)]
         between.append(numbers)
@@ -179,7 +179,7 @@ def _numbers(design: Design, driven: Driven) -> dict[str, list[arb]]:
     """The numbers w of each input, of those that are not driven as drawn."""
     given = {name: balls(driven.get(name, Jet(Fraction(0)))) for name in design.inputs}
     return {
-        name: [jet.value for jet in one.numbers(given)] if name in driven else [*one.drawn()]
+        name: [jet.value for jet in one.numbers(given, as_ball)] if name in driven else [*one.drawn()]
         for name, one in design.mechanism.drives.items()
     }
 
