@@ -358,7 +358,7 @@ class _Held:
         read = self.design.mechanism.unknown_of(points, known.numbers, float)
         shape = (len(off), len(matrix))
         slopes = np.array([np.broadcast_to(slope_of(x), shape) for x in read])
-        return np.asarray(np.abs(np.einsum("nij,jkn->nik", matrix, slopes)).sum(axis=-1))
+        return np.asarray(np.abs(matrix @ slopes.transpose(2, 0, 1)).sum(axis=-1))
 
     def _per_length(
         self, states: Mapping[str, Sequence[Array]], turns: Mapping[str, Sequence[Vector]]
@@ -516,8 +516,16 @@ def _height(a: Array, b: Array, c: Array) -> float:
 
 def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
     """r of the top of this file, (N,)."""
-    slopes = jacobian_of([jet.value for jet in jets], known.numbers, known.equations, slope_of)
-    return np.asarray(np.abs(inverse @ slopes).sum(axis=(0, -1)).max(axis=-1))
+    columns: dict[int, list[tuple[int, Array]]] = {}
+    for i, j, entry in known.equations.jacobian([jet.value for jet in jets], known.numbers):
+        if isinstance(entry, Dual):
+            columns.setdefault(j, []).append((i, np.asarray(entry.slope)))
+    relative = np.zeros(inverse.shape[:2])
+    # Few rows change in a column.
+    for entries in columns.values():
+        changes = np.stack([slope for _, slope in entries]).transpose(2, 0, 1)
+        relative += np.abs(inverse[:, :, [i for i, _ in entries]] @ changes).sum(axis=-1)
+    return np.asarray(relative.max(axis=-1))
 
 
 def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) -> Vector:

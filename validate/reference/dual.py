@@ -27,8 +27,9 @@ class Dual:
         return Dual(self.value - value_of(other), self.slope - slope_of(other))
 
     def __mul__(self, other: Scalar) -> Dual:
-        x = value_of(other)
-        return Dual(self.value * x, self.slope * x + self.value * slope_of(other))
+        if not isinstance(other, Dual):
+            return Dual(self.value * other, self.slope * other)
+        return Dual(self.value * other.value, self.slope * other.value + self.value * other.slope)
 
     def __truediv__(self, other: Scalar) -> Dual:
         x = value_of(other)
