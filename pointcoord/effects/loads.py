@@ -10,7 +10,8 @@ wheel: that input is free. With W_q and l_q the work and the damper's length per
 and l_s along another way s, what s makes with the damper held is W_s - W_q l_s / l_q. At a ball joint the
 half of the one body moves by e from that of the other, on which the force f acts: f . e = F . dc + M . dt.
 At each of the two points of a hinge this gives the force across their line. Along it only both together are
-determined: a body that is stretched between them does not move as one.
+determined: a body that is stretched between them does not move as one. A point on a slide has the force by
+which its line moves from it: across the line, and along it where an input drives the travel.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ class Loads(Effect):
         return "the wheel's travel does not change the damper's length there"
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
-        """Every rod and damper, every ball joint, both points of every hinge, and its first one for both."""
+        """Every rod and damper; ball joints, both points of hinges and points on slides; thrusts of hinges."""
         dampers = (f"{wheel.prefix}{HOLDING}" for wheel in _held(topology))
         return {
             ROD_FORCE.name: (*topology.rods, *dampers),
@@ -154,8 +155,8 @@ class Loads(Effect):
 
 
 def _joined(topology: Topology) -> tuple[str, ...]:
-    """The points of all joints."""
-    return tuple(point for points in topology.joints for point in points)
+    """The points of all joints and slides."""
+    return (*(point for points in topology.joints for point in points), *topology.sliding)
 
 
 def _held(topology: Topology) -> tuple[Wheel, ...]:
@@ -220,7 +221,9 @@ def _forces(
             share = ratio(held(along(opening)).work, dot(gap, gap))
             parts.append(times(share, gap))
         force = parts[0] + parts[1] + parts[2]
-        joints[point] = -force if point in topology.chassis else force
+        sliding = topology.sliding.get(point)
+        turned = sliding.of_line if sliding else point in topology.chassis
+        joints[point] = -force if turned else force
     for points in topology.joints:
         if len(points) == 2:
             line = loaded[0][0].seen.line(*points)

@@ -2,7 +2,8 @@ r"""How poses move along a way, what else is known being held: the implicit func
 
 With y = [u, w] and the known coordinates w(q), C(y) = 0 gives C_u u_q = -C_w w_q. A way is by an input, by a
 length that a constraint keeps, or by a gap: one half of a joint, the point as some of the rows read it, moves
-from the other. Of these rows R a gap adds the derivative by the point, C_u u_q = -R C_p.
+from the other. Of these rows R a gap adds the derivative by the point, C_u u_q = -R C_p. On a slide these are
+the rows of its line.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ class ByLength:
 class ByGap:
     """By the gap of a joint at a point, of a unit along an axis: of the half that is not the reported body's.
 
-    A half of the chassis stays, and the other one moves by as much the other way.
+    A half of the chassis stays, and the other one moves by as much the other way. On a slide it is the line
+    that moves.
     """
 
     point: str
@@ -119,16 +121,25 @@ def _known_slopes(mechanism: Mechanism, y: Array, way: Way) -> Array:
         return known
     if isinstance(way, ByLength):
         known[:, length_coordinate(topology, way.rod) - unknowns] = 1.0
-    elif way.point in topology.chassis:
+    elif way.point in topology.chassis and way.point not in topology.sliding:
         known[:, topology.layout.vector(way.point)[way.axis] - unknowns] = 1.0
     return known
 
 
 def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
-    """Of a gap between moving bodies the coordinates that move, (size,), and 1 for the rows that read so."""
+    """Of a gap the coordinates that move, (size,), and 1 for the rows that read so.
+
+    None of a joint of the chassis, whose point moves as what is known does.
+    """
     layout, system = topology.layout, topology.map
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
-    if isinstance(way, ByGap) and way.point not in topology.chassis:
+    if isinstance(way, ByGap) and way.point in topology.sliding:
+        moved[layout.vector(way.point)[way.axis]] = 1.0
+        names = topology.sliding[way.point].constraints
+        for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
+            if constraint.name in names:
+                rows[list(numbers)] = 1.0
+    elif isinstance(way, ByGap) and way.point not in topology.chassis:
         moved[layout.vector(way.point)[way.axis]] = 1.0
         there = {*topology.moving, *topology.chassis}
         beside = next(others for points, others in topology.joints.items() if way.point in points)

@@ -21,6 +21,19 @@ Piece = tuple[str, str]
 
 
 @dataclass(frozen=True)
+class Sliding:
+    """How a point stays on a line.
+
+    Attributes:
+        constraints: names of those that keep it there.
+        of_line: whether its force is asked for on the line's body, and not on the point.
+    """
+
+    constraints: tuple[str, ...]
+    of_line: bool
+
+
+@dataclass(frozen=True)
 class Topology:
     """A linkage as points, bodies, constraints and inputs, with names for the parts that others ask for.
 
@@ -43,6 +56,7 @@ class Topology:
         rods: the two ends of each rod.
         joints: the point of each ball joint of two bodies and no more, or both of a hinge, with the other
             points of the body whose force on the other one is asked for; none where that is the chassis.
+        sliding: the points on slides whose force is asked for.
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
         chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
@@ -63,6 +77,7 @@ class Topology:
     sides: Mapping[str, str] = field(default_factory=dict)
     rods: Mapping[str, Piece] = field(default_factory=dict)
     joints: Mapping[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
+    sliding: Mapping[str, Sliding] = field(default_factory=dict)
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)

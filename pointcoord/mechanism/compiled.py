@@ -25,7 +25,7 @@ from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS, car_directions
 from pointcoord.linkage.drives import Drive, Travel, TurnedBy
-from pointcoord.linkage.topology import Topology
+from pointcoord.linkage.topology import Sliding, Topology
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Ends, Moves, Turn, Turns
 from pointcoord.mechanism.structure import Slide, Structure
 
@@ -218,10 +218,11 @@ class _Compiler:
             for name in names
             if name not in solved and name not in chassis
         }
+        slides = {name: list(self._slide(name)) for name in structure.slides}
         constraints: list[Constraint] = [
             *self._bodies(solved),
             *self._points_in_bodies(solved),
-            *self._slides(),
+            *(one for own in slides.values() for one in own),
         ]
         drives: list[Drive] = []
         for name, one in structure.inputs.items():
@@ -258,6 +259,17 @@ class _Compiler:
             sides=structure.sides,
             rods=structure.rods,
             joints=structure.joints(self.driven),
+            sliding={
+                point: Sliding(
+                    tuple(
+                        one.name
+                        for one in slides[slide]
+                        if isinstance(one, OnLine) and point in (one.point, one.origin, one.head)
+                    ),
+                    of_line,
+                )
+                for point, (slide, of_line) in structure.sliding().items()
+            },
             stand_ins=structure.stand_ins,
             chassis_motion=along,
             chassis_turns=turns,
@@ -377,25 +389,25 @@ class _Compiler:
                     found.setdefault(max(ends, key=slide.points.index), ends)
         return found
 
-    def _slides(self) -> Iterator[Constraint]:
-        """The points of slides, and what keeps bodies from turning about a line."""
-        for name, slide in self.structure.slides.items():
-            by_two = slide.body != CHASSIS and self._axis(name) is None
-            joined = any({*ends} == {*slide.points} for ends in self.structure.rods.values())
-            if by_two and joined and name not in self.travels:
-                # Two points that a rod joins make the line, and the two of the body are on it.
-                start, end = slide.points
-                for point in (slide.through, slide.along):
-                    place = f"place of {point} on the {name}"
-                    yield OnLine(point, start, f"line {start} - {end}", end, place, between=True)
-            else:
-                axis = self._axis(name)
-                if axis is not None:
-                    yield axis
-                yield from (self._on_line(name, point) for point in slide.points)
-            if not slide.turns:
-                edges = self.choices.edges[name]
-                yield ScalarProduct(f"turn about the {name}", *edges, f"product of edges across the {name}")
+    def _slide(self, name: str) -> Iterator[Constraint]:
+        """The points of a slide, and what keeps bodies from turning about its line."""
+        slide = self.structure.slides[name]
+        by_two = slide.body != CHASSIS and self._axis(name) is None
+        joined = any({*ends} == {*slide.points} for ends in self.structure.rods.values())
+        if by_two and joined and name not in self.travels:
+            # Two points that a rod joins make the line, and the two of the body are on it.
+            start, end = slide.points
+            for point in (slide.through, slide.along):
+                place = f"place of {point} on the {name}"
+                yield OnLine(point, start, f"line {start} - {end}", end, place, between=True)
+        else:
+            axis = self._axis(name)
+            if axis is not None:
+                yield axis
+            yield from (self._on_line(name, point) for point in slide.points)
+        if not slide.turns:
+            edges = self.choices.edges[name]
+            yield ScalarProduct(f"turn about the {name}", *edges, f"product of edges across the {name}")
 
     def _axis(self, name: str) -> AxisInBody | None:
         """The axis of a body that a slide runs along, unless the line is one of two of the body's points."""

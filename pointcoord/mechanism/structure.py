@@ -136,8 +136,7 @@ class Structure:
         turned = {body for one in inputs for body in one.named("body")}
         found = {}
         for bodies in combinations(self.bodies, 2):
-            held = next((b for b in bodies if b in self.knuckles.values()), None)
-            held = held or next(b for b in bodies if b != CHASSIS)
+            held = self._held(bodies)
             (holding,) = (body for body in bodies if body != held)
             shared = self.shared(held, holding)
             alone = all(len(self.bodies_of(point)) == 2 and point not in others for point in shared)
@@ -145,6 +144,28 @@ class Structure:
                 beside = tuple(point for point in self.bodies[holding] if point not in shared)
                 found[shared] = () if holding == CHASSIS else beside
         return found
+
+    def sliding(self) -> dict[str, tuple[str, bool]]:
+        """The points on one slide whose force is determined: the slide, and whether the line's body is held.
+
+        What is held is the knuckle, or the moving body that comes first; a point of no body is held itself. Of
+        those that hang on other points of the slide alone nothing pulls.
+        """
+        found = {}
+        for name, slide in self.slides.items():
+            for point in slide.points:
+                own = self.bodies_of(point)
+                once = sum(point in other.points for other in self.slides.values()) == 1
+                pulls = (ends for ends in self.rods.values() if not {*ends} <= {*slide.points})
+                if once and (len(own) == 1 or (not own and any(point in ends for ends in pulls))):
+                    both = [body for body in self.bodies if body in (slide.body, *own)]
+                    found[point] = name, bool(own) and self._held(both) == slide.body
+        return found
+
+    def _held(self, bodies: Collection[str]) -> str:
+        """The body of two whose force at a joint is given: the knuckle, or the first that moves."""
+        knuckle = next((body for body in bodies if body in self.knuckles.values()), "")
+        return knuckle or next(body for body in bodies if body != CHASSIS)
 
     def left_out(self, given: Collection[str]) -> dict[str, str]:
         """Points of moving bodies that a drawing leaves out, each with the one that does its work."""
