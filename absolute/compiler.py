@@ -210,24 +210,42 @@ class _Compiler:
         return rows
 
     def _reported_joints(self) -> dict[tuple[str, ...], tuple[str, str]]:
-        """The point of each ball joint or both of each hinge whose force is determined: the joint's rows and
-        the body on which the force is given, the knuckle or the first that moves. It lists the points."""
-        taken = {point for slide in self.slides.values() for point in slide["points"]}
+        """The point of each ball joint or slide or both of each hinge whose force is determined: the joint's
+        rows and the body on which the force is given, the knuckle or the first that moves. It lists the
+        points. A point of no body has the force itself, if a rod pulls it that does not lie along its slide.
+        """
+        taken = [point for slide in self.slides.values() for point in slide["points"]]
         turned = {given.get("angle") for given in self.of["inputs"].values()}
-        knuckles = {corner.knuckle for corner in self.corners.values()}
         reported: dict[tuple[str, ...], tuple[str, str]] = {}
+        for name, slide in self.slides.items():
+            points = slide["points"]
+            across = [ends for ends in self.of.get("rods", {}).values() if not {*ends} <= {*points}]
+            pulled = {end for ends in across for end in ends}
+            for point in points:
+                label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
+                owners = [body for body, names in self.named.items() if point in names]
+                both = [body for body in self.named if body in (*owners, slide["body"])]
+                if taken.count(point) == 1 and len(owners) == 1:
+                    reported[point,] = label, self._felt_by(both)
+                elif taken.count(point) == 1 and not owners and point in pulled:
+                    reported[point,] = label, self._holders(point)[0]
         for first, second in combinations(self.named, 2):
-            moving = [body for body in (first, second) if body != CHASSIS]
-            body = next((body for body in moving if body in knuckles), moving[0])
+            body = self._felt_by((first, second))
             shared = tuple(p for p in self.named[body] if p in self.named[first] and p in self.named[second])
             others = [names for one, names in self.named.items() if one not in (first, second)]
-            if not shared or taken.intersection(shared) or any({*names} & {*shared} for names in others):
+            if not shared or {*taken}.intersection(shared) or any({*names} & {*shared} for names in others):
                 continue
             if len(shared) == 1:
                 reported[shared] = f"ball joint {shared[0]}", body
             elif not turned.intersection((first, second)):
                 reported[shared] = f"hinge of {second} on {first}", body
         return reported
+
+    def _felt_by(self, bodies: Iterable[str]) -> str:
+        """Of two bodies the knuckle, or the first that moves."""
+        knuckles = {corner.knuckle for corner in self.corners.values()}
+        moving = [body for body in bodies if body != CHASSIS]
+        return next((body for body in moving if body in knuckles), moving[0])
 
     def _extent(self) -> tuple[Array, float]:
         """Middle and size of the drawing."""

@@ -11,6 +11,7 @@ the first, push the second body by -f. Those of a hinge are of one of its points
 which each turns the second body by -f as its rate goes with that body's angular velocity. With d from the
 first of its points P, Q to the second, a force F and a moment M about P are F_Q = M x d / (d . d) at Q, the
 rest of F at P, and a moment about d, which a hinge has none of. Along d only both forces together are known.
+Those of a point on a slide are across its line, and along it one of an input where its travel is driven.
 
 Chassis and inputs hold the mechanism; but in a corner with a damper its length is held, and the input that
 moves the wheel is free.
@@ -35,8 +36,9 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
 
     Returns:
         rod_force: name of a rod, or `damper` with its part in front where one holds -> (N,) tension, N.
-        joint_force: point of a ball joint -> (N, 3) force, N, on the body that `Model.reported_joints` names,
-            as the ground sees it; of a hinge both points, and there what is across its line.
+        joint_force: point of a ball joint or slide -> (N, 3) force, N, on the body that
+            `Model.reported_joints` names, as the ground sees it; of a hinge both points, and there what is
+            across its line; of a slide along the line what an input pushes that drives it.
         hinge_thrust: first point of a hinge -> (N,) force at both along the line to the second, N.
         Not numbers where the pose is singular while dampers are held.
     Raises:
@@ -65,8 +67,11 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
         found = solved(jacobian.swapaxes(1, 2), acting)[..., 0]
         found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
     joints, thrusts = {}, {}
+    travels = {mechanism.joint_rows + i for i, drive in enumerate(model.inputs) if drive.steers}
     for points, (owner, body) in model.reported_joints.items():
         rows = [row for row, name in enumerate(owners) if name == owner]
+        if len(rows) == 2:  # a point on a slide
+            rows += [row for row in stack.of_one_point(rows[0]) if row in travels]
         second = stack.second[rows[0]]
         pushed = found[:, rows, None] * (-1.0 if second == bodies[body] else 1.0)
         force = (pushed[:, :3] * placed.a[:, rows[:3]]).sum(axis=1)

@@ -119,6 +119,13 @@ class RowStack:
             gap[..., self._turns] -= WHOLE_TURN * np.round(gap[..., self._turns] / WHOLE_TURN)
         return gap
 
+    def of_one_point(self, row: int) -> list[int]:
+        """The rows that say where the same point of a second body is from the same one of the first."""
+        arms = self._local[1:]
+        same = (arms == arms[:, [row]]).all(axis=(0, 2)) & (self._offset > 0.0)
+        same &= (self.first == self.first[row]) & (self.second == self.second[row])
+        return [int(number) for number in np.flatnonzero(same)]
+
     def kept(self, placed: Placed) -> NDArray[np.bool_]:
         """(...) whether all joints have the sense in which they are drawn."""
         first, along, second, partner = self._senses

@@ -81,7 +81,7 @@ class Loads(Effect):
         return "the wheel's travel does not change the damper's length there"
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
-        """Every rod and damper; ball joints, both points of hinges and points on slides; thrusts of hinges."""
+        """Every rod and damper; ball joints, points of hinges and points on slides; thrusts of hinges."""
         dampers = (f"{wheel.prefix}{HOLDING}" for wheel in _held(topology))
         return {
             ROD_FORCE.name: (*topology.rods, *dampers),

@@ -148,8 +148,8 @@ class Structure:
     def sliding(self) -> dict[str, tuple[str, bool]]:
         """The points on one slide whose force is determined: the slide, and whether the line's body is held.
 
-        What is held is the knuckle, or the moving body that comes first; a point of no body is held itself. Of
-        those that hang on other points of the slide alone nothing pulls.
+        What is held is the knuckle, or the moving body that comes first; a point of no body is held itself.
+        Nothing pulls those that hang on other points of the slide alone.
         """
         found = {}
         for name, slide in self.slides.items():

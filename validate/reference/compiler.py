@@ -65,6 +65,7 @@ class Compiler:
         self.rods: dict[str, int] = {}
         self.joints: dict[str, tuple[str, int]] = {}
         self.closing: dict[str, tuple[int, Vector, Vector]] = {}
+        self.sliding: dict[str, int] = {}
         self.numbers = 0
         self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
         self.free: dict[str, Vector] = {}
@@ -264,9 +265,10 @@ class Compiler:
 
         (share,) = self.unknowns(1, read)
         there = plus(start, times(line, share))
-        if body == CHASSIS and point not in self.holder and point not in self.free:
+        if self.hangs and body == CHASSIS and point not in self.holder and point not in self.free:
             self.free[point] = there  # its place needs no unknowns besides
         else:
+            self.sliding[point] = len(self.rows)
             self._meet(f"{point} on {name}", self.place(point), there)
         return share
 

@@ -11,7 +11,9 @@ length d, whose row |a - b|^2 - d^2 is violated by 2 d e where it is e longer, h
 p - p' of a ball joint say how far its halves are apart: it pulls the body of p by -l, and the other by l.
 A hinge has these rows at one point of its line, and at another one the two products of p - p' with sides s
 that are square to the line: there it pulls by -(l s + l' s'). Along the line only one row holds, so that of
-the two forces along it the sum is known. The equations are those of the mechanism with rows for every joint.
+the two forces along it the sum is known. The rows p - p' of a point p on a slide, p' its place on the line,
+pull p by -l: across the line, and along it where an input drives the share of the line that p' is at. The
+equations are those of the mechanism with rows for every joint and slide.
 """
 
 from __future__ import annotations
@@ -50,7 +52,8 @@ class Statics:
         joints: in the scene's axes, of every point that is a ball joint of just two bodies, or one of both
             points of their hinge, and is on no slide: on the body of a role knuckle if it is one of them,
             else on the one that the mechanism's file names first and that is not the chassis. Of a hinge,
-            which no input turns, what is across its line.
+            which no input turns, what is across its line. Of every point of one body that is on one slide
+            likewise; of one of no body, which a rod pulls that is not of the slide alone, on the point.
         thrusts: of both points of a hinge along its line, from the first point, which names it, to the
             second, as the body lists them.
         left_out: why, by quantity.
@@ -103,6 +106,10 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         for name, (row, ends) in rods.items()
     }
     pulls, thrusts = dict[str, Vector](), dict[str, arb]()
+    for point, of_line in _sliding(design).items():
+        row = mechanism.sliding[point]
+        pull = solved[row], solved[row + 1], solved[row + 2]
+        pulls[point] = chassis.turned(times(pull, 1 if of_line else -1))
     for points, pulled in _joints(design).items():
         met = next(point for point in points if point in mechanism.joints)
         body, row = mechanism.joints[met]
@@ -178,17 +185,37 @@ def _joints(design: Design) -> dict[tuple[str, ...], str]:
     bodies: Mapping[str, Sequence[str]] = design.plain["bodies"]
     on_slides = {point for slide in design.plain["slides"].values() for point in slide["points"]}
     turned = {spec.get("angle") for spec in design.plain["inputs"].values()}
-    knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
     found = {}
     for holders in combinations(bodies, 2):
-        wanted = [body for body in holders if body in knuckles]
-        body = (wanted or [body for body in holders if body != CHASSIS])[0]
+        body = _felt_by(design, holders)
         points = tuple(point for point in bodies[body] if all(point in bodies[other] for other in holders))
         third = {point for other, own in bodies.items() if other not in holders for point in own}
         if not points or {*points} & (on_slides | third) or (len(points) == 2 and turned & {*holders}):
             continue
         found[points] = body
     return found
+
+
+def _sliding(design: Design) -> dict[str, bool]:
+    """Of each point on a slide whose force is known, whether it is given on the line's body."""
+    plain, found = design.plain, dict[str, bool]()
+    for name, slide in plain["slides"].items():
+        elsewhere = {p for other, own in plain["slides"].items() if other != name for p in own["points"]}
+        ends = {end for both in plain["rods"].values() if not {*both} <= {*slide["points"]} for end in both}
+        for point in slide["points"]:
+            holders = [body for body, own in plain["bodies"].items() if point in own]
+            if point in elsewhere or len(holders) > 1 or not (holders or point in ends):
+                continue
+            both = [body for body in plain["bodies"] if body in (*holders, slide["body"])]
+            found[point] = bool(holders) and _felt_by(design, both) == slide["body"]
+    return found
+
+
+def _felt_by(design: Design, bodies: Sequence[str]) -> str:
+    """Of two bodies the one that the force is given on."""
+    knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
+    moving = [body for body in bodies if body != CHASSIS]
+    return next((body for body in moving if body in knuckles), moving[0])
 
 
 def _moving(number: Dual) -> Jet:

@@ -37,6 +37,7 @@ class Mechanism:
         rods: of each the row of its length.
         joints: of each point whose place two bodies say in rows the body, place - place of the other, and the
             first of the three rows.
+        sliding: of each point on a slide the first of the three rows that say where it is on the line.
         closing: of the second point of each hinge that has such rows the first of the two more rows that make
             it one, and what each of them takes the product of place - place with.
     """
@@ -54,6 +55,7 @@ class Mechanism:
     driving: Mapping[str, int]
     rods: Mapping[str, int]
     joints: Mapping[str, tuple[str, int]]
+    sliding: Mapping[str, int]
     closing: Mapping[str, tuple[int, Vector, Vector]]
 
     @property
@@ -96,7 +98,8 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     """The equations of a description, its points taken from `table`, local.
 
     Args:
-        hangs: whether a body hangs on a point or a hinge of one before it; else each joint has its rows.
+        hangs: whether a body hangs on a point or a hinge of one before it, and a free point on a line of the
+            chassis; else each joint and slide has its rows.
     Raises:
         BadInputError: something in the description cannot be.
     """
@@ -129,6 +132,7 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
         driving=driving,
         rods=compiler.rods,
         joints=compiler.joints,
+        sliding=compiler.sliding,
         closing={point: (row, final(u), final(v)) for point, (row, u, v) in compiler.closing.items()},
     )
 
