@@ -210,9 +210,9 @@ class _Compiler:
         return rows
 
     def _reported_joints(self) -> dict[tuple[str, ...], tuple[str, str]]:
-        """The point of each ball joint or slide or both of each hinge whose force is determined: the joint's
-        rows and the body on which the force is given, the knuckle or the first that moves. It lists the
-        points. A point of no body has the force itself, if a rod pulls it that does not lie along its slide.
+        """The point of each ball joint or turning slide or both of each hinge whose force is determined: the
+        joint's rows and the body on which the force is given, the knuckle or the first that moves. It lists
+        the points. A point of no body has the force itself, if a rod pulls it that is not along its slide.
         """
         taken = [point for slide in self.slides.values() for point in slide["points"]]
         turned = {given.get("angle") for given in self.of["inputs"].values()}
@@ -221,7 +221,7 @@ class _Compiler:
             points = slide["points"]
             across = [ends for ends in self.of.get("rods", {}).values() if not {*ends} <= {*points}]
             pulled = {end for ends in across for end in ends}
-            for point in points:
+            for point in points if slide["turns"] else ():
                 label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
                 owners = [body for body, names in self.named.items() if point in names]
                 both = [body for body in self.named if body in (*owners, slide["body"])]

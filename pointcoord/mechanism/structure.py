@@ -146,14 +146,15 @@ class Structure:
         return found
 
     def sliding(self) -> dict[str, tuple[str, bool]]:
-        """The points on one slide whose force is determined: the slide, and whether the line's body is held.
+        """The points on one turning slide, each with the slide and whether the line's body is held.
 
         What is held is the knuckle, or the moving body that comes first; a point of no body is held itself.
-        Nothing pulls those that hang on other points of the slide alone.
+        Nothing pulls those that hang on other points of the slide alone. What keeps a body from turning holds
+        it by a couple, of which each formulation has its own share in forces.
         """
         found = {}
         for name, slide in self.slides.items():
-            for point in slide.points:
+            for point in slide.points if slide.turns else ():
                 own = self.bodies_of(point)
                 once = sum(point in other.points for other in self.slides.values()) == 1
                 pulls = (ends for ends in self.rods.values() if not {*ends} <= {*slide.points})

@@ -197,12 +197,12 @@ def _joints(design: Design) -> dict[tuple[str, ...], str]:
 
 
 def _sliding(design: Design) -> dict[str, bool]:
-    """Of each point on a slide whose force is known, whether it is given on the line's body."""
+    """Of each point on a turning slide whose force is known, whether it is given on the line's body."""
     plain, found = design.plain, dict[str, bool]()
     for name, slide in plain["slides"].items():
         elsewhere = {p for other, own in plain["slides"].items() if other != name for p in own["points"]}
         ends = {end for both in plain["rods"].values() if not {*both} <= {*slide["points"]} for end in both}
-        for point in slide["points"]:
+        for point in slide["points"] if slide["turns"] else ():
             holders = [body for body, own in plain["bodies"].items() if point in own]
             if point in elsewhere or len(holders) > 1 or not (holders or point in ends):
                 continue

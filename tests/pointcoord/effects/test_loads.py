@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from guided_knuckle import guided_knuckle
 from hinged_knuckle import hinged_knuckle
 from mpmath import cos, mpf, sin, sqrt, workdps
 from numpy.typing import NDArray
@@ -152,7 +153,10 @@ def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
         assert_balanced(at[first], *own[body], *held)
         # Along the line only both together are determined.
         assert max(np.abs(np.vecdot(line, joint[end])).max() for end in (first, second)) < 1e-8
-    assert {*joint} == {*ball, *(end for both in hinges.values() for end in both)}
+    assert {*joint} == {*ball, *(end for both in hinges.values() for end in both), "tie_rod_inner"}
+    # The rack holds the end of the tie rod, which pulls it out.
+    end = pull(motion, "tie_rod", "tie_rod_inner", "tie_rod_outer")
+    assert np.abs(joint["tie_rod_inner"] + end).max() < 1e-10 * np.abs(end).max()
 
 
 @pytest.mark.parametrize("bodies", list(permutations(("chassis", "arm", "knuckle"))))
@@ -178,6 +182,52 @@ def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm(
     up[:, 2] = -sum(force[:, 2] for force, _ in acting)
     assert_balanced(contact, *acting, (up, at["centre"]), moment=LOAD["moment"])
     assert_balanced(at["arm_front"], *((-f, place) for f, place in hinges["king_top"]), *hinges["arm_front"])
+
+
+STRUTS = {"drawn": "off-axis-strut", "collinear": "bounce"}
+
+
+@pytest.mark.parametrize("closure", STRUTS)
+def test_the_top_of_a_strut_takes_the_side_force(closure: str) -> None:
+    steered = {"wheel_travel": {"polynomial": [-20.0, 50.0]}, "rack": {"polynomial": [0.0, 9.0]}}
+    motion = loaded(STRUTS[closure], LOAD, steered)
+    spin = ["wheel_axis_inner" if closure == "drawn" else "strut_lower", "wheel_centre"]
+    at, contact = motion.position, contact_of(motion, *spin)
+    side = motion.joint_force["strut_top"]
+    forces = [
+        (np.broadcast_to(LOAD["force"], contact.shape), contact),
+        (pull(motion, "tie_rod", "tie_rod_outer", "tie_rod_inner"), at["tie_rod_outer"]),
+        (pull(motion, "damper", "strut_lower", "strut_top"), at["strut_lower"]),
+        (side, at["strut_top"]),
+    ]
+    low = at["lower_ball_joint"]
+    assert_balanced(low, *forces, (-sum(force for force, _ in forces), low), moment=LOAD["moment"])
+    line = at["strut_top"] - at["strut_rod_end"]
+    assert np.abs(np.vecdot(side, line)).max() < 1e-10 * np.abs(side).max() * np.abs(line).max()
+    assert np.abs(side).max() > 100.0
+    assert "strut_rod_end" not in motion.joint_force
+
+
+@pytest.mark.parametrize("driven", ["near", "far"])
+def test_a_knuckle_that_an_arm_guides_is_in_balance_and_so_is_the_arm(driven: str) -> None:
+    motion = simulate(guided_knuckle(LOAD, RADIUS, driven=driven))
+    at, contact, joint = motion.position, contact_of(motion, "inner", "centre"), motion.joint_force
+    guides = [(joint[name], at[name]) for name in ("near", "far")]
+    forces = [
+        (np.broadcast_to(LOAD["force"], contact.shape), contact),
+        (pull(motion, "link", "beside", "link_inner"), at["beside"]),
+        *guides,
+    ]
+    up = np.zeros_like(contact)
+    up[:, 2] = -sum(force[:, 2] for force, _ in forces)
+    assert_balanced(contact, *forces, (up, at["centre"]), moment=LOAD["moment"])
+    along = {name: np.abs(np.vecdot(joint[name], at["far"] - at["near"])) for name in ("near", "far")}
+    (other,) = {"near", "far"} - {driven}
+    assert along[other].max() < 1e-6 < 1e4 < along[driven].min()
+    hinge = at["arm_rear"] - at["arm_front"]
+    thrust = (motion.hinge_thrust["arm_front"] / np.linalg.norm(hinge, axis=-1))[:, None] * hinge
+    held = [(joint["arm_front"] + thrust, at["arm_front"]), (joint["arm_rear"], at["arm_rear"])]
+    assert_balanced(contact, *((-force, place) for force, place in guides), *held)
 
 
 def test_a_force_that_is_off_by_a_billionth_is_no_balance() -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from guided_knuckle import guided_knuckle
 from hinged_knuckle import hinged_knuckle
 
 from pointcoord import Scene
@@ -19,6 +20,7 @@ LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
 # With a damper at the wheel, behind a pushrod and driven; without one; rods alone; a hinge alone; two wheels,
 # and these on the ground under a car that rolls.
 CARS = (
+    "bounce",
     "off-axis-strut",
     "pushrod",
     "pushrod-by-damper",
@@ -30,6 +32,7 @@ CARS = (
 )
 
 
+GUIDED = "a knuckle that an arm guides"
 HINGED = {
     "a knuckle hinged to an arm": ("chassis", "arm", "knuckle"),
     "an arm hinged to a knuckle": ("chassis", "knuckle", "arm"),
@@ -37,6 +40,8 @@ HINGED = {
 
 
 def loaded(name: str, samples: int = 5) -> Scene:
+    if name == GUIDED:
+        return guided_knuckle({"": LOAD}, 300.0, samples)
     if name in HINGED:
         return hinged_knuckle({"": LOAD}, 300.0, samples, HINGED[name])
     content: dict[str, Any] = Scene.load(name).model_dump(exclude_none=True)
@@ -51,7 +56,7 @@ def forces(outcome: Outcome) -> dict[tuple[str, str], str]:
     return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.unit == "N"}
 
 
-@pytest.mark.parametrize("name", [*CARS, *HINGED])
+@pytest.mark.parametrize("name", [*CARS, *HINGED, GUIDED])
 def test_three_mechanics_give_the_same_forces(name: str) -> None:
     scene = loaded(name)
     gives = EFFECTS["loads"].gives_numbers(scene.mechanism.topology)

@@ -175,7 +175,9 @@ def test_wishbones_hold_the_knuckle_and_the_damper_holds_them_by_rocker_and_push
         "upper_arm": [(times(want[3:6], -1), upper)],
         "rocker": [(times(push, -1), "pushrod_inner"), (times(pulled, want[8]), "damper_rocker")],
     }
-    assert set(found.joint_force) == {lower, upper, *(f"{b}_{n}" for b in hinged for n in ("front", "rear"))}
+    ends = {f"{body}_{name}" for body in hinged for name in ("front", "rear")}
+    assert set(found.joint_force) == {lower, upper, "tie_rod_inner", *ends}
+    assert near(found.joint_force["tie_rod_inner"], times(tie, want[6]))  # what the rack does
     for body, forces in hinged.items():
         first, second = f"{body}_front", f"{body}_rear"
         line = minus(p[second], p[first])
