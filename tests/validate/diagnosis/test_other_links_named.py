@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from curve_files import compared, table, verdicts
+from mechanism_files import mechanism_file
 from numpy.typing import NDArray
 
 from pointcoord import Scene
@@ -86,6 +87,29 @@ def test_a_rod_of_another_length_is_named_with_what_it_is_too_long(
     # The end of a tie rod on a rack may be misread instead, along the rack: the same links.
     assert all("tie_rod_inner.y drawn" in other.words for other in others)
     assert not (others and name == "five-link")
+
+
+@pytest.mark.parametrize(
+    ("name", "quantities"), [("axle-steer", ()), ("axle-steer", ("wheel",)), ("axle-roll", ("position",))]
+)
+def test_a_rod_of_one_side_of_an_axle_is_named_with_its_side(name: str, quantities: tuple[str, ...]) -> None:
+    scene = Scene.load(name).model_copy(update={"effects": EFFECTS})
+    tables, corner = mechanism_file(scene.mechanism.type), mechanism_file("double_wishbone")
+    ends = corner["rods"].pop("tie_rod")
+    corner["inputs"]["its_length"] = {"distance": ends}
+    tables["parts"]["left"]["mechanism"] = corner
+    content = scene.model_dump(exclude_none=True)
+    part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
+    start, end = (np.array(scene.mechanism.points[f"left.{point}"]) for point in ends)
+    length = float(np.linalg.norm(end - start))
+    content["mechanism"] = part | tables
+    content["inputs"]["left.its_length"] = {"constant": length + 3.0}
+    found = diagnosis(scene, content, *quantities)
+    (link,) = (one for one in found if one.kind == "link")
+    assert f"left.tie_rod is 3 mm too long, {length + 3.0:.6g} mm for {length:.6g}" in link.words
+    assert link is found[0] or quantities == ("wheel",)
+    # Its end on the rack may be misread instead, to where the tie rod is as long.
+    assert all("left.tie_rod_inner." in other.words for other in found if other is not link)
 
 
 @pytest.mark.parametrize("quantities", [(), ("wheel",)])

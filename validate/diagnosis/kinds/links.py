@@ -100,12 +100,37 @@ def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _tables(scene: Scene) -> Mapping[str, Any]:
-    """The mechanism's, as in a scene that holds it; empty of one with parts or that puts points in place."""
+    """The mechanism's, flat; empty of one that puts points in place."""
     part = scene.mechanism
-    if part.topology.sides or part.topology.puts_in_place:
+    if part.topology.puts_in_place:
         return {}
     plain = part.plain(tuple(scene.inputs))
     return {table: plain[table] for table in CLOSING if table in plain}
+
+
+def _in_parts(tables: Mapping[str, Any], sides: Mapping[str, str]) -> dict[str, Any]:
+    """Flat tables as a scene holds them: what has a part's name before its own is in a table of the part."""
+    left, parts = {table: dict(entries) for table, entries in tables.items()}, dict[str, Any]()
+    for part, side in sides.items():
+        prefix = f"{part}."
+        own: dict[str, Any] = {
+            table: {key: left[table].pop(key) for key in tuple(entries) if key.startswith(prefix)}
+            for table, entries in left.items()
+        }
+        chassis = left["bodies"][CHASSIS]
+        own["bodies"][CHASSIS] = [point for point in chassis if point.startswith(prefix)]
+        left["bodies"][CHASSIS] = [point for point in chassis if not point.startswith(prefix)]
+        parts[part] = {"side": side, "mechanism": _without(prefix, own)}
+    return {**left, "parts": parts} if parts else left
+
+
+def _without(prefix: str, entry: Any) -> Any:
+    """Tables, lists and names without a prefix in names."""
+    if isinstance(entry, str):
+        return entry.removeprefix(prefix)
+    if isinstance(entry, Mapping):
+        return {_without(prefix, key): _without(prefix, value) for key, value in entry.items()}
+    return [_without(prefix, each) for each in entry] if isinstance(entry, list | tuple) else entry
 
 
 def _solved(
@@ -117,7 +142,7 @@ def _solved(
     """The motion of the car by other tables, points and further inputs; None where there is none."""
     content = evidence.solved.fine.model_dump(exclude_none=True)
     part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
-    part |= tables
+    part |= _in_parts(tables, evidence.scene.mechanism.topology.sides)
     part["points"] = {**part["points"], **points}
     content |= {"mechanism": part, "inputs": {**content["inputs"], **inputs}}
     # It is read between its instants.
