@@ -31,8 +31,9 @@ class Solution:
         effects: name -> (N,), those asked for, in their units (see `EFFECTS`).
         rod_force: name of a rod, or `damper` with its part in front -> (N,) axial force, N, tension positive;
             empty when no loads were asked for.
-        joint_force: point of a ball joint or of a hinge, there across its line -> (N, 3), N, world axes: on
-            the knuckle, or on the other body that moves and is named first; empty without loads.
+        joint_force: point of a ball joint, of a hinge, there across its line, or of a slide -> (N, 3), N,
+            world axes: on the knuckle, or on the other body that moves and is named first, or on a point of
+            no body; empty without loads.
         hinge_thrust: first point of a hinge -> (N,), N: likewise, at both along the line to the second.
     """
 

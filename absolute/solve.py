@@ -75,7 +75,7 @@ def solve(
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
         effects: names of `effect_names(model)`.
-        loads: also the forces of rods and ball joints under the loads of the model.
+        loads: also the forces of rods, joints and slides under the loads of the model.
     Returns:
         Solution with one row per instant.
     Raises:
