@@ -7,7 +7,7 @@ to solve as the scene asks. What is claimed is what was left out, whichever it w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -25,26 +25,13 @@ from pointcoord import (
 )
 from pointcoord.bounds.proof import Proof
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.method import AUTO, Method
-from pointcoord.simulation import Task, checked_task, finest_tolerance, solve_task
+from pointcoord.method import Method
+from pointcoord.simulation import finest_tolerance
 from validate.formulations.protocol import Accuracy, FormulationError, Solution
 
 Array = NDArray[np.float64]
 
 UNKNOWN = 1e-9
-
-
-def started(scene: Scene, method: Method = AUTO) -> Task | PointcoordError:
-    """A scene checked and its first pose assembled, as finely as rounding allows; or why it is not.
-
-    A method that is dense in time needs its first pose the finest, so that others can go on from it.
-    """
-    try:
-        fine = min(scene.tolerance, finest_tolerance(scene))
-        asked = scene if fine == scene.tolerance else scene.model_copy(update={"tolerance": fine})
-        return checked_task(asked, method)
-    except PointcoordError as error:
-        return error
 
 
 @dataclass(frozen=True)
@@ -59,42 +46,31 @@ class PointCoordinates:
     method: Method
     as_asked: bool = False
 
-    def solve(self, scene: Scene, start: Task | PointcoordError | None = None) -> Solution:
+    def solve(self, scene: Scene) -> Solution:
         """Solve a scene; what it claims of its accuracy is proven, number by number (see `_claims`).
 
-        Args:
-            start: of the scene, as `started` gives it, if it is at hand.
         Raises:
             FormulationError: pointcoord refuses the scene, or cannot bound the error of a number; but a fault
                 of the scene file itself is raised as it is.
         """
         try:
-            motion = self._solved(scene, start)
+            motion = self._solved(scene)
         except SceneError:
             raise
         except PointcoordError as error:
             raise FormulationError(self.name, error, partial(self._partial, scene, error)) from error
         return self._solution(scene, motion)
 
-    def _solved(self, scene: Scene, start: Task | PointcoordError | None) -> Motion:
-        if self.as_asked:
+    def _solved(self, scene: Scene) -> Motion:
+        """As finely as rounding allows."""
+        fine = min(scene.tolerance, finest_tolerance(scene))
+        if self.as_asked or fine == scene.tolerance:
             return simulate(scene, self.method)
-        if start is None or not self._takes(AUTO):
-            start = started(scene, self.method)
-        if isinstance(start, PointcoordError):
-            raise start
         try:
-            return solve_task(replace(start, method=self.method))
+            return simulate(scene.model_copy(update={"tolerance": fine}), self.method)
         except (MotionTooLong, MotionTooRough):
-            if start.scene.tolerance == scene.tolerance:
-                raise
             # A rough law may be followed to what the scene asks for and no further.
             return simulate(scene, self.method)
-
-    def _takes(self, other: Method) -> bool:
-        """Whether another method starts alike: it solves the same mechanism for the same effects."""
-        mine = self.method
-        return mine.linkage == other.linkage and mine.effects == other.effects
 
     def _partial(self, scene: Scene, error: PointcoordError) -> Solution | None:
         """What was solved before an error, as far as its errors are bounded."""
