@@ -471,11 +471,6 @@ class Linkage:
         return float(np.linalg.norm(self.p[BALL]))
 
     @property
-    def steering_arm(self) -> float:
-        """From the ball joint to the tie rod's outer end."""
-        return float(np.linalg.norm(self.p[OUTER] - self.p[BALL]))
-
-    @property
     def drawn_angle(self) -> float:
         """Arm angle of the drawing."""
         return math.acos(float(self.p[BALL] @ self.up) / self.arm_length)
