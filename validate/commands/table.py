@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
 from pointcoord.effects.conventions import CONVENTIONS
+from pointcoord.effects.loads import LOADS
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
@@ -27,9 +28,10 @@ from validate.commands.usage import (
     told_as,
 )
 from validate.commands.values import values_of
-from validate.curves.numbers import Number, asking_for, numbers_of
+from validate.curves.numbers import COMPONENTS, Number, asking_for, numbers_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.formulations.asked_numbers import is_force
 from validate.output.console import Console
 from validate.output.table import Table, csv_of, is_terminal
 from validate.plain_text import shown, some_of
@@ -39,7 +41,7 @@ Array = NDArray[np.float64]
 ENDINGS = (".csv", ".md")
 ROWS = 21
 NAMED = 12  # numbers, in a message
-DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2}
+DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2, "mm/deg": 5, "N": 2, "N/mm": 4}
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
 
 DESCRIPTION = """\
@@ -51,6 +53,7 @@ every combination of values of inputs, and the other inputs stay where the scene
 
   --grid wheel_travel=-50:50:11 --grid rack=-30:30:7
 
+Where the scene has loads and asks for them, forces of rods, joints and slides stand beside.
 Other programs mean other numbers by the same names: --convention adams has Adams/Car's camber,
 optimumk OptimumK's toe, with what is positive there. Columns keep our names, with a minus
 before one that counts the other way.
@@ -87,6 +90,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     numbers = {number.path[-1]: number for number in reversed(every) if number.of_the_car}
     inputs = {number.path[0]: number for number in every if len(number.path) == 1}
     read = [numbers[number] for number in signs]
+    if not options.number:
+        read += [one for one in every if _is_force(one) and one.missing is None]
     if options.grid:
         return _on_grid(scene, read, signs, options, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
@@ -123,6 +128,11 @@ def meant_numbers(
         return dict.fromkeys(known, 1)
     usual = [number for own in first for number in known if number.rpartition(".")[2] == own]
     return {number: sign for number, sign in map(convention.number, usual) if number in known}
+
+
+def _is_force(number: Number) -> bool:
+    """Whether it is one of what loads make."""
+    return len(number.path) > 1 and is_force(number.path[0])
 
 
 def _known_numbers(scene: Scene, name: str) -> list[str]:
@@ -181,7 +191,10 @@ def _on_grid(
         return ExitStatus.NO_VERDICT
     inputs = {n.path[0]: n for n in numbers_of(scene) if len(n.path) == 1}
     # A pose has no motion: what is read of the car is there by quantity and name.
-    values = [grid[n].ravel() for n in axes] + [poses.numbers[c.path[0]][c.path[1]] for c in columns]
+    values = [grid[n].ravel() for n in axes]
+    for one in columns:
+        there = poses.numbers[one.path[0]][one.path[1]]
+        values.append(there[:, COMPONENTS.index(one.path[2])] if len(one.path) > 2 else there)
     every = [*(inputs[n] for n in axes), *columns]
     turned = [np.degrees(v) if c.unit.startswith("rad") else v for c, v in zip(every, values, strict=True)]
     reasons = {row: str(error) for row, error in poses.failures.items()}
@@ -230,9 +243,12 @@ def _text(
         signs: of numbers by name, -1 of what is to count the other way.
         reasons: why there are none in a row, of a grid.
     """
-    ways = [signs.get(one.path[-1], 1) for one in columns]
-    minus = ["-" if way < 0 else "" for way in ways]
-    head = tuple(f"{m}{one.path[-1]} [{one.unit_shown()}]" for m, one in zip(minus, columns, strict=True))
+    names = [".".join(one.path) if _is_force(one) else one.path[-1] for one in columns]
+    ways = [signs.get(name, 1) for name in names]
+    head = tuple(
+        f"{'-' if way < 0 else ''}{name} [{one.unit_shown()}]"
+        for name, way, one in zip(names, ways, columns, strict=True)
+    )
     counted = (way * each for way, each in zip(ways, values, strict=True))
     lines = [tuple(line) for line in zip(*(each.tolist() for each in counted), strict=True)]
     if target is not None and Path(target).suffix == ".csv":
@@ -245,9 +261,10 @@ def _text(
     # The wheels of an axle share a line.
     told_signs = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
     told = [f"{number}: positive {sign}" for number, sign in told_signs.items()]
+    told += [f"forces: {LOADS.sign}"] * any(map(_is_force, columns))
     if target is not None:
         return "\n".join([table.markdown, "", *(f"- {sign}" for sign in told), ""])
-    kept = sum(not one.of_the_car for one in columns)
+    kept = sum(len(one.path) == 1 for one in columns)
     # Lines that a terminal would fold cannot be read down.
     bands = table.bands(shutil.get_terminal_size().columns, kept) if is_terminal(sys.stdout) else [table]
     return "\n".join([*(line for band in bands for line in (band.text, "")), *told, ""])

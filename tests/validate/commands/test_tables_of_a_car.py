@@ -7,9 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mechanism_files import ROOT
 
 from pointcoord import Scene, sensitivity, simulate
 from validate.cli import main
+from validate.commands.table import DIGITS
+from validate.curves.numbers import numbers_of
+
+SCENES = ROOT / "scenes"
 
 
 def printed(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
@@ -157,3 +162,65 @@ def test_a_number_of_both_wheels_is_asked_for_by_its_own_name(
     assert status == 2
     assert "no number of a car is called tooe" in err
     assert "and 126 more (--all shows every one)" in err
+
+
+def loaded(folder: Path) -> Path:
+    """A strut with a spring and a load that asks for forces, over travel."""
+    text = (SCENES / "off-axis-strut.toml").read_text(encoding="utf-8")
+    points = text[text.index("[mechanism.points]") :].partition("\n[inputs]")[0]
+    path = folder / "loaded.toml"
+    path.write_text(
+        f"""effects = ["camber", "loads"]
+[mechanism]
+type = "macpherson"
+side = "left"
+wheel_radius = 300.0
+[mechanism.car]
+spring_rate = 30.0
+spring_free_length = 500.0
+[mechanism.loads]
+force = [0.0, -3000.0, 4000.0]
+{points}
+[inputs]
+wheel_travel = {{ sweep = [-50.0, 50.0] }}
+rack = {{ constant = 5.0 }}
+[time]
+start = 0.0
+stop = 1.0
+samples = 3
+""",
+        encoding="utf-8",
+    )
+    return path
+
+
+def test_forces_that_a_scene_asks_for_stand_in_its_tables(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = loaded(tmp_path)
+    motion = simulate(str(scene))
+    forces = {f"rod_force.{name} [N]": of for name, of in motion.rod_force.items()}
+    for point, of in motion.joint_force.items():
+        forces |= {f"joint_force.{point}.{axis} [N]": of[:, i] for i, axis in enumerate("xyz")}
+    assert {"rod_force.damper [N]", "joint_force.strut_top.x [N]"} <= {*forces}
+    grid = ("--grid", "wheel_travel=-50:50:3", "--grid", "rack=5")
+    for options in ((), grid):
+        target = tmp_path / "table.csv"
+        assert printed(capsys, "table", str(scene), *options, "-o", str(target))[0] == 0
+        rows = rows_of(target)
+        for head, of in forces.items():
+            # A grid's poses are solved from the drawing, not along the motion.
+            assert [float(row[head]) for row in rows] == pytest.approx(of, rel=1e-9, abs=1e-7), head
+    status, out, _ = printed(capsys, "table", str(scene))
+    assert status == 0
+    assert "forces: tension of a rod or damper: positive" in out
+    status, out, _ = printed(capsys, "table", str(scene), "--number", "spring_force")
+    assert status == 0
+    assert "spring_force [N]" in out
+    assert "joint_force" not in out
+
+
+@pytest.mark.parametrize("name", ["off-axis-strut", "axle-steer", "five-link"])
+def test_a_table_in_text_knows_how_many_digits_each_unit_has(name: str) -> None:
+    every = numbers_of(Scene.load(name))
+    assert {one.unit_shown() for one in every if one.of_the_car} <= {*DIGITS}
