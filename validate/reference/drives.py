@@ -41,9 +41,8 @@ class Drive:
     """An input of a mechanism.
 
     Attributes:
-        numbers: the numbers w of the values of the inputs that it reads, rad or mm, as jets of any kind of
-            number, and a fraction in that kind.
-        reads: the input itself, and those besides that its numbers hang on.
+        numbers: the numbers w of the values of all inputs, rad or mm, as jets of any kind of number, and of
+            what makes a fraction one of that kind.
         drawn: these numbers as drawn.
         input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
         required: whether it must be given; else it rests at zero.
@@ -51,7 +50,6 @@ class Drive:
     """
 
     numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
-    reads: tuple[str, ...]
     drawn: Callable[[], Sequence[arb]]
     input_of: Callable[[Sequence[arb]], arb]
     required: bool = True
@@ -250,7 +248,6 @@ def _over_ground(
     compiler.row(f"lean of {name}", lean - dot(minus(compiler.place(centre), compiler.place(inner)), seen))
     compiler.row(f"contact of {name}", drop * drop + lean * lean * share - square)
     compiler.row(name, dot(compiler.place(centre), seen) + lift - drop - level)
-    moving = tuple(n for n, spec in plain["inputs"].items() if {"moves", "turns"} & {*spec})
 
     def numbers(inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
         chassis = ChassisMotion.of(plain, compiler.table, compiler.unit, inputs, exact)
@@ -263,7 +260,6 @@ def _over_ground(
 
     return Drive(
         numbers,
-        (name, *moving),
         lambda: [*each(as_ball, up), arb(0), drawn(as_ball)],
         lambda w: (w[4] - drawn(as_ball)) * as_ball(compiler.unit),
     )
@@ -278,9 +274,7 @@ def _own(
     turns: bool = False,
 ) -> Drive:
     """An input whose numbers hang on its own value alone."""
-    return Drive(
-        lambda inputs, exact: numbers(inputs[name], exact), (name,), drawn, input_of, required, turns
-    )
+    return Drive(lambda inputs, exact: numbers(inputs[name], exact), drawn, input_of, required, turns)
 
 
 def _risen(name: str, unit: Fraction, drawn: Callable[[Exact], Scalar]) -> Drive:
