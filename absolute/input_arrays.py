@@ -9,8 +9,8 @@ from absolute.solution import Array
 
 
 def orders_of(inputs: Mapping[str, Array]) -> int:
-    """How many numbers each input has at an instant: value, rate and acceleration, or 4 with the jerk."""
-    return 4 if any(np.shape(law)[1:] == (4,) for law in inputs.values()) else 3
+    """How many numbers each input has at an instant: value, rate and acceleration, and more with the jerk."""
+    return max([3, *(int(np.shape(law)[1]) for law in inputs.values() if np.ndim(law) == 2)])
 
 
 def input_series(names: Sequence[str], inputs: Mapping[str, Array], orders: int) -> Array:
@@ -51,7 +51,7 @@ def checked(name: str, values: object, shape: tuple[int, ...], count: int | None
     if array.shape[1:] != shape or array.ndim != 1 + len(shape):
         raise InputError(
             f"{name!r} has shape {array.shape}; {('N', *shape)} is needed: value, rate and acceleration at "
-            "each instant, and jerk where another input has one",
+            "each instant, and as many more of its rates as another input has",
             name,
             None,
             array.shape,

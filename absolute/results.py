@@ -13,7 +13,7 @@ from absolute.solution import Array, Counts, Solution
 from absolute.turning import Turning
 from absolute.vectors import EPS, carried, cross
 
-OF_POINTS = ("position", "velocity", "acceleration", "jerk")
+OF_POINTS = ("position", "velocity", "acceleration")
 OF_BODIES = ("angular_velocity", "angular_acceleration")
 
 
@@ -75,8 +75,11 @@ class Motion:
         # Of body rates, angular velocity is the first.
         orders = 1 + self.instants.rates.shape[1] if rates else 1
         numbers: dict[str, dict[str, Array]] = {kind: {} for kind in (*OF_POINTS, *OF_BODIES)}
-        for kind, state in zip(OF_POINTS[:orders], self._points(orders), strict=True):
-            numbers[kind] = dict(zip(self.mechanism.drawing.points, state, strict=True))
+        states = [
+            {n: _locked(a) for n, a in zip(self.mechanism.drawing.points, state, strict=True)}
+            for state in self._points(orders)
+        ]
+        numbers |= zip(OF_POINTS, states, strict=False)
         bodies = [name for name in model.moving if name not in model.aids]
         for kind, state in zip(OF_BODIES if rates else (), self._bodies(bodies), strict=False):
             numbers[kind] = dict(zip(bodies, state, strict=True))
@@ -90,6 +93,7 @@ class Motion:
             # Points are rounded too, whatever is left of the rows: half a unit in the last place of lengths
             # up to the diameter.
             accuracy=_locked((residual + EPS) * size),
+            higher=tuple(states[len(OF_POINTS) :]),
             **{kind: {n: _locked(a) for n, a in of.items()} for kind, of in numbers.items()},
         )
 

@@ -18,7 +18,8 @@ class Solution:
         position: point name -> (N, 3), mm, world axes; chassis, moving and carried points.
         velocity: point name -> (N, 3), mm/s; empty when no rates were asked for.
         acceleration: point name -> (N, 3), mm/s^2; empty when no rates were asked for.
-        jerk: point name -> (N, 3), mm/s^3; empty where the inputs were given without their jerks.
+        higher: the jerk and so on of points, each point name -> (N, 3), mm/s^3, mm/s^4: as many as the inputs
+            were given with.
         angular_velocity: moving body name -> (N, 3), rad/s, world axes; empty without rates.
         angular_acceleration: moving body name -> (N, 3), rad/s^2, world axes; empty without rates.
         iterations: (N,) Newton corrections spent on the way to each instant.
@@ -40,7 +41,7 @@ class Solution:
     position: Mapping[str, Array]
     velocity: Mapping[str, Array]
     acceleration: Mapping[str, Array]
-    jerk: Mapping[str, Array]
+    higher: tuple[Mapping[str, Array], ...]
     angular_velocity: Mapping[str, Array]
     angular_acceleration: Mapping[str, Array]
     iterations: Counts
@@ -51,3 +52,8 @@ class Solution:
     rod_force: Mapping[str, Array] = field(default_factory=dict)
     joint_force: Mapping[str, Array] = field(default_factory=dict)
     hinge_thrust: Mapping[str, Array] = field(default_factory=dict)
+
+    @property
+    def derivatives(self) -> tuple[Mapping[str, Array], ...]:
+        """Of points by order, that of order 0 their positions."""
+        return self.position, self.velocity, self.acceleration, *self.higher

@@ -69,9 +69,9 @@ def solve(
         model: the linkage.
         inputs: name -> (N, 3) value, rate and acceleration of every value of the inputs (rad or mm, per s);
             and of turns of the chassis, which is not turned where they are not given. With the jerks of all
-            as well, (N, 4), there are jerks of points.
-        chassis: (N, 3, 3) or (N, 4, 3) translation, velocity, acceleration of the chassis and its jerk in the
-            frame of the points, mm, mm/s, mm/s^2, mm/s^3, after all turns; None for none.
+            as well, (N, 4), there are jerks of points, and so on, (N, orders).
+        chassis: (N, orders, 3) translation, velocity, acceleration of the chassis and so on in the frame of
+            the points, mm, mm/s, mm/s^2, after all turns; None for none.
         rates: False for positions only.
         conditions: also the condition number of the scaled Jacobian at each instant.
         effects: names of `effect_names(model)`.
@@ -163,8 +163,9 @@ class Assembled:
             whole = solution()
             # Where rates overflow, so do accelerations.
             finite = np.ones(len(series), dtype=np.bool_)
-            for of in (*whole.acceleration.values(), *whole.jerk.values()):
-                finite &= np.isfinite(of).all(axis=1)
+            for rates_of in (whole.acceleration, *whole.higher):
+                for rate in rates_of.values():
+                    finite &= np.isfinite(rate).all(axis=1)
             if finite.all():
                 return whole
             bad = leading(finite)

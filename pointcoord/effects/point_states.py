@@ -63,6 +63,7 @@ def _states(derivative: int, name: str) -> PointStates:
     )
 
 
-POSITION, *RATES = (
-    _states(order, name) for order, name in enumerate(("position", "velocity", "acceleration", "jerk"))
-)
+STATES = ("position", "velocity", "acceleration", "jerk", "snap", "crackle", "pop")
+"""By order of the time derivative, as far as such have names."""
+
+POSITION, *RATES = (_states(order, name) for order, name in enumerate(STATES))

@@ -18,7 +18,6 @@ import absolute
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
-ORDERS = ("position", "velocity", "acceleration", "jerk")
 
 
 class Motion(NamedTuple):

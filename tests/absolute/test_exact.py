@@ -13,7 +13,7 @@ from mechanism_equations import vector as to_many
 from mechanism_files import SCENES, mechanism_file, plain, plain_scene, scene_file
 from mechanism_poses import Stuck
 from mpmath import mp, mpf
-from shipped import EPS, ORDERS, Motion, error, exact, off, redrawn, shipped
+from shipped import EPS, Motion, error, exact, off, redrawn, shipped
 from written import numbers, vector
 
 import absolute
@@ -65,14 +65,13 @@ def compare(motion: Motion, wanted: Any = None) -> None:
     assert solution.condition is not None
     assert (solution.residual <= solution.accuracy).all()
     size = solution.accuracy.max() / EPS
-    for order, name in enumerate(ORDERS):
-        found = getattr(solution, name)
+    for order, found in enumerate(solution.derivatives):
         speed = max(float(np.abs(v).max()) for v in solution.velocity.values())
         scale = size if not order else max(speed, speed**2 / size, 200.0)
         for k, condition in enumerate(solution.condition):
             for point in found:
                 allowed = 4 * EPS * condition ** (1 + order) * scale
-                assert error(found[point][k], wanted[k][order][point]) <= allowed, (name, point, k)
+                assert error(found[point][k], wanted[k][order][point]) <= allowed, (order, point, k)
                 if not order:
                     assert error(found[point][k], wanted[k][0][point]) <= off(solution)[k], point
 

@@ -19,7 +19,7 @@ class Car:
     """A car at an instant; mm, s, rad.
 
     Attributes:
-        points: by name, position, velocity, acceleration and jerk in the chassis' frame.
+        points: by name, position, velocity, acceleration and so on in the chassis' frame.
         added: what the chassis' motion and the user's origin add to each of these.
         turn: angular velocity and acceleration of every body.
         bodies: their names.
@@ -340,6 +340,9 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "velocity": _of_points("velocity", 1),
     "acceleration": _of_points("acceleration", 2),
     "jerk": _of_points("jerk", 3),
+    "snap": _of_points("snap", 4),
+    "crackle": _of_points("crackle", 5),
+    "pop": _of_points("pop", 6),
     "knuckle_rates": _rates,
     "wheel_angles": _wheel_angles,
     "camber": _camber,

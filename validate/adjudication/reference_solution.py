@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
+from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR, QUANTITIES
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from validate.formulations.asked_numbers import asked_numbers, is_force
@@ -38,7 +39,7 @@ Inputs = Mapping[str, Sequence[float]]
 
 
 def inputs_at(scene: Scene, time: float) -> dict[str, tuple[float, ...]]:
-    """Every input's value, rate and acceleration at an instant; and jerk, if the scene asks for jerks."""
+    """Every input's value, rate and acceleration at an instant, and more if the scene asks for jerks."""
     return {name: tuple(law[0].tolist()) for name, law in laws_of(scene, np.array([time])).items()}
 
 
@@ -58,7 +59,7 @@ def reference_instant(
     """The reference for a scene's car at given inputs, reached from the drawing.
 
     Args:
-        inputs: value, rate and acceleration of each, and jerk, if jerks are wanted.
+        inputs: value, rate and acceleration of each, and as many more of its rates as are wanted of points.
         exact_sides: whether the drawing is meant as it is, however near it is to another assembly.
     Raises:
         NoReferenceError: there is no pose, or none can be proven.
@@ -113,9 +114,11 @@ def as_solution(scene: Scene, instants: Sequence[Instant]) -> Solution:
     told = [name for name in first.effects if all(name in i.effects for i in instants)]
     numbers = {
         "position": {n: np.array([i.position_as_float(n) for i in instants]) for n in first.position},
-        "velocity": _rounded([i.velocity for i in instants], first.velocity),
-        "acceleration": _rounded([i.acceleration for i in instants], first.acceleration),
-        "jerk": _rounded([i.jerk for i in instants], first.jerk),
+        **{
+            name: _rounded([i.derivatives[order] for i in instants], of)
+            for order, (name, of) in enumerate(zip(STATES, first.derivatives, strict=False))
+            if order
+        },
         "angular_velocity": _rounded([i.angular_velocity for i in instants], first.angular_velocity),
         "angular_acceleration": _rounded([i.angular_acceleration for i in instants], first.angular_velocity),
     }
@@ -144,14 +147,17 @@ def scales(numbers: Numbers) -> dict[str, float]:
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     fastest, hardest = _largest(numbers["velocity"]), _largest(numbers["acceleration"])
     push = hardest + fastest * (fastest / size)
-    jolt = _largest(numbers["jerk"]) + push * (fastest / size) if numbers.get("jerk") else 0.0
+    higher, before = dict[str, float](), push
+    for name in STATES[3:]:
+        before = _largest(numbers[name]) + before * (fastest / size) if numbers.get(name) else 0.0
+        higher[name] = before
     lengths = {"mm": size, "mm/rad": size, "rad/mm": 1.0 / size}
     return {
         **{q.name: lengths.get(q.unit, 1.0) for q in QUANTITIES.values()},
         "position": float(np.abs(corners).max()),
         "velocity": fastest,
         "acceleration": push,
-        "jerk": jolt,
+        **higher,
         "angular_velocity": fastest / size,
         "angular_acceleration": push / size,
     }

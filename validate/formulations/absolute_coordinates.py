@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.plan import plan_effects
+from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.scene.scene_file import MechanismPart, Scene
@@ -71,7 +72,8 @@ def found_of(solved: absolute.Solution, asked: Mapping[str, Sequence[str]]) -> F
         quantity: getattr(solved, quantity, solved.effects if QUANTITIES[quantity].of == "car" else {})
         for quantity in asked
     }
-    return Found({"position": solved.position, **numbers}, solved.accuracy)
+    states = {n: of for n, of in zip(STATES, solved.derivatives, strict=False) if n in ("position", *asked)}
+    return Found({**numbers, **states}, solved.accuracy)
 
 
 def driving(model: absolute.Model, part: MechanismPart, laws: Mapping[str, Array]) -> dict[str, Array]:

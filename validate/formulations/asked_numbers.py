@@ -33,4 +33,5 @@ def is_force(quantity: str) -> bool:
 
 def per_second(quantity: str) -> int:
     """How many times a quantity is divided by a time: 1 of a rate, 2 of an acceleration, by its unit."""
-    return {"s": 1, "s^2": 2, "s^3": 3}.get(QUANTITIES[quantity].unit.partition("/")[2], 0)
+    time, _, power = QUANTITIES[quantity].unit.partition("/")[2].partition("^")
+    return int(power or 1) if time == "s" else 0

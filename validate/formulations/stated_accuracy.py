@@ -31,12 +31,16 @@ without turning; what the chassis adds to every point alike turns nothing):
     position                e
     velocity                e_1 = sqrt(3) e (W + V / L)
     acceleration            e_2 = sqrt(3) e (A + W^2 + B / L)
-    jerk                    e_3 = sqrt(3) e (|alpha'| + 3 A W + W^3 + J / L), J the largest jerk
+    jerk                    e_3 = sqrt(3) e (|alpha'| + 3 A W + W^3 + J / L), J the largest jerk, and so on
     turning of a body       2 e_1 / h and 2 e_2 / h, h the least height of the triangle of its three points
     an angle                both ends of its line off by e, through the line's length
 
-Of a model that is known to solve equations for its rates, these equations are missed by as much: of the rates
-of its points the e here is e + |dp|, with dp what missing the equations makes of the place.
+Of a model that is known to solve equations for its rates, these equations are missed as well: those of the
+order k by e_k / e times as much as those of the pose, as if delta changed. Of the order d that makes
+
+    sum_k C(d, k) (e_k / e) |dp^(d-k)|,      k = 1 .. d,
+
+with dp^(j) what missing the equations by a constant delta makes of the order j of a point.
 
 and each is rounded once where it is handed over, and once where the chassis' part of it is added.
 
@@ -52,7 +56,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from itertools import combinations
 from math import comb, sqrt
 
@@ -396,8 +400,17 @@ class _Held:
         }
         chassis = states[self.design.plain["bodies"][CHASSIS][0]]
         per_length = self._per_length(states, turns)
-        moved = {name: _off(part_of(p, 0), count) * growth[0][:, None] for name, p in points.items()}
-        missed = {name: off[:, None] + (move if self.solves else 0.0) for name, move in moved.items()}
+
+        @cache
+        def moved(name: str, order: int) -> Array:
+            """What missing the equations by a constant makes of a derivative of a point."""
+            return _off(part_of(points[name], order), count) * growth[order][:, None]
+
+        def solved_for(name: str, order: int) -> Array | float:
+            """What missing those of rates makes of it."""
+            orders = range(1, order + 1) if self.solves else ()
+            return sum(comb(order, k) * per_length[k][:, None] * moved(name, order - k) for k in orders)
+
         far = UNIT_ROUNDOFF * np.abs(self.origin) / self.unit
         of_car = self._of_car(off, solved, known, growth, along)
         claims: dict[str, dict[str, Array]] = {}
@@ -409,15 +422,16 @@ class _Held:
                 continue  # the inputs' own derivatives are not known so far
             if of == "point" and d == 0:
                 claims[quantity] = {
-                    n: self.unit * (moved[n] + off[:, None] + UNIT_ROUNDOFF * np.abs(states[n][0]) + far)
+                    n: self.unit * (moved(n, 0) + off[:, None] + UNIT_ROUNDOFF * np.abs(states[n][0]) + far)
                     for n in names
                 }
             elif of == "point":
                 claims[quantity] = {
                     n: self.unit
                     * (
-                        _off(part_of(points[n], d), count) * growth[d][:, None]
-                        + missed[n] * per_length[d][:, None]
+                        moved(n, d)
+                        + solved_for(n, d)
+                        + (off * per_length[d])[:, None]
                         + UNIT_ROUNDOFF * np.abs(states[n][d])
                         + UNIT_ROUNDOFF * np.abs(chassis[d])
                     )

@@ -24,7 +24,7 @@ from validate.reference.vectors import Scalar, Vector, dot, each, minus, times
 DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more
 SAME_ROW = 1e-9  # of the largest: what is left of a row that others say already, in doubles
 
-# Every input, each (value, rate, acceleration) in fractions, or with the jerk; rad or mm.
+# Every input, each (value, rate, acceleration) in fractions, or with more of its derivatives; rad or mm.
 Driven = Mapping[str, Jet]
 
 
@@ -199,15 +199,15 @@ class Design:
         """Inputs by name as fractions; a travel or chassis motion that is not named rests at zero.
 
         Raises:
-            BadInputError: an unknown name, not three or four finite numbers, not as many of each, or an
-                input is missing.
+            BadInputError: an unknown name, fewer than three finite numbers, not as many of each, or an input
+                is missing.
         """
         count = max((len(law) for law in inputs.values()), default=3)
         for name, law in inputs.items():
             if name not in self.inputs:
                 raise BadInputError(f"inputs[{name!r}]", law, f"one of {', '.join(self.inputs)}")
-            if len(law) != count or count not in (3, 4):
-                allowed = "three numbers: value, rate, acceleration; or of all inputs four, with the jerk"
+            if len(law) != count or count < 3:
+                allowed = "three numbers: value, rate, acceleration; or of all inputs as many more"
                 raise BadInputError(f"inputs[{name!r}]", law, allowed)
         required = [name for name, drive in self.mechanism.drives.items() if drive.required]
         if not set(required) <= set(inputs):

@@ -23,6 +23,7 @@ from validate.reference.vectors import Vector, each, plus, times
 Triple = tuple[Fraction, Fraction, Fraction]
 Expected = Callable[[Sequence[arb]], bool]
 
+DERIVATIVES = ("position", "velocity", "acceleration")
 UNDEFINED = (
     "cannot be proven in this pose, where it is 0/0, or jumps by a whole turn, or the wheel does not travel, "
     "or a centre is at infinity, or the wheels are not steered to one side"
@@ -37,7 +38,7 @@ class Instant:
         position: every point, mm.
         velocity: every point, mm/s.
         acceleration: every point, mm/s^2.
-        jerk: every point, mm/s^3; empty where the inputs are given without theirs.
+        higher: jerk of every point, mm/s^3, and so on: as many as the inputs are given with.
         angular_velocity: of every moving body, rad/s.
         angular_acceleration: of the same, rad/s^2.
         effects: those that were asked for, by name, with its part's prefix if there are parts, see
@@ -47,7 +48,8 @@ class Instant:
             are undefined in this pose (0/0, an angle at 180 deg, a wheel that does not travel, a centre at
             infinity, wheels that are steered apart).
         radius: exactly one assembly lies within this distance of `position` (maximum norm, mm).
-        error_bound: proven bound on the error of each quantity above, in its unit.
+        error_bound: proven bound on the error of each quantity above, in its unit; of jerks as
+            "derivative 3", and so on.
         condition: of the Jacobian, maximum norm, lengths in units of the mechanism, rows scaled.
         digits: how many digits it took.
     """
@@ -55,7 +57,7 @@ class Instant:
     position: Mapping[str, Triple]
     velocity: Mapping[str, Triple]
     acceleration: Mapping[str, Triple]
-    jerk: Mapping[str, Triple]
+    higher: tuple[Mapping[str, Triple], ...]
     angular_velocity: Mapping[str, Triple]
     angular_acceleration: Mapping[str, Triple]
     effects: Mapping[str, Fraction]
@@ -67,6 +69,11 @@ class Instant:
     error_bound: Mapping[str, Fraction]
     condition: float
     digits: int
+
+    @property
+    def derivatives(self) -> tuple[Mapping[str, Triple], ...]:
+        """Of points by order, that of order 0 their positions."""
+        return self.position, self.velocity, self.acceleration, *self.higher
 
     def effect(self, name: str) -> Fraction:
         """An effect that must be there.
@@ -117,6 +124,7 @@ def prove_instant(
     inverse = inverse_jacobian(enclosure, still)
     solved = unknown_jets(enclosure, known, inverse)
     vectors = _motion(design, known.points_of(solved), body_turns(solved, known), known.derivatives)
+    further = [derivative_called(order) for order in range(len(DERIVATIVES), known.derivatives + 1)]
     bounds = {quantity: _largest_radius(of.values()) for quantity, of in vectors.items()}
     for quantity, scale in _scales(vectors, unit).items():
         if not bounds[quantity] <= scale * least:
@@ -149,7 +157,8 @@ def prove_instant(
         bounds["joint_force"] = _largest_radius(statics.joints.values())
         bounds["hinge_thrust"] = max((ball.rad() for ball in statics.thrusts.values()), default=arb(0))
     return Instant(
-        **{"jerk": {}, **{quantity: _centres(of) for quantity, of in vectors.items()}},
+        **{quantity: _centres(of) for quantity, of in vectors.items() if quantity not in further},
+        higher=tuple(_centres(vectors[quantity]) for quantity in further),
         effects={name: centre_of(ball) for name, ball in told.items()},
         rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
         joint_force=_centres(statics.joints),
@@ -160,6 +169,11 @@ def prove_instant(
         condition=certificate.condition,
         digits=working,
     )
+
+
+def derivative_called(order: int) -> str:
+    """What a time derivative of positions is called among the error bounds."""
+    return DERIVATIVES[order] if order < len(DERIVATIVES) else f"derivative {order}"
 
 
 def prove_pose(
@@ -208,10 +222,9 @@ def _motion(
 ) -> Mapping[str, Mapping[str, Vector]]:
     """Positions, rates and turning in mm, s, rad."""
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    kinds = ("position", "velocity", "acceleration", "jerk")[: derivatives + 1]
     local = {
-        kind: {name: times(part_of(points[name], order), unit) for name in design.names}
-        for order, kind in enumerate(kinds)
+        derivative_called(order): {name: times(part_of(points[name], order), unit) for name in design.names}
+        for order in range(derivatives + 1)
     }
     found = {
         **local,
@@ -239,8 +252,10 @@ def _scales(vectors: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str,
         "angular_velocity": largest["angular_velocity"] + fastest / unit,
         "angular_acceleration": largest["angular_acceleration"] + push / unit,
     }
-    if "jerk" in largest:
-        scales["jerk"] = largest["jerk"] + push * fastest / unit
+    order, before = len(DERIVATIVES), push
+    while (quantity := derivative_called(order)) in largest:
+        before = scales[quantity] = largest[quantity] + before * fastest / unit
+        order += 1
     return scales
 
 

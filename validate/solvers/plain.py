@@ -10,7 +10,7 @@ numpy's, its own copies, and cannot be written to):
     carried     names of the points that ride on the knuckle without holding it
     instants    (N,)
     inputs      {name: {"position": (N,), "velocity": (N,), "acceleration": (N,)}}; all that the car has,
-                those that rest too; and "jerk", if jerks are asked for
+                those that rest too; and "jerk" and so on, if such are asked for
     asked       what is compared, {quantity: [names]}
 
 It answers with a mapping of what it has, any part of what is asked, as arrays or lists:
@@ -34,6 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SceneError
+from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.wording import meant, shown
 from validate.formulations.asked_numbers import asked_numbers
@@ -43,7 +44,6 @@ from validate.solvers.names import known_names, misspelt
 Array = NDArray[np.float64]
 Solve = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
-ORDERS = ("position", "velocity", "acceleration", "jerk")
 INSTANTS = "instants"
 METHOD = "solve"
 HERE, IMPORTING = Path(__file__).parent, Path(importlib.__file__).parent
@@ -91,7 +91,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
         "carried": list(part.topology.carried),
         INSTANTS: _read_only(instants),
         "inputs": {
-            name: {order: _read_only(rate.copy()) for order, rate in zip(ORDERS, law.T, strict=False)}
+            name: {order: _read_only(rate.copy()) for order, rate in zip(STATES, law.T, strict=False)}
             for name, law in laws.items()
         },
         "asked": {quantity: list(names) for quantity, names in asked_numbers(scene).items()},

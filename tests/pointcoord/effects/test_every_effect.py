@@ -21,6 +21,7 @@ from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.car_number import LENGTHS, CarNumbers
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
+from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.mechanism import Mechanism
@@ -48,7 +49,7 @@ each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
 cars = st.sampled_from(["off-axis-strut", "pushrod"])
 some = settings(deadline=None, max_examples=40)
-ORDERS = range(4)
+ORDERS = range(len(STATES))
 
 
 @cache
@@ -75,7 +76,9 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
     roll = Rotation.from_rotvec(own.normal(size=3) * 0.2).as_matrix()
     with workdps(DIGITS):
         omega, alpha, speed, hard, place = (exactly(v) for v in 10.0 * rng.normal(size=(5, 3)))
-        jolt, jolted = (exactly(v) for v in [[10.0], [1000.0]] * further.normal(size=(2, 3)))
+        jolts, jolted = (
+            [exactly(v) for v in size * further.normal(size=(len(ORDERS) - 3, 3))] for size in (10.0, 1000.0)
+        )
         # The knuckle moves as one body by an input, and every other point by itself.
         turn, other_turn = (exactly(1e-3 * v) for v in own.normal(size=(2, 3)))
         knuckle = (*topology.role("knuckle"), *topology.wheel_axis)
@@ -92,16 +95,18 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             velocity = plus(cross(omega, p), speed)
             acceleration = plus(plus(cross(alpha, p), cross(omega, cross(omega, p))), hard)
             # A car that turns on with this acceleration: p' = omega x p, and so on, each apart.
-            carried = [cross(omega, p), plus(cross(alpha, p), cross(omega, cross(omega, p)))]
-            jerk = plus(plus(cross(alpha, carried[0]), cross(alpha, carried[0])), cross(omega, carried[1]))
-            points[name] = (plus(p, place), velocity, acceleration, plus(jerk, jolt))
+            carried = [p, cross(omega, p)]
+            for n in ORDERS[1:-1]:
+                carried.append(plus(cross(omega, carried[n]), cross(alpha, carried[n - 1]), mpf(n)))
+            higher = [plus(turned, jolt) for turned, jolt in zip(carried[3:], jolts, strict=True)]
+            points[name] = (plus(p, place), velocity, acceleration, *higher)
         in_chassis = {
             name: exactly(unit * (axes @ roll @ mechanism.drawing.vectors[name])) for name in points
         }
         places = {name: state[0] for name, state in points.items()}
         return Car(
             points=points,
-            added=[*(exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))), jolted],
+            added=[*(exactly(v) for v in 1000.0 * rng.normal(size=(3, 3))), *jolted],
             turn=(omega, alpha),
             bodies=tuple(topology.bodies),
             damper=topology.role("damper"),
@@ -153,7 +158,9 @@ def enclosed(vector: Vector, factor: float, off: float = 0.0) -> Enclosed:
     return Enclosed.of(high + corner, low, 8 * U**2 * np.abs(high) + off * (1.0 + 1e-9), U * np.abs(high))
 
 
-def exact_poses_of(car: Car, mechanism: Mechanism, off: Sequence[float] = (0.0,) * 4) -> EnclosedPoses:
+def exact_poses_of(
+    car: Car, mechanism: Mechanism, off: Sequence[float] = (0.0,) * len(ORDERS)
+) -> EnclosedPoses:
     """The car where it exactly is, or by derivative so far off, in units."""
     unit = float(mechanism.unit)
     points = [{n: enclosed(p[d], TIME**d / unit, off[d]) for n, p in car.points.items()} for d in ORDERS]
@@ -334,8 +341,9 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
     found = EVERY[name].evaluate(poses)
     for quantity, part, array in parts(EVERY[name].evaluate(larger)):
         # Slopes, per mm, are the same.
-        lengthwise = dict.fromkeys(("mm", "mm/s", "mm/s^2", "mm/s^3", "mm/rad", "N"), scale)
-        factor = {**lengthwise, "rad/mm": 1.0 / scale}.get(QUANTITIES[quantity].unit, 1.0)
+        unit = QUANTITIES[quantity].unit
+        lengthwise = unit in ("mm", "mm/rad", "N") or unit.startswith("mm/s")
+        factor = scale if lengthwise else {"rad/mm": 1.0 / scale}.get(unit, 1.0)
         assert np.array_equal(array, factor * found[quantity][part])
 
 

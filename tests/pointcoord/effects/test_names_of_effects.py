@@ -44,7 +44,8 @@ NAMES = {
     "travel",
     "axle",
     "loads",
-}  # what a mechanism calls its parts, effects of them may be called too
+    "pop",
+}  # what a mechanism calls its parts, effects of them may be called too; a list pops
 
 
 def named(text: str) -> Iterator[str]:

@@ -20,6 +20,7 @@ from pointcoord.simulation import effort, prepare_task, solve_by_series
 from pointcoord.solve import assembly
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
 from validate.comparison.compare import compare
+from validate.formulations.asked_numbers import per_second
 from validate.formulations.registry import formulation
 
 STRUT = ("strut_lower", "strut_rod_end", "strut_top")
@@ -31,8 +32,7 @@ SUBSETS: list[tuple[str, ...]] = [
     ("velocity", "knuckle_rates"),
     OF_A_WHEEL,
 ]
-POWER_OF_TIME = {"mm/s": 1, "rad/s": 1, "mm/s^2": 2, "rad/s^2": 2, "mm/s^3": 3}
-NEEDED = {n: max(POWER_OF_TIME.get(q.unit, 0) for q in effect.quantities) for n, effect in EFFECTS.items()}
+NEEDED = {n: max(per_second(q.name) for q in effect.quantities) for n, effect in EFFECTS.items()}
 OF_EVERY_POINT = {name for name, effect in EFFECTS.items() if effect.reports_states}
 
 

@@ -10,6 +10,7 @@ from every_effect import asking_for_all
 from numpy.typing import NDArray
 
 from pointcoord import KinematicMap, Scene, kinematic_map
+from pointcoord.effects.point_states import STATES
 from pointcoord.mapping.kinematic_map import MappedPoses
 from pointcoord.patches.jet import Jet
 from validate.adjudication.reference_solution import as_solution, reference_instant
@@ -34,7 +35,7 @@ def with_all_effects(name: str) -> Scene:
     content["inputs"].setdefault("heave", {"constant": 0.0})
     scene = Scene.from_mapping(content)
     time = scene.time.model_copy(update={"samples": POSES})
-    effects = tuple(name for name in asking_for_all(scene).effects if name != "jerk")
+    effects = tuple(name for name in asking_for_all(scene).effects if name not in STATES[3:])
     return scene.model_copy(update={"time": time, "effects": effects})
 
 

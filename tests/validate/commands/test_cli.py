@@ -156,7 +156,7 @@ def test_numbers_that_are_none_are_written_so_that_they_can_be_read() -> None:
             '["velocity"]',
             [
                 "computed: velocity of every point",
-                "left out: acceleration, jerk, knuckle_rates, ",
+                "left out: acceleration, jerk, snap, crackle, pop, knuckle_rates, ",
                 "solved for: positions and velocities\n",
                 "evaluated: positions and velocities of every point\n",
             ],

@@ -21,7 +21,6 @@ from validate.reference.in_doubles import (
 )
 from validate.reference.jet import Jet, part_of
 
-QUANTITIES = ("position", "velocity", "acceleration", "jerk")
 HEAVE = "heave"
 
 
@@ -37,7 +36,7 @@ def inputs_of(car: ReferenceCar, heave: bool) -> list[dict[str, tuple[Any, ...]]
     moved = []
     for k in range(3):
         one = {
-            name: (a + Fraction(k, 50), b * (k + 1), c - k, 2 * k + b)
+            name: (a + Fraction(k, 50), b * (k + 1), c - k, 2 * k + b, 5 * c - k * b)
             for name, (a, b, c) in car.inputs.items()
         }
         moved.append({name: law for name, law in one.items() if heave or name != HEAVE})
@@ -59,9 +58,9 @@ def test_poses_and_rates_in_doubles_are_those_of_the_proven_instants(car: Refere
     points = known.points_of(unknown_jets_of(list(values), inverse, known))
     unit = float(design.unit)
     origin = np.array([float(x) for x in design.origin])
-    for order, quantity in enumerate(QUANTITIES):
+    for order in range(5):
         proven = {
-            name: np.array([getattr(one, quantity)[name] for one in instants], dtype=float) for name in points
+            name: np.array([one.derivatives[order][name] for one in instants], dtype=float) for name in points
         }
         largest = max(np.abs(vectors).max() for vectors in proven.values())
         for name, vectors in proven.items():
@@ -103,7 +102,7 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
     size = design.mechanism.size
     jets, inverse = moving(np.zeros(size))
     found = motion_of_a_miss(inverse.transpose(1, 2, 0), jets, inverse, known)
-    assert found.shape == (4, size, size, 3)
+    assert found.shape == (5, size, size, 3)
     # A central difference leaves step^2 of the third derivative, and rounding over the step.
     step = 1e-5
     for row in range(size):
