@@ -74,7 +74,8 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     """Derivatives of the numbers of the car that a scene's effects give, at its instants.
 
     Args:
-        numbers: by their names; all that the scene asks for unless given.
+        numbers: of the car by their names, any other as QUANTITY.NAME or, of a vector, QUANTITY.NAME.AXIS,
+            such as rod_force.tie_rod or velocity.wheel_centre.z; all of the car unless given.
         coordinates: such as lower_ball_joint.z, or a point's name for all three; all hardpoints unless given.
     Raises:
         SceneError, SweepError: as `sweep`.
@@ -95,19 +96,38 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
     # Designs of one coordinate after those of another.
     moved = np.kron(np.eye(len(named)), step * PLACES[:, None])
     found = sweep(scene, offsets={name: moved[:, i] for i, name in enumerate(named)})
-    every = _scalars(found.numbers)
-    for name in numbers:
-        if name not in every:
-            raise UnknownName("number of the scene's effects", name, every)
+    every = numbers_named(found.numbers, numbers)
     if not every:
         raise SweepError("the scene's effects", "give no number of the car", "an effect such as wheel_angles")
     derivatives, doubts = {}, {}
-    for name in numbers or every:
-        values = every[name].reshape(len(named), len(PLACES), -1)
+    for name, array in every.items():
+        values = array.reshape(len(named), len(PLACES), -1)
         sixth, fourth = (np.einsum("k,ckn->cn", weights, values) / step for weights in (SIXTH, FOURTH))
         derivatives[name], doubts[name] = sixth, np.abs(sixth - fourth)
     failures = {named[number // len(PLACES)]: str(one.error) for number, one in found.failures.items()}
     return Sensitivity(named, found.times, derivatives, doubts, failures)
+
+
+def numbers_named(channels: Mapping[str, Channel], names: Sequence[str]) -> dict[str, Array]:
+    """Numbers of many designs by name, each (designs, N); all of the car unless names are given.
+
+    Raises:
+        UnknownName: none is called so.
+    """
+    scalars = _scalars(channels)
+    if not names:
+        return scalars
+    every = scalars.copy()
+    for quantity, channel in channels.items():
+        for name, values in channel.items():
+            if channel.quantity.of == "car":
+                every.setdefault(f"{quantity}.{name}", values)
+            else:
+                every |= {f"{quantity}.{name}.{axis}": values[..., i] for i, axis in enumerate("xyz")}
+    for name in names:
+        if name not in every:
+            raise UnknownName("number of the scene's effects", name, scalars)
+    return {name: every[name] for name in names}
 
 
 def _scalars(numbers: Mapping[str, Channel]) -> dict[str, Array]:

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, Sensitivity, sensitivity, sweep
 from pointcoord.effects.registry import RANKED_FIRST, number_called
+from pointcoord.sweeping.sensitivity import numbers_named
 from validate.commands.table import meant_numbers
 from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
-from validate.curves.numbers import asking_for
+from validate.curves.numbers import Number, asking_for, by_path
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
@@ -22,6 +23,8 @@ from validate.output.progress import progress
 from validate.output.table import Table, csv_of
 
 Array = NDArray[np.float64]
+Shown = tuple[str, str, float]
+"""A number for people: its name, its unit, and how many of them its own is."""
 
 ENDINGS = (".csv", ".md", ".svg", ".png")
 PICTURES = (".svg", ".png")
@@ -40,7 +43,7 @@ A picture (SVG, PNG) has a bar for each coordinate."""
 OPTIONS = f"""\
 {SCENE}
 -o --output FILE  where to, by its ending {", ".join(ENDINGS)}; the first {ROWS} rows in text if not given
---number NAME  a number of the car; may be given again
+--number NAME  a number of the car, or another as QUANTITY.NAME, such as rod_force.tie_rod; may be given again
 --point NAME  a hardpoint or one of its coordinates, such as tie_rod_outer.z; may be given again
 --tolerance MM  standard deviation of every coordinate, and its limit for the worst case; 1 if not given
 --seed K  of the designs at random; 0 if not given
@@ -61,7 +64,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         needed("sensitivity", "matplotlib", "plot")
     scene, name = load_scene(options.scene), name_of(options.scene)
     signs = meant_numbers(options.number, scene, name, RANKED_FIRST) or meant_numbers(None, scene, name, None)
-    chosen = [*signs]
+    chosen, paths = [*signs], by_path(scene)
+    shown_as = {number: _shown(number, sign, paths) for number, sign in signs.items()}
     time = {
         "start": scene.time.start,
         "stop": scene.time.stop,
@@ -75,11 +79,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         console.warn(f"{name}: {coordinate} has no derivative: {why}")
     order = np.argsort(-np.abs(found.largest(chosen[0])), kind="stable")
     if ending in PICTURES:
-        console.put(target, _picture(found, signs, order, name, ending), "the picture")
+        console.put(target, _picture(found, shown_as, order, name, ending), "the picture")
     else:
         linear = {n: found.spread(n, options.tolerance) for n in chosen}
         spreads = {n: (deviation, random[n], worst) for n, (deviation, worst) in linear.items()}
-        text = _text(found, signs, order, ending, options.tolerance, spreads)
+        text = _text(found, shown_as, order, ending, options.tolerance, spreads)
         console.put(target, text, "the table")
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
 
@@ -89,30 +93,27 @@ def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -
     random = np.random.default_rng(seed)
     offsets = {one: random.normal(0.0, tolerance, DESIGNS) for one in found.coordinates}
     designs = sweep(scene, offsets=offsets)
-    arrays = {n: array for channel in designs.numbers.values() for n, array in channel.items()}
-    return {n: float(np.nanstd(arrays[n][designs.solved], axis=0).max()) for n in found.derivatives}
+    arrays = numbers_named(designs.numbers, [*found.derivatives])
+    return {n: float(np.nanstd(array[designs.solved], axis=0).max()) for n, array in arrays.items()}
 
 
-def _shown(number: str, sign: int) -> tuple[str, str, float]:
-    """A number for people, with a minus where it is to count the other way: its name, its unit, and how many
-    of them its own is."""
+def _shown(number: str, sign: int, paths: Mapping[str, Number]) -> Shown:
+    """A number, with a minus where it is to count the other way."""
     called = number_called(number)
-    assert called is not None  # only such are chosen
-    unit = called.quantity.unit
+    unit = paths[number].unit if called is None else called.quantity.unit
     factor = sign * (float(np.degrees(1.0)) if unit.startswith("rad") else 1.0)
     return f"{'-' if sign < 0 else ''}{number}", unit.replace("rad", "deg", 1), factor
 
 
 def _text(
     found: Sensitivity,
-    signs: Mapping[str, int],
+    shown_as: Mapping[str, Shown],
     order: NDArray[np.intp],
     ending: str,
     tolerance: float,
     spreads: Mapping[str, tuple[float, float, float]],
 ) -> str:
     """A row for each coordinate, and what a tolerance makes."""
-    shown_as = {number: _shown(number, sign) for number, sign in signs.items()}
     head = ("hardpoint", *(f"{called} [{unit}/mm]" for called, unit, _ in shown_as.values()))
     columns = [found.largest(n)[order] * factor for n, (*_, factor) in shown_as.items()]
     names = [found.coordinates[place] for place in order]
@@ -138,7 +139,7 @@ def _text(
 
 
 def _picture(
-    found: Sensitivity, signs: Mapping[str, int], order: NDArray[np.intp], name: str, ending: str
+    found: Sensitivity, shown_as: Mapping[str, Shown], order: NDArray[np.intp], name: str, ending: str
 ) -> bytes:
     """A panel of bars for each number, a bar for each of the first coordinates."""
     # Imported here: matplotlib takes a second.
@@ -149,11 +150,10 @@ def _picture(
 
     first = order[:ROWS][::-1]
     with rc_context(SETTINGS):
-        page = Figure(figsize=(2.2 * len(signs) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
+        page = Figure(figsize=(2.2 * len(shown_as) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
         page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
-        panels = page.subplots(1, len(signs), sharey=True, squeeze=False)[0]
-        for axes, (number, sign) in zip(panels, signs.items(), strict=True):
-            called, unit, factor = _shown(number, sign)
+        panels = page.subplots(1, len(shown_as), sharey=True, squeeze=False)[0]
+        for axes, (number, (called, unit, factor)) in zip(panels, shown_as.items(), strict=True):
             axes.barh(
                 [found.coordinates[i] for i in first], factor * found.largest(number)[first], color=BLUE
             )

@@ -28,10 +28,10 @@ from validate.commands.usage import (
     told_as,
 )
 from validate.commands.values import values_of
-from validate.curves.numbers import COMPONENTS, Number, asking_for, numbers_of
+from validate.curves.numbers import COMPONENTS, Number, asking_for, by_path, numbers_of
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
-from validate.formulations.asked_numbers import is_force
+from validate.formulations.asked_numbers import is_force, per_second
 from validate.output.console import Console
 from validate.output.table import Table, csv_of, is_terminal
 from validate.plain_text import shown, some_of
@@ -42,6 +42,7 @@ ENDINGS = (".csv", ".md")
 ROWS = 21
 NAMED = 12  # numbers, in a message
 DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2, "mm/deg": 5, "N": 2, "N/mm": 4}
+OTHERWISE = 4
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
 
 DESCRIPTION = """\
@@ -65,7 +66,7 @@ OPTIONS = f"""\
 -o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; a table in text if not given
 --rows N  how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}
 --grid INPUT=VALUES  a row for every combination of values instead, in mm or rad; may be given again
---number NAME  a column, by its name; may be given again
+--number NAME  a column, such as toe, rod_force.tie_rod or velocity.wheel_centre.z; may be given again
 --all  every number of the car that there is
 --convention NAME  what names mean: {", ".join(CONVENTIONS)}; the scene's if not given, iso if it has none
 {QUIET}"""
@@ -84,15 +85,20 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
             raise UsageError("--all is every number by our names; leave --convention out with it")
         scene = scene.model_copy(update={"convention": options.convention})
     signs = meant_numbers(options.number, scene, name, READ_FIRST if not options.all else None)
-    scene = asking_for(scene, [*signs])
+    with told_as(name):
+        scene = asking_for(scene, [*signs])
     every = numbers_of(scene)
     # A rod may be called as a number of the car is, and has a force: the first by a name is the car's.
     numbers = {number.path[-1]: number for number in reversed(every) if number.of_the_car}
     inputs = {number.path[0]: number for number in every if len(number.path) == 1}
-    read = [numbers[number] for number in signs]
+    paths = by_path(scene)
+    read = [numbers[number] if number in numbers else paths[number] for number in signs]
     if not options.number:
         read += [one for one in every if _is_force(one) and one.missing is None]
     if options.grid:
+        rates = [number for number in signs if number in paths and per_second(paths[number].path[0])]
+        if rates:
+            raise UsageError(f"--number {rates[0]}: poses of a grid have no rates; leave it out, or --grid")
         return _on_grid(scene, read, signs, options, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
     columns = [*(inputs[one] for one in driven), *read]
@@ -112,6 +118,8 @@ def meant_numbers(
     named: Sequence[str] | None, scene: Scene, name: str, first: Sequence[str] | None
 ) -> dict[str, int]:
     """Our numbers that are meant by the scene's convention, and -1 of those that it counts the other way.
+
+    What is no number of the car is named by its path, as by `by_path`.
 
     Args:
         named: names of these. name: of the scene, for messages.
@@ -152,15 +160,16 @@ def _chosen_of(named: Sequence[str], known: Sequence[str], scene: Scene, name: s
     """Numbers by names, of each wheel where no part is named."""
     part = scene.mechanism
     asked = [one for number in named for one in _of_each_part(number, known) or [number]]
+    paths = by_path(scene)
     for number in asked:
-        if number not in known:
+        if number not in known and number not in paths:
             own = number.rpartition(".")[2]
             why = [reason for e in EFFECTS.values() if own in e.own_names and (reason := part.refusal(e))]
             raise UsageError(
                 f"{name}: --number {number}: {why[0]}"
                 if why
                 else f"{name}: no number of a car is called {shown(number)}"
-                f"{meant(number, known)}; allowed: {some_of(known, NAMED)} (--all shows every one)"
+                f"{meant(number, (*known, *paths))}; allowed: {some_of(known, NAMED)} (--all shows every one)"
             )
     return list(dict.fromkeys(asked))
 
@@ -243,7 +252,7 @@ def _text(
         signs: of numbers by name, -1 of what is to count the other way.
         reasons: why there are none in a row, of a grid.
     """
-    names = [".".join(one.path) if _is_force(one) else one.path[-1] for one in columns]
+    names = [".".join(one.path) if _is_force(one) or len(one.path) > 2 else one.path[-1] for one in columns]
     ways = [signs.get(name, 1) for name in names]
     head = tuple(
         f"{'-' if way < 0 else ''}{name} [{one.unit_shown()}]"
@@ -256,10 +265,12 @@ def _text(
             return csv_of(head, lines)
         every = ((*line, reasons.get(row, "")) for row, line in enumerate(lines))
         return csv_of((*head, "why there is none"), every)
-    digits = [DIGITS[one.unit_shown()] for one in columns]
+    digits = [DIGITS.get(one.unit_shown(), OTHERWISE) for one in columns]
     table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
     # The wheels of an axle share a line.
     told_signs = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
+    vectors = (one for one in columns if len(one.path) > 2 and not _is_force(one))
+    told_signs |= {".".join(one.path): one.sign for one in vectors if one.sign}
     told = [f"{number}: positive {sign}" for number, sign in told_signs.items()]
     told += [f"forces: {LOADS.sign}"] * any(map(_is_force, columns))
     if target is not None:

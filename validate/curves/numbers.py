@@ -17,6 +17,7 @@ from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
 from pointcoord.wording import meant as hint
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
+from validate.formulations.asked_numbers import is_force
 from validate.plain_text import gathered, shown
 
 Array = NDArray[np.float64]
@@ -105,11 +106,20 @@ def numbers_of(scene: Scene) -> tuple[Number, ...]:
 
 
 def asking_for(scene: Scene, numbers: Sequence[str]) -> Scene:
-    """The scene with the effects that give some numbers beside its own."""
+    """The scene with the effects that give some numbers, of the car or by their paths, beside its own."""
     topology, had = scene.mechanism.topology, reversed(scene.mechanism.effects)
     givers = {number: effect for effect in had for number in EFFECTS[effect].names(topology)}
-    effects = tuple(dict.fromkeys((*scene.effects, *(givers[number] for number in numbers))))
+    paths = by_path(scene)
+    missing = {n: one.missing.effect for n, one in paths.items() if one.missing is not None}
+    wanted = (givers[number] if number in givers else missing.get(number, "") for number in numbers)
+    effects = tuple(dict.fromkeys((*scene.effects, *filter(None, wanted))))
     return scene.model_copy(update={"effects": effects})
+
+
+def by_path(scene: Scene) -> dict[str, Number]:
+    """Forces and vectors, by QUANTITY.NAME or QUANTITY.NAME.COMPONENT."""
+    every = numbers_of(scene)
+    return {".".join(n.path): n for n in every if len(n.path) == 3 or (n.of_the_car and is_force(n.path[0]))}
 
 
 def as_meant(scene: Scene) -> tuple[Scene, tuple[Number, ...]]:

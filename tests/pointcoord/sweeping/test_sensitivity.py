@@ -5,6 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from pointcoord import Scene, SweepError, UnknownName, sensitivity
+from pointcoord.scene.scene_file import LoadPart
 from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]
@@ -63,20 +64,36 @@ def test_another_model_of_the_moved_cars_gives_the_same(coordinate: str) -> None
     assert max(np.abs(list(largest.values()))) > 1e-4
 
 
-def test_bump_steer_has_the_derivatives_that_another_model_of_the_moved_cars_has() -> None:
-    scene = Scene.load("wheel-travel").model_copy(update={"effects": ("toe_by_travel",)})
-    found = sensitivity(scene, ["toe_by_travel"], ["tie_rod_outer.z"])
+@pytest.mark.parametrize(
+    ("effect", "number", "size"),
+    [
+        ("toe_by_travel", "angle_gradient.toe_by_travel", 1.0 / 60.0),
+        ("loads", "rod_force.tie_rod", 4000.0),
+        ("loads", "joint_force.lower_ball_joint.y", 4000.0),
+        ("velocity", "velocity.wheel_centre.x", 300.0),
+    ],
+)
+def test_every_number_has_the_derivatives_that_another_model_of_the_moved_cars_has(
+    effect: str, number: str, size: float
+) -> None:
+    scene = Scene.load("wheel-travel")
+    load = LoadPart(force=(-310.0, 1870.0, 3105.0), moment=(0.0, 0.0, 0.0))
+    part = scene.mechanism.model_copy(update={"loads": {"": load}})
+    scene = scene.model_copy(update={"effects": (effect,), "mechanism": part})
+    found = sensitivity(scene, [number], ["tie_rod_outer.z"])
+    quantity, name, *axis = number.split(".")
     step, values = 0.05, []
     for sign in (1.0, -1.0):
         points = dict(scene.mechanism.points)
         x, y, z = points["tie_rod_outer"]
         points["tie_rod_outer"] = (x, y, z + sign * step)
         moved = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
-        values.append(formulation("absolute").solve(moved).numbers["angle_gradient"]["toe_by_travel"])
+        values.append(formulation("absolute").solve(moved).numbers[quantity][name])
     middle = (values[0] - values[1]) / (2.0 * step)
-    # A central difference leaves out f''' h^2 / 6, of a slope of an angle that changes with 60 mm and more.
-    assert np.abs(found.derivatives["toe_by_travel"][0] - middle).max() <= step**2 / 60.0**4 + 1e-12
-    assert np.abs(middle).max() > 1e-5
+    middle = middle[:, "xyz".index(axis[0])] if axis else middle
+    # A central difference leaves out f''' h^2 / 6, of a number that changes by its size with 60 mm and more.
+    assert np.abs(found.derivatives[number][0] - middle).max() <= size * (step**2 / 60.0**3 + 1e-10)
+    assert np.abs(middle).max() > 1e-4 * size
 
 
 def test_spreads_are_what_independent_coordinates_and_the_worst_of_them_make() -> None:

@@ -218,6 +218,20 @@ def test_forces_that_a_scene_asks_for_stand_in_its_tables(
     assert status == 0
     assert "spring_force [N]" in out
     assert "joint_force" not in out
+    named = ("joint_force.strut_top.x", "velocity.wheel_centre.z", "camber")
+    asked = [word for name in named for word in ("--number", name)]
+    assert printed(capsys, "table", str(scene), *asked, "-o", str(target))[0] == 0
+    head = [name.rpartition(" [")[0] for name in rows_of(target)[0]]
+    assert head[-3:] == list(named)
+    rates = simulate(Scene.load(scene).model_copy(update={"effects": ("velocity",)}))
+    speeds = [float(row["velocity.wheel_centre.z [mm/s]"]) for row in rows_of(target)]
+    assert speeds == pytest.approx(rates.velocity["wheel_centre"][:, 2], abs=1e-7)
+    assert printed(capsys, "table", str(scene), *asked, *grid)[0] == 2
+    status, out, _ = printed(
+        capsys, "sensitivity", str(scene), "--number", "rod_force.damper", "--point", "strut_top.z"
+    )
+    assert status == 0
+    assert "rod_force.damper [N/mm]" in out
 
 
 @pytest.mark.parametrize("name", ["off-axis-strut", "axle-steer", "five-link"])
