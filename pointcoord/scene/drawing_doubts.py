@@ -92,16 +92,20 @@ def _front_behind_rear(topology: Topology, points: Mapping[str, Array], axes: Ca
 
 
 def _racks_outboard(topology: Topology, points: Mapping[str, Array], axes: CarAxes) -> Iterator[Doubt]:
-    """What is driven by a travel and lies farther out than what it pushes: two ends mistaken."""
+    """What is driven by a travel and lies farther out than what it pushes: two ends mistaken.
+
+    Both across the middle of the car, they are another wheel's.
+    """
     pushed = {drive.pushes for drive in topology.drives}
     links = (ends for constraint in topology.constraints for ends in constraint.squared_lengths)
     for inner, outer in ((one, two) for a, b in links for one, two in ((a, b), (b, a)) if one in pushed):
-        yield _farther_out(inner, outer, axes.component(points[inner] - points[outer], "outboard"))
+        one, other = (axes.component(points[name], "outboard") for name in (inner, outer))
+        yield _farther_out(inner, outer, one - other, np.maximum(one, other) < 0.0)
 
 
-def _farther_out(inner: str, outer: str, out: Array) -> Doubt:
+def _farther_out(inner: str, outer: str, out: Array, across: NDArray[np.bool_]) -> Doubt:
     return Doubt(
-        out > 0.0,
+        (out > 0.0) & ~across,
         lambda one: f"{inner} lies {float(out[one]):.4g} mm outboard of {outer}: are they swapped?",
     )
 

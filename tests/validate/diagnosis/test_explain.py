@@ -145,6 +145,16 @@ FAULTS: Mapping[str, tuple[Callable[[Solution], Numbers], str, str]] = {
         "sample and sign",
         "toe: one sample late, the last one first, and the other sign",
     ),
+    "the last row first": (
+        lambda h: angle(h, "caster", lambda v: v[::-1]),
+        "sample",
+        "caster: its rows in the reverse order",
+    ),
+    "minutes of arc": (
+        lambda h: angle(h, "toe", lambda v: 60.0 * v),
+        "unit",
+        "toe: minutes of arc taken for degrees",
+    ),
     "differences padded with a zero": (
         lambda h: {"velocity": {n: padded(p, h.times) for n, p in h.position.items()}},
         "differences",

@@ -118,6 +118,12 @@ def test_an_exported_car_comes_back_with_its_camber_over_travel(name: str, tmp_p
     assert np.abs(camber - again).max() <= near
 
 
+def test_an_axle_comes_back_as_one_mechanism_and_neither_wheel_is_doubted(tmp_path: Path) -> None:
+    back = import_hardpoints(exported("axle-roll", tmp_path)).scene
+    assert back.mechanism.doubts == ()
+    assert compare(back, "pointcoord", "absolute").agreed
+
+
 @pytest.mark.parametrize("name", LINKAGES)
 def test_an_exported_linkage_comes_back_with_its_motion(name: str, tmp_path: Path) -> None:
     scene = Scene.load(name)

@@ -41,6 +41,7 @@ UNITS = (
     Unit("degrees for radians", "rad", 180.0 / pi),
     Unit("degrees taken for radians and converted once more", "rad", pi / 180.0),
     Unit("minutes of arc for radians", "rad", 60.0 * 180.0 / pi),
+    Unit("minutes of arc taken for degrees", "rad", 60.0),
     Unit("turns for radians", "rad", 0.5 / pi),
     Unit("turns per minute for rad/s", "rad", 30.0 / pi, (1,)),
     Unit("m for mm", "mm", 1e-3),

@@ -90,12 +90,13 @@ SAMPLES: Mapping[str, Callable[[Array], Array]] = {
     "one sample early, the last one twice": lambda x: np.concatenate([x[1:], x[-1:]]),
     "one sample late, the last one first": lambda x: np.roll(x, 1, axis=0),
     "one sample early, the first one last": lambda x: np.roll(x, -1, axis=0),
+    "its rows in the reverse order": lambda x: x[::-1],
 }
 """In words, and what is then given of numbers."""
 
 
 def one_sample_off(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Every number stands in the row after or before its own."""
+    """Every number stands in the row after or before its own, or as far from the other end."""
     for words, moved in SAMPLES.items():
         # Rows that agree as well, so that it is known whether they would under the fault.
         looked = (*evidence.wrong, *evidence.beside)
