@@ -15,9 +15,9 @@ ROOT = Path(validate.__file__).parent
 ROOMS = ("formulations", "comparison", "diagnosis", "output", "ci", "commands", "hardpoint_files", "html")
 STRUCTURES = [one for name in shipped() for one in mechanism_file(name).structures.values()]
 NAMES = {
-    # A role may be called as an effect of it is, and a text is read by json.loads.
-    "effect": {*EFFECTS} - {*PAIR_ROLES, "loads"},
-    "quantity": {*QUANTITIES},
+    # A role may be called as an effect of it is, a text is read by json.loads, and a list pops.
+    "effect": {*EFFECTS} - {*PAIR_ROLES, "loads", "pop"},
+    "quantity": {*QUANTITIES} - {"pop"},
     "angle": {name for effect in EFFECTS.values() for name in effect.own_names},
     "mechanism": {*shipped()},
     # The letters by which a published linkage calls its pins are in use as metavars too.

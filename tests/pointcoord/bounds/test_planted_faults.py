@@ -20,6 +20,7 @@ from pointcoord.bounds import certified_poses, enclosed_points
 from pointcoord.bounds.certified_poses import CertifiedPoses, grouped, with_known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
 from pointcoord.effects import knuckle_rates
+from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosed_rows, enclosure, kantorovich
@@ -126,8 +127,10 @@ def scene_holds(name: str) -> bool:
     proof = motion.proof_of(samples, rates=True)
     for k, (_, exact) in enumerate(references):
         angles = {key: [value] for key, value in exact.effects.items()}
+        states = dict(zip(STATES, exact.derivatives, strict=False))
         for quantity, channel in samples.numbers.items():
-            own = angles if QUANTITIES[quantity].of == "car" else getattr(exact, quantity)
+            of_a_body = {} if quantity in states else vars(exact).get(quantity, {})
+            own = angles if QUANTITIES[quantity].of == "car" else states.get(quantity, of_a_body)
             for part, values in channel.items():
                 kept = values, proof.proven[quantity][part], proof.expected[quantity][part]
                 reported, bounds, expected = (np.atleast_1d(array[k]).tolist() for array in kept)

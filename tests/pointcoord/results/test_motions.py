@@ -72,7 +72,7 @@ def test_motions_and_errors_come_back_from_a_process_pool(make_scene: Callable[.
 
 
 def test_what_a_motion_is_fits_on_a_line(make_scene: Callable[..., Scene]) -> None:
-    motion = simulate(make_scene(samples=2000))
+    motion = simulate(make_scene(samples=2000, effects=("velocity", "acceleration", "wheel_angles", "toe")))
     for text, words in (
         (repr(motion), ("Motion by series", "2000 instants from 0 to 2 s", "position, velocity", "wheel")),
         (repr(motion.at([[0.5, 1.0]])), ("Samples", "2 instants from 0.5 to 1 s")),

