@@ -1,5 +1,6 @@
 """Profiles of the property-based tests: `ci` is the same on every run, `deep` searches longer and wider."""
 
+import gc
 import os
 
 import pytest
@@ -13,6 +14,12 @@ PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "ci")
 settings.register_profile("ci", derandomize=True, max_examples=EXAMPLES["ci"], **COMMON)
 settings.register_profile("deep", max_examples=EXAMPLES["deep"], **COMMON)
 settings.load_profile(PROFILE)
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """What was collected stays to the end: the garbage collector need not look at it again."""
+    gc.collect()
+    gc.freeze()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -48,7 +48,7 @@ EVERY = {effect.name: effect for effect in (*ALWAYS, *(EFFECTS[name] for name in
 each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
 cars = st.sampled_from(["off-axis-strut", "pushrod"])
-some = settings(deadline=None, max_examples=40)
+some = settings(deadline=None, max_examples=max(12, settings.default.max_examples // 8))
 ORDERS = range(len(STATES))
 
 

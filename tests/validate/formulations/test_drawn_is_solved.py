@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import absolute
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
 from validate.adjudication.reference_solution import inputs_at, reference_instant
-from validate.cars.car import Car, any_rotation, moved, other_side, scaled, turned
+from validate.cars.car import Car
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.cars import scene_content
@@ -129,40 +129,3 @@ def test_at_other_inputs_all_mechanics_give_the_closed_form(car: Car, arm: float
             assert distance <= allowed(solution) + last, (name, point)
     for point, distance in off(true_places(scene), exact).items():
         assert distance <= last, ("reference", point)
-
-
-LAWS = ("mirrored", "turned", "moved", "scaled")
-
-
-def transformed(car: Car, law: str) -> tuple[Car, float, float, Array, Array]:
-    """The car elsewhere: with the sign and scale of its rack, and the matrix and shift of its points."""
-    if law == "mirrored":
-        across = np.eye(3) - 2.0 * np.outer(car.right, car.right)
-        return other_side(car), -1.0, 1.0, across, np.zeros(3)
-    if law == "turned":
-        turn = any_rotation(5)
-        return turned(car, turn), 1.0, 1.0, turn, np.zeros(3)
-    shift = np.array([4096.0, -8192.0, 2048.0]) if law == "moved" else np.zeros(3)
-    scale = 2.0**7 if law == "scaled" else 1.0
-    return moved(scaled(car, scale), shift), 1.0, scale, scale * np.eye(3), shift
-
-
-@searched
-@pytest.mark.parametrize("law", LAWS)
-@given(cars_of(DRAWN), SHARES, SHARES)
-def test_a_car_elsewhere_has_the_same_poses_elsewhere(law: str, car: Car, arm: float, rack: float) -> None:
-    linkage = Linkage.of(car)
-    angle, travel = linkage.drawn_angle + 0.25 * arm, linkage.drawn_rack + 20.0 * rack
-    other, sign, scale, matrix, shift = transformed(car, law)
-    for name in MODELS:
-        here = solved(name, scene_at(car, angle, travel))
-        elsewhere = scene_at(other, angle, sign * scale * travel)
-        there = solved(name, elsewhere)
-        # Coordinates are rounded anew, and the condition number says what comes of that.
-        far = max(float(np.abs(place).max()) for place in there.numbers["position"].values())
-        raised = gain(name, elsewhere) * float(there.accuracy.condition.max())
-        rounding = 2.0 * raised * EPS * far
-        room = scale * allowed(here) + allowed(there) + rounding
-        for point, place in here.numbers["position"].items():
-            gap = place @ matrix.T + shift - there.numbers["position"][point]
-            assert float(np.abs(gap).max()) <= room, (name, point)
