@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.numerics.rounding import EPS
 from validate.comparison.compare import SMALLEST, Comparison, Outcome, Verdict
 from validate.diagnosis import Explanation, explain_evidence
 from validate.diagnosis.evidence import Evidence, Solved, numbers_not_given
@@ -272,20 +274,23 @@ def _by_rows(driven: Driven, values: Sequence[Array], rows: Rows) -> tuple[Rows,
     elif not ((steps >= 0.0).all() or (steps <= 0.0).all()):
         rows = rows[np.argsort(first, kind="stable")]
     inputs, _ = driven.inputs([one[rows] for one in values])
-    times = np.arange(float(len(rows))).tolist()
-    laws = {
-        name: {"table": {"times": times, "values": value.tolist()}}
-        if np.ptp(value)
-        else {"constant": float(value[0])}
-        for name, value in inputs.items()
-    }
+    laws = {name: _from_row_to_row(value) for name, value in inputs.items()}
     content = driven.scene.model_dump(exclude_none=True, exclude={"points"})
     effects = [
         name for name in driven.scene.effects if not EFFECTS[name].derivative and not EFFECTS[name].way
     ]
-    time = {"start": 0.0, "stop": times[-1], "samples": len(rows)}
+    time = {"start": 0.0, "stop": float(len(rows) - 1), "samples": len(rows)}
     content |= {"inputs": laws, "time": time, "effects": effects}
     return rows, Scene.from_mapping(content, driven.scene.title or "scene")
+
+
+def _from_row_to_row(values: Array) -> dict[str, Any]:
+    """A law that has these values at whole seconds; a straight one, which is solved soonest, if it may be."""
+    times, first = np.arange(float(len(values))), float(values[0])
+    step = float(values[-1] - values[0]) / max(len(values) - 1, 1)
+    if np.abs(values - (first + step * times)).max() <= 4.0 * EPS * np.abs(values).max():
+        return {"polynomial": [first, step]} if step else {"constant": first}
+    return {"table": {"times": times.tolist(), "values": values.tolist()}}
 
 
 def _solution(measured: Measured, by_row: dict[Row, list[Held]]) -> Solution:
