@@ -168,18 +168,22 @@ def _merged(kind: Kind, evidence: Evidence) -> Iterable[Hypothesis]:
 def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
     """The rows that a fault explains, whole or in part; None if there are none."""
     left: dict[Row, float] = {}
+    # What is wrong by so little tells nothing by itself, but is said where the whole car is another.
+    barely: list[Row] = []
     for row, (value, allowed) in hypothesis.rows.items():
         share = evidence.left(row, value, allowed)
         if row in evidence.wrong:
             if hypothesis.looser or evidence.clear(row, allowed):
                 left[row] = share
+            elif hypothesis.whole and share <= 1.0:
+                barely.append(row)
         elif hypothesis.whole and share > 1.0:
             return None
     fitted = hypothesis.fitted
     exact = [row for row, share in left.items() if share <= 1.0]
     exact = [row for some in together(exact) if evidence.distinct(some) > fitted for row in some]
     if exact:
-        return _Found(hypothesis, tuple(exact), max(left[row] for row in exact), np.inf)
+        return _Found(hypothesis, (*exact, *barely), max(left[row] for row in exact), np.inf)
     lowered = {some: _lowered(evidence, hypothesis, some) for some in together(left)}
     partly = {
         some: factor

@@ -327,6 +327,21 @@ def test_a_misread_wheel_is_a_misread_hardpoint_and_no_other_assembly(name: str)
     assert "wheel_centre.x drawn 5 mm too far back" in first.words
 
 
+def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() -> None:
+    scene, given = (
+        solved("double-wishbone")[0],
+        {"wheel": drawn_with("double-wishbone", upper_ball_joint__y=1.0)["wheel"]},
+    )
+    shares = {
+        row.name: row.share for row in check(lambda _: given, scene, 1e-4).rows if row.quantity == "wheel"
+    }
+    # What a number may be off by goes with the accuracy.
+    least = min(shares, key=lambda name: shares[name])
+    (only,) = check(lambda _: given, scene, 1e-4 * shares[least] / 2.5).explanations
+    assert "upper_ball_joint.y drawn 1 mm too far" in only.words
+    assert {*only.quantities} == {f"wheel.{name}" for name in shares}
+
+
 @pytest.mark.parametrize("quantities", [("velocity",), (*STATES, *TURNS, "wheel")])
 def test_noise_has_no_explanation(quantities: tuple[str, ...]) -> None:
     _, held = solved("double-wishbone")
