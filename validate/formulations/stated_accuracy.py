@@ -35,14 +35,14 @@ without turning; what the chassis adds to every point alike turns nothing):
     turning of a body       2 e_1 / h and 2 e_2 / h, h the least height of the triangle of its three points
     an angle                both ends of its line off by e, through the line's length
 
+and each is rounded once where it is handed over, and once where the chassis' part of it is added.
+
 Of a model that is known to solve equations for its rates, these equations are missed as well: those of the
 order k by e_k / e times as much as those of the pose, as if delta changed. Of the order d that makes
 
     sum_k C(d, k) (e_k / e) |dp^(d-k)|,      k = 1 .. d,
 
 with dp^(j) what missing the equations by a constant delta makes of the order j of a point.
-
-and each is rounded once where it is handed over, and once where the chassis' part of it is added.
 
 The derivatives are those of the pose itself. Within the reach of delta the Jacobian changes; with
 r = |sum_i |C'^-1 dC'_i||, the largest relative change (maximum norm), it may lose so much that a first order
