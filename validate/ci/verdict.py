@@ -8,7 +8,7 @@ from typing import get_args
 
 from validate.ci.baseline import Move, Since
 from validate.ci.record import Record
-from validate.comparison.compare import Comparison, Verdict
+from validate.comparison.compare import Comparison, Outcome, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
@@ -33,6 +33,7 @@ from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NUMBERS = 8  # numbers in a sentence: the table's notes have them all
+TELLING = 20.0  # tolerances that a difference must have, for a fault to be told from others by it
 ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
 NOT_TESTED = "not tested"
 # The line of a scene tells of the last verdict that any of its numbers has.
@@ -151,6 +152,8 @@ def next_step(record: Record, verbose: bool = False) -> str:
     verdicts = {verdict for verdict, why in words if not why}
     steps = []
     if record.files and record.status is not ExitStatus.AGREE:
+        if any(_too_little_to_explain(outcome) for one in record.examined for outcome in one.outcomes):
+            steps.append("differences of so few tolerances tell no fault apart: print more digits")
         steps.append("--report DIR draws the file's columns beside ours")
     elif verdicts - {"agrees"}:
         table = "" if verbose else "-v prints the table of every quantity, "
@@ -167,6 +170,12 @@ def next_step(record: Record, verbose: bool = False) -> str:
     if any(since.moved or since.lost for since in record.since):
         steps.append("if the new numbers are right, keep them by --save-baseline FILE")
     return f"Next: {'; '.join(steps)}." if steps else ""
+
+
+def _too_little_to_explain(outcome: Outcome) -> bool:
+    """Whether nothing explains it and no difference is many times its tolerance."""
+    shares = [row.share for row in outcome.disagreements]
+    return bool(shares) and not outcome.explanations and max(shares) <= TELLING
 
 
 Lines = Callable[[Examined], Iterator[str]]

@@ -193,6 +193,13 @@ class Evidence:
             not_given=not_given,
         )
 
+    def joined(self, rows: Sequence[Row], at: slice | NDArray[np.intp] = slice(None)) -> tuple[Array, Array]:
+        """The given numbers of rows at some instants, one after the other, and how far each may be off."""
+        off = [self.allowed[row] + self.own.get(row, 0.0) for row in rows]
+        numbers = [self.given[row] for row in rows]
+        given, off_by = (np.concatenate([array[at].ravel() for array in part]) for part in (numbers, off))
+        return given, off_by
+
     def in_words(self, row: Row, amount: Array | float) -> str:
         """An amount of a row with its unit, and in the one that it is given in."""
         said = f"{_in_digits(amount)} {self.units.get(row, length_or_angle(row))}"

@@ -287,7 +287,8 @@ def _ranked(found: Iterable[_Found]) -> list[_Found]:
 
     def place(one: _Found) -> tuple[float, ...]:
         decades = 0.0 if one.whole else -np.floor(np.log10(min(one.lowered, 1e300)))
-        return (not one.whole, -len(one.rows), decades, one.hypothesis.cost, one.leftover)
+        supposed = one.hypothesis
+        return (not one.whole, -len(one.rows), decades, supposed.cost, supposed.decimals, one.leftover)
 
     return sorted(found, key=place)
 

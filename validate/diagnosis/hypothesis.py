@@ -26,6 +26,7 @@ class Hypothesis:
         rows: what each row would be.
         fitted: how many numbers were chosen so that it fits.
         cost: how far-fetched it is; the fitted numbers and the choices made.
+        decimals: of its amounts; of what is as far-fetched the rounder one is likelier meant.
         looser: whether it says that the numbers are ours, and may be farther off than is claimed of them.
         whole: whether it is about the whole car, so that rows that agree must agree under it too.
         kind: of fault, two kinds joined by "and".
@@ -36,6 +37,7 @@ class Hypothesis:
     rows: Mapping[Row, WouldBe]
     fitted: int = 0
     cost: float = 1.0
+    decimals: int = 0
     looser: bool = False
     whole: bool = False
     kind: str = ""

@@ -19,6 +19,10 @@ MOST_STEPS = 12
 SETTLED = 1e-3
 # Of the largest difference, as which a number counts that the parameters do not give.
 FAR = 1e3
+# How many times what found amounts leave rounder ones may, where all numbers are within what they may be off,
+# and elsewhere; of so many decimals at most. Least squares leave less of rounded numbers than what was meant:
+# of 5 that one amount is fitted to by a root of 5/4 on average.
+KEPT, CLOSE, DECIMALS = 1.5, 1.1, 5
 # How near to a number of six digits a parameter is meant to be that number: it is found no better.
 MEANT = 1e-8
 
@@ -72,6 +76,34 @@ def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool],
     """
     rounder = (unit * np.round(np.asarray(found) / unit, places) for places in range(decimals))
     return np.asarray(next((near for near in rounder if fits(near)), found))
+
+
+def as_meant(found: Array, read: Callable[[Array], Array], theirs: Array, off: Array) -> tuple[float, Array]:
+    """What found amounts leave, and the roundest that leave as little: those that they are meant to be.
+
+    Amounts by which all numbers are within what they may be off go before rounder ones.
+
+    Args:
+        read: as of `fitted`. off: how far each number may be from the given one.
+    """
+
+    def gap(amounts: Array) -> Array:
+        return np.asarray(np.abs(theirs - read(amounts[None])[0]))
+
+    def left(amounts: Array) -> float:
+        return float(np.linalg.norm(gap(amounts)))
+
+    def kept(near: Array) -> bool:
+        return left(near) <= KEPT * least and bool((gap(near) <= off).all())
+
+    least = left(found)
+    near = roundest(found, DECIMALS, kept)
+    return least, near if kept(near) else roundest(found, DECIMALS, lambda one: left(one) <= CLOSE * least)
+
+
+def decimals_of(amounts: Array) -> int:
+    """How many decimals amounts have, as far as roundness is looked for."""
+    return next((n for n in range(DECIMALS) if (np.round(amounts, n) == amounts).all()), DECIMALS)
 
 
 def meant(amount: float, scale: float) -> float:

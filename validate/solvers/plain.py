@@ -214,7 +214,8 @@ def _numbers(
     notes: list[str] = []
     faults: list[str] = []
     for key, part in answer.items():
-        if key in of_the_car:
+        # Some numbers of the car are called as their quantity is.
+        if key in of_the_car and not (key in asked and isinstance(part, Mapping)):
             found.setdefault(of_the_car[key], {})[key] = part
         elif key in asked and isinstance(part, Mapping):
             for name, array in part.items():

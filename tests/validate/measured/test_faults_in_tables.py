@@ -97,6 +97,23 @@ def test_a_misread_hardpoint_is_named_with_its_amount_on_every_car(
     assert words in said
 
 
+@pytest.mark.parametrize(
+    ("name", "coordinate", "amount", "words"),
+    [
+        ("double-wishbone", "lower_arm_rear__y", 3.1, "lower_arm_rear.y drawn 3.1 mm too far out"),
+        ("five-link", "lower_rear_inner__z", 2.1, "lower_rear_inner.z drawn 2.1 mm too high"),
+    ],
+)
+def test_few_digits_make_no_second_hardpoint_of_what_least_squares_round_away(
+    name: str, coordinate: str, amount: float, words: str
+) -> None:
+    # Least squares leave less than the amount that was meant, and the next rounder one too much of a number.
+    scene = asked(name, "wheel_travel")
+    (said,) = explained(scene, moved(scene, **{coordinate: amount}), "wheel_travel", 3, same)
+    assert words in said
+    assert " and " not in said
+
+
 def test_two_misread_hardpoints_are_named_both() -> None:
     scene = asked("double-wishbone", "wheel_travel")
     other = moved(scene, upper_arm_front__z=2.0, tie_rod_outer__x=-3.0)

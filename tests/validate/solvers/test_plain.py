@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from plain_solvers import closed_form
 
-from pointcoord import Scene
+from pointcoord import Scene, simulate
 from pointcoord.effects.registry import QUANTITIES
 from validate import FormulationError, check
 from validate.hard.cars import BESIDE_CAR, scene_content
@@ -98,6 +98,28 @@ def test_who_gives_nothing_that_can_be_compared_does_not_pass(answer: dict[str, 
 def test_an_angle_may_stand_by_itself_and_lists_do() -> None:
     flat = {name: array.tolist() for name, array in RIGHT["wheel"].items()}
     assert [v for (q, _), v in verdicts(flat).items() if q == "wheel"] == ["agrees"] * 4
+
+
+@pytest.mark.parametrize(
+    ("name", "effect", "same"),
+    [("pushrod", "spring", ("spring_force", "wheel_rate")), ("axle-steer", "ackermann", ("ackermann",))],
+)
+def test_a_number_that_is_called_as_its_quantity_may_be_given_either_way(
+    name: str, effect: str, same: tuple[str, ...]
+) -> None:
+    content = Scene.load(name).model_dump(exclude_none=True)
+    content["mechanism"].setdefault("car", {})
+    content["mechanism"]["car"] |= {"wheelbase": 2500.0, "spring_rate": 30.0, "spring_free_length": 300.0}
+    scene = Scene.from_mapping(content | {"effects": [effect]}, name)
+    numbers = simulate(scene).numbers
+    by_quantity = {quantity: dict(numbers[quantity]) for quantity in same}
+    alone = {quantity: numbers[quantity][quantity] for quantity in same}
+    for answer in (by_quantity, alone):
+        outcome = check(lambda given, answer=answer: answer, scene, accuracy=1e-6)
+        assert not outcome.faults
+        assert {row.name: row.verdict for row in outcome.rows if row.name in same} == dict.fromkeys(
+            same, "agrees"
+        )
 
 
 def test_fewer_instants_are_compared_where_they_are_named() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from validate.diagnosis.hypothesis import Kind
 from validate.diagnosis.kinds.angles import other_definitions
 from validate.diagnosis.kinds.assembly import other_assemblies, other_closures
+from validate.diagnosis.kinds.car_data import other_data
 from validate.diagnosis.kinds.hardpoint import misread_hardpoints
 from validate.diagnosis.kinds.inputs import wrong_inputs
 from validate.diagnosis.kinds.links import other_lines, wrong_lengths
@@ -33,6 +34,7 @@ KINDS = (
     Kind("swapped", swapped),
     Kind("sides", sides_exchanged),
     Kind("name", anothers),
+    Kind("car data", other_data),
     Kind("differences", differences, of_time=True),
     Kind("per input", rates_per_input, opens=True, of_time=True),
     Kind("sample", one_sample_off, opens=True, neighbours=True),

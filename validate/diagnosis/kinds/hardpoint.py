@@ -19,7 +19,7 @@ from pointcoord import Scene, sweep
 from pointcoord.linkage.car_axes import Direction
 from validate.diagnosis.evidence import Evidence, Row, kind_of
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.least import LIKELY, fitted, roundest
+from validate.diagnosis.least import LIKELY, as_meant, decimals_of, fitted
 
 Array = NDArray[np.float64]
 Coordinate = tuple[str, ...]
@@ -32,8 +32,6 @@ ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alon
 LIKELIEST = 4  # of each number of coordinates
 # How many times what the best choice leaves another may leave.
 POORER = 30.0
-# By what rounder amounts may leave more than the found ones, of so many decimals at most, mm.
-CLOSE, DECIMALS = 1.1, 5
 # Of the car's size: what is read wrongly by more is another car, and whether it closes takes long to find.
 FARTHEST = 0.1
 TOO: Mapping[Direction, str] = {
@@ -74,7 +72,8 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypot
         return []
     time = scene.time.model_copy(update={"stop": float(every[some[-1]]), "samples": len(some)})
     few, at = scene.model_copy(update={"time": time}), np.searchsorted(evidence.times, every[some])
-    ours, theirs = (np.concatenate([part[row][at].ravel() for row in looked]) for part in evidence.both)
+    ours = np.concatenate([evidence.held[row][at].ravel() for row in looked])
+    theirs, off = evidence.joined(looked, at)
     if not np.isfinite(theirs).all():
         return []
     farthest = FARTHEST * float(np.ptp([*scene.mechanism.points.values()], axis=0).max())
@@ -95,7 +94,9 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypot
         tried = [
             (*found, chosen)
             for chosen in _likeliest(choices, names, slopes[usable], theirs - ours, farthest)
-            if (found := _amounts(partial(read, chosen), len(chosen), theirs, farthest))
+            if (found := _amounts(partial(read, chosen), len(chosen), theirs, off, farthest))
+            # Of one that is off by nothing the others are a choice of their own.
+            and found[1].all()
         ]
         best = min((left for left, *_ in tried), default=0.0)
         likely = [(chosen, amounts) for left, amounts, chosen in tried if left <= POORER * best]
@@ -106,18 +107,18 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypot
 
 
 def _amounts(
-    read: Callable[[Array], Array], count: int, theirs: Array, farthest: float
+    read: Callable[[Array], Array], count: int, theirs: Array, off: Array, farthest: float
 ) -> tuple[float, Array] | None:
-    """By how much coordinates are off, as round as it may be, and what that leaves; None of too much."""
+    """What coordinates leave, and by how much they are off, as round as it may be; None of too much.
 
-    def left(amounts: Array) -> float:
-        return float(np.linalg.norm(theirs - read(amounts[None])[0]))
+    Args:
+        off: how far the numbers may be from theirs.
+    """
 
     amounts = fitted(read, [0.0] * count, STEP, theirs)
     if amounts is None or not np.abs(amounts).max() < farthest:
         return None
-    least = left(amounts)
-    return least, roundest(amounts, DECIMALS, lambda near: left(near) <= CLOSE * least)
+    return as_meant(amounts, read, theirs, off)
 
 
 def _coordinates(scene: Scene) -> Chosen:
@@ -187,7 +188,8 @@ def _supposed(evidence: Evidence, chosen: Chosen, amounts: Array) -> Hypothesis 
         if (q, name) in evidence.held
     }
     said = (_said(evidence, c, a) for c, a in zip(chosen, amounts.tolist(), strict=True))
-    return Hypothesis(chosen, " and ".join(said), rows, len(chosen), 1.5 + len(chosen), whole=True)
+    cost, decimals = 1.5 + len(chosen), decimals_of(amounts)
+    return Hypothesis(chosen, " and ".join(said), rows, len(chosen), cost, decimals, whole=True)
 
 
 def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:

@@ -30,7 +30,7 @@ NEAR = 1e-5  # how near to pi an amount is meant to be it
 def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Simple before far-fetched, and no more of these where something explains all."""
     laws, looked, few = evidence.scene.inputs, evidence.first_wrong, evidence.thinned(FEW)
-    theirs = np.concatenate([few.given[row].ravel() for row in looked])
+    theirs, _ = few.joined(looked)
     if not np.isfinite(theirs).all():
         return
     sizes = {name: np.abs(rates(law, few.times)[:, 0]) for name, law in laws.items()}

@@ -19,14 +19,12 @@ from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from validate.diagnosis.evidence import Evidence
 from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.least import fitted, roundest
+from validate.diagnosis.least import as_meant, decimals_of, fitted
 
 Array = NDArray[np.float64]
 
 STEP = 0.05  # mm, of differences by a length
 FEW = 25  # instants that a length is looked for at
-# By what a rounder length may leave more than the found one, of so many decimals at most, mm.
-CLOSE, DECIMALS = 1.1, 5
 
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -39,7 +37,7 @@ def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
 
 def _wrong_length(evidence: Evidence, tables: Mapping[str, Any], rod: str) -> Hypothesis | None:
     looked, few, ends = evidence.first_wrong, evidence.thinned(FEW), tables["rods"][rod]
-    theirs = np.concatenate([few.given[row].ravel() for row in looked])
+    theirs, off = few.joined(looked)
     if not np.isfinite(theirs).all():
         return None
     name = f"length of {rod}"
@@ -60,21 +58,17 @@ def _wrong_length(evidence: Evidence, tables: Mapping[str, Any], rod: str) -> Hy
                 found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
         return found
 
-    def left(more: Array | float) -> float:
-        return float(np.linalg.norm(read(np.array([[float(more)]]))[0] - theirs))
-
-    amounts = fitted(read, [0.0], STEP, theirs)
-    if amounts is None:
+    found = fitted(read, [0.0], STEP, theirs)
+    if found is None:
         return None
-    enough = CLOSE * left(amounts[0])
-    more = float(roundest(amounts[0], DECIMALS, lambda near: left(near) <= enough))
-    if (motion := car(more)) is None:
+    _, amounts = as_meant(found, read, theirs, off)
+    if (motion := car(more := float(amounts[0]))) is None:
         return None
     start, end = (np.array(evidence.scene.mechanism.points[point]) for point in ends)
     drawn = float(np.linalg.norm(end - start))
     off = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
     words = f"{rod} is {off}, {drawn + more:.6g} mm for {drawn:.6g}"
-    return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, whole=True)
+    return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, decimals_of(amounts), whole=True)
 
 
 def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:

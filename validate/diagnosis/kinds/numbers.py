@@ -250,7 +250,7 @@ def printed_digits(evidence: Evidence) -> Iterator[Hypothesis]:
     Half of the last place is what they may be off.
     """
     for rows in together(evidence.wrong):
-        theirs = np.concatenate([evidence.given[row].ravel() for row in rows])
+        theirs, _ = evidence.joined(rows)
         if not np.isfinite(theirs).all():
             continue
         for what, step in (("decimals", _decimal_step), ("significant digits", _significant_step)):
