@@ -319,12 +319,22 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     assert found[0].words.endswith("and rack_centre with it")
 
 
-@pytest.mark.parametrize("name", SCENES[:2])
-def test_a_misread_wheel_is_a_misread_hardpoint_and_no_other_assembly(name: str) -> None:
-    # No link holds a carried point, and so its lengths in other assemblies are those of its body.
-    first = diagnosis(name, drawn_with(name, wheel_centre__x=5.0))[0]
+@pytest.mark.parametrize(
+    ("name", "coordinate", "amount", "words"),
+    [
+        (SCENES[0], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
+        (SCENES[1], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
+        ("wheel-travel", "damper_rocker__y", -3.8, "damper_rocker.y drawn 3.8 mm too far in"),
+        ("wheel-travel", "pushrod_outer__z", 2.0, "pushrod_outer.z drawn 2 mm too high"),
+    ],
+)
+def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly(
+    name: str, coordinate: str, amount: float, words: str
+) -> None:
+    # No link holds these points, and so their lengths in other assemblies are those of their bodies.
+    first = diagnosis(name, drawn_with(name, **{coordinate: amount}))[0]
     assert (first.kind, first.leftover <= 1.0) == ("hardpoint", True)
-    assert "wheel_centre.x drawn 5 mm too far back" in first.words
+    assert words in first.words
 
 
 def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() -> None:

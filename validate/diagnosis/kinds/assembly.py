@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene
 from pointcoord.linkage.chassis import ChassisMotion
+from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
 from validate.diagnosis.evidence import Evidence, kind_of, order
@@ -64,10 +66,12 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     there = np.stack([evidence.given[placed[name]][first] for name in free]) - mechanism.origin
     when = np.full(len(free), evidence.times[first])
     pose = drawn | dict(zip(free, chassis.taken_back(when, there) + mechanism.origin, strict=True))
-    links = {ends for constraint in topology.constraints for ends in constraint.squared_lengths}
-    # What rides on a body has its place there: misdrawn, it would be another car.
-    links |= {(held, name) for of in topology.bodies.values() for held in of for name in topology.carried}
-    missed = [np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(drawn[a] - drawn[b]) for a, b in links]
+    plain = scene.mechanism.plain(())
+    # Of every body: a point that only rides on it has its place there too, and misdrawn it is another car.
+    moving = [points for body, points in plain["bodies"].items() if body != CHASSIS]
+    links = {*map(tuple, plain["rods"].values()), *(ends for p in moving for ends in combinations(p, 2))}
+    closed = {name: place * mechanism.unit for name, place in mechanism.places(mechanism.drawn).items()}
+    missed = [np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(closed[a] - closed[b]) for a, b in links]
     motion = None
     if np.abs(missed).max() <= KEPT * size:
         points = {name: tuple(place.tolist()) for name, place in pose.items()}

@@ -66,8 +66,8 @@ def _wrong_length(evidence: Evidence, tables: Mapping[str, Any], rod: str) -> Hy
         return None
     start, end = (np.array(evidence.scene.mechanism.points[point]) for point in ends)
     drawn = float(np.linalg.norm(end - start))
-    off = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
-    words = f"{rod} is {off}, {drawn + more:.6g} mm for {drawn:.6g}"
+    said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
+    words = f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
     return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, decimals_of(amounts), whole=True)
 
 
