@@ -324,8 +324,8 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     [
         (SCENES[0], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
         (SCENES[1], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
-        ("wheel-travel", "damper_rocker__y", -3.8, "damper_rocker.y drawn 3.8 mm too far in"),
-        ("wheel-travel", "pushrod_outer__z", 2.0, "pushrod_outer.z drawn 2 mm too high"),
+        ("pushrod", "damper_rocker__y", -3.8, "damper_rocker.y drawn 3.8 mm too far in"),
+        ("pushrod", "pushrod_outer__z", 2.0, "pushrod_outer.z drawn 2 mm too high"),
     ],
 )
 def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly(
