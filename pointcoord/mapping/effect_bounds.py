@@ -61,9 +61,8 @@ class Evaluated:
         for low in range(0, max(len(self.patch), 1), BLOCK):
             here = slice(low, low + BLOCK)
             with np.errstate(all="ignore"):  # what overflows comes out infinite, which bounds nothing
-                poses = self._enclosed(here)
-            numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
-            proven, _ = bounds_of_numbers(poses, self.readout.plan.computed, numbers)
+                numbers = {q: {n: a[here] for n, a in arrays.items()} for q, arrays in self.numbers.items()}
+                proven, _ = bounds_of_numbers(self._enclosed(here), self.readout.plan.computed, numbers)
             for quantity, bounds in proven.items():
                 for name, bound in bounds.items():
                     found[quantity][name][here] = bound

@@ -21,6 +21,7 @@ from validate.extras import needed
 from validate.output.console import Console
 from validate.output.progress import progress
 from validate.output.table import Table, csv_of
+from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 Shown = tuple[str, str, float]
@@ -101,8 +102,8 @@ def _shown(number: str, sign: int, paths: Mapping[str, Number]) -> Shown:
     """A number, with a minus where it is to count the other way."""
     called = number_called(number)
     unit = paths[number].unit if called is None else called.quantity.unit
-    factor = sign * (float(np.degrees(1.0)) if unit.startswith("rad") else 1.0)
-    return f"{'-' if sign < 0 else ''}{number}", unit.replace("rad", "deg", 1), factor
+    factor, unit = degrees_of(unit)
+    return f"{'-' if sign < 0 else ''}{number}", unit, sign * factor
 
 
 def _text(

@@ -35,6 +35,7 @@ from validate.formulations.asked_numbers import is_force, per_second
 from validate.output.console import Console
 from validate.output.table import Table, csv_of, is_terminal
 from validate.plain_text import shown, some_of
+from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 
@@ -205,7 +206,7 @@ def _on_grid(
         there = poses.numbers[one.path[0]][one.path[1]]
         values.append(there[:, COMPONENTS.index(one.path[2])] if len(one.path) > 2 else there)
     every = [*(inputs[n] for n in axes), *columns]
-    turned = [np.degrees(v) if c.unit.startswith("rad") else v for c, v in zip(every, values, strict=True)]
+    turned = [v * degrees_of(c.unit)[0] for c, v in zip(every, values, strict=True)]
     reasons = {row: str(error) for row, error in poses.failures.items()}
     console.put(target, _text(every, turned, signs, target, reasons), "the table")
     if not reasons:
@@ -254,6 +255,13 @@ def _text(
     """
     names = [".".join(one.path) if _is_force(one) or len(one.path) > 2 else one.path[-1] for one in columns]
     ways = [signs.get(name, 1) for name in names]
+    # An input may be called as a number is, such as the damper's length.
+    inputs = {name for name, one in zip(names, columns, strict=True) if len(one.path) == 1}
+    both = {name for name in inputs if names.count(name) > 1}
+    names = [
+        f"input.{name}" if name in both and len(one.path) == 1 else name
+        for name, one in zip(names, columns, strict=True)
+    ]
     head = tuple(
         f"{'-' if way < 0 else ''}{name} [{one.unit_shown()}]"
         for name, way, one in zip(names, ways, columns, strict=True)

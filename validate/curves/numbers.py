@@ -19,6 +19,7 @@ from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import is_force
 from validate.plain_text import gathered, shown
+from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 
@@ -86,11 +87,11 @@ class Number:
     def shown(self, motion: Motion, samples: Sampled, degrees: bool = True) -> Array:
         """Its values as a picture has them, (N,): an angle in degrees, or in radians."""
         values = self.read(motion, samples)
-        return np.degrees(values) if degrees and self.unit.startswith("rad") else values
+        return values * degrees_of(self.unit)[0] if degrees else values
 
     def unit_shown(self, degrees: bool = True) -> str:
         """The unit of these."""
-        return self.unit.replace("rad", "deg", 1) if degrees else self.unit
+        return degrees_of(self.unit)[1] if degrees else self.unit
 
 
 def numbers_of(scene: Scene) -> tuple[Number, ...]:

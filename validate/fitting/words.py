@@ -11,6 +11,7 @@ from scipy.linalg import qr
 
 from validate.fitting.fit import CONFIDENCE, Combination, Fit
 from validate.plain_text import shown
+from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 
@@ -123,6 +124,5 @@ def simplest(found: Sequence[Combination]) -> list[dict[str, float]]:
 
 
 def _of(unit: str, number: float) -> str:
-    if unit.startswith("rad"):
-        return f"{math.degrees(number):.4g} deg{unit.removeprefix('rad')}"
-    return f"{number:.4g} {unit}"
+    factor, unit = degrees_of(unit)
+    return f"{factor * number:.4g} {unit}"

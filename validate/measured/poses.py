@@ -43,6 +43,7 @@ Numbers = dict[str, dict[str, Array]]
 WIDEST = {"rad": 1.2, "mm": 0.5}
 # Part of that by which an input that stands still is moved: to see what it moves, and for its rates.
 LITTLE = 1e-3
+OF_A_POSE = ("car", "joint")  # what numbers belong to that single poses give where a map does not
 SPEED = next(q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 1)
 
 
@@ -80,8 +81,10 @@ class Driven:
     Attributes:
         scene: it asks for all points and for the effects that the file's columns need.
         columns: the input of each independent column; time itself over time.
-        said: every other input that the map holds. as_drawn: those of which nothing is said.
+        said: every other input that the map holds, or the scene at another value than drawn.
+        as_drawn: those of which nothing is said.
         drawn: the inputs of the closed drawing, from which a travel counts.
+        by_scene: those that the scene holds.
     """
 
     scene: Scene
@@ -89,6 +92,7 @@ class Driven:
     said: Mapping[str, float]
     as_drawn: tuple[str, ...]
     drawn: Mapping[str, float] = field(default_factory=dict)
+    by_scene: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> Driven:
@@ -110,7 +114,17 @@ class Driven:
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
         required = driven.mechanism.topology.required_inputs
         as_drawn = tuple(name for name in required if name not in given)
-        return cls(driven, columns, said, as_drawn).redrawn(scene, driven)
+        return cls(driven, columns, said, as_drawn).redrawn(scene, driven)._as_the_scene_rests()
+
+    def _as_the_scene_rests(self) -> Driven:
+        """The same with inputs of which nothing is said where the scene holds them all the time."""
+        held = {}
+        for name in self.as_drawn:
+            law = self.scene.functions[name].series(self.scene.instants, 0)[:, 0]
+            if (law == law[0]).all() and law[0] != self.drawn[name]:
+                held[name] = float(law[0])
+        left = tuple(name for name in self.as_drawn if name not in held)
+        return replace(self, said={**self.said, **held}, as_drawn=left, by_scene=tuple(held))
 
     def redrawn(self, drawn: Scene, driven: Scene) -> Driven:
         """A design of the same car, driven by the same.
@@ -130,11 +144,14 @@ class Driven:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Inputs that are held as drawn."""
+        """Inputs that are held as drawn, or as the scene holds them."""
         units = self.scene.mechanism.topology.input_units
+        held = {name: f"as drawn, {self.drawn[name]:.6g}" for name in self.as_drawn}
+        held |= {name: f"at {self.said[name]:.6g}" for name in self.by_scene}
+        by = dict.fromkeys(self.by_scene, "the scene does, and ")
         return tuple(
-            f"{name} is held as drawn, {self.drawn[name]:.6g} {units[name]}: the file does not give it"
-            for name in self.as_drawn
+            f"{name} is held {value} {units[name]}: {by.get(name, '')}the file does not give it"
+            for name, value in held.items()
         )
 
     def inputs(self, values: Sequence[Array]) -> tuple[dict[str, Array], dict[int, str]]:
@@ -450,8 +467,11 @@ class OverMap:
             ranges[name] = low, high
         scene = driven.scene
         others = [EFFECTS[name] for name in scene.effects if mapped_instead_of(EFFECTS[name])]
-        columns = {s.meaning.name for s in measured.numbers if QUANTITIES[s.meaning.quantity].of == "car"}
-        told = (e.name for e in others if not e.derivative and columns & {*e.names(scene.mechanism.topology)})
+        told = (
+            effect.name
+            for effect in others
+            if not effect.derivative and any(_gives(effect, s.meaning, scene) for s in measured.numbers)
+        )
         by_pose = scene.model_copy(update={"effects": effects}) if (effects := tuple(told)) else None
         mapped = tuple(name for name in scene.effects if EFFECTS[name] not in others)
         map = kinematic_map(scene.model_copy(update={"effects": mapped}), ranges)
@@ -536,7 +556,7 @@ def _with_poses(found: Found, scene: Scene, here: Mapping[str, Array]) -> Found:
     given = {
         q: {n: array for n, array in channel.items() if n in claims.get(q, {})}
         for q, channel in poses.numbers.items()
-        if QUANTITIES[q].of == "car" and channel.computed
+        if QUANTITIES[q].of in OF_A_POSE and channel.computed
     }
     every = slice(None)
     numbers, bounds = (

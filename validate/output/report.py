@@ -14,6 +14,7 @@ from validate.comparison.findings import Finding
 from validate.output.table import Cell, Part, Table, text_of
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
 from validate.plain_text import shown
+from validate.tables.units import degrees_of
 
 if TYPE_CHECKING:  # most runs compare no file
     from validate.measured.comparing import DataOutcome
@@ -37,13 +38,6 @@ def in_degrees(value: float, unit: str) -> str:
     """The same with angles in degrees, as users read them; a dash where there is no number."""
     factor, unit = degrees_of(unit)
     return "-" if math.isnan(value) else f"{factor * value:.1e} {unit}"
-
-
-def degrees_of(unit: str) -> tuple[float, str]:
-    """By what a number is multiplied to be read in degrees, and the unit that it has then: deg/s of rad/s."""
-    if unit.startswith("rad"):
-        return math.degrees(1.0), unit.replace("rad", "deg", 1)
-    return 1.0, unit
 
 
 def used(share: float) -> str:

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from pointcoord import Sweep
 from pointcoord.effects.registry import ALWAYS, QUANTITIES
 from pointcoord.sweeping.swept import Failure, Noted, merged
-from validate.output.report import counted_as, degrees_of
+from validate.output.report import counted_as
 from validate.output.table import Part, Table
+from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 

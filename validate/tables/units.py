@@ -90,6 +90,18 @@ def named(factor: float, ours: str) -> str:
     return next((unit for unit in units if math.isclose(factor_of(unit, ours) or 0.0, factor)), "")
 
 
+def degrees_of(unit: str) -> tuple[float, str]:
+    """By what a number is multiplied to be read in degrees, and the unit that it has then.
+
+    >>> degrees_of("rad/s")[1], degrees_of("mm/rad")[1]
+    ('deg/s', 'mm/deg')
+    """
+    above, slash, below = unit.partition("/")
+    if above == "rad":
+        return math.degrees(1.0), f"deg{slash}{below}"
+    return (math.radians(1.0), f"{above}/deg") if below == "rad" else (1.0, unit)
+
+
 def is_unit(text: str) -> bool:
     """Whether a text is a unit of any kind."""
     return _taken_apart(text) is not None

@@ -13,6 +13,7 @@ from pointcoord import Scene, sensitivity, simulate
 from validate.cli import main
 from validate.commands.table import DIGITS
 from validate.curves.numbers import numbers_of
+from validate.toml_written import written
 
 SCENES = ROOT / "scenes"
 
@@ -238,3 +239,43 @@ def test_forces_that_a_scene_asks_for_stand_in_its_tables(
 def test_a_table_in_text_knows_how_many_digits_each_unit_has(name: str) -> None:
     every = numbers_of(Scene.load(name))
     assert {one.unit_shown() for one in every if one.of_the_car} <= {*DIGITS}
+
+
+LOAD = {"force": [100.0, -3000.0, 4000.0], "moment": [0.0, 0.0, 5000.0]}
+WHOLE_CAR = {
+    "axle": "front",
+    "wheelbase": 2600.0,
+    "centre_of_gravity_height": 500.0,
+    "brake_share": 0.6,
+    "drive_share": 0.3,
+    "spring_rate": 30.0,
+    "spring_free_length": 500.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        # An input and a number of one name; a screw axis, whose pitch is in mm/deg; forces at joints.
+        ("pushrod-by-damper", "90 numbers compared: 90 agrees."),
+        # Wheels that are not steered to the same side have no turning circle.
+        ("axle-opposed", "159 numbers compared: 159 agrees."),
+        # The scene holds the arm elsewhere than drawn.
+        ("steer", "arm_angle is held at 1.5708 rad: the scene does, and the file does not give it"),
+    ],
+)
+def test_a_table_of_all_that_a_car_has_agrees_with_the_car(
+    name: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    content = Scene.load(name).model_dump(exclude_none=True, exclude={"points"})
+    sides = Scene.load(name).mechanism.topology.sides
+    content["mechanism"] |= {"loads": dict.fromkeys(sides or [""], LOAD), "car": WHOLE_CAR}
+    content["mechanism"].setdefault("wheel_radius", 300.0)
+    content["time"]["samples"] = 7
+    asked = Scene.from_mapping(content | {"effects": []}, name).mechanism.effects
+    scene, table = tmp_path / "car.toml", tmp_path / "table.csv"
+    scene.write_text("\n".join(written(content | {"effects": list(asked)})), encoding="utf-8")
+    assert printed(capsys, "table", str(scene), "--all", "-o", str(table))[0] == 0
+    status, out, err = printed(capsys, "validate", str(scene), "--data", str(table))
+    assert (status, "not tested" in out, "RuntimeWarning" in err) == (0, False, False)
+    assert said in out

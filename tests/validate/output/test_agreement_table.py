@@ -6,7 +6,8 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.output.report import degrees_of, heading, outcome_text
+from validate.output.report import heading, outcome_text
+from validate.tables.units import degrees_of
 
 
 @pytest.fixture(scope="module")

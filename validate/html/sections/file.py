@@ -12,8 +12,9 @@ from validate.html.plot import OTHER, OURS, Panel, Plots, curve, fewer, gaps, ma
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
 from validate.measured.comparing import DataOutcome
-from validate.output.report import about, counted_as, degrees_of, held_to, in_degrees, when, worst_rows
+from validate.output.report import about, counted_as, held_to, in_degrees, when, worst_rows
 from validate.output.table import Cell, Table
+from validate.tables.units import degrees_of
 
 # Rows of the table, those that do not agree first: a file may give every number of every point.
 MOST = 300
