@@ -256,12 +256,8 @@ def _text(
     names = [".".join(one.path) if _is_force(one) or len(one.path) > 2 else one.path[-1] for one in columns]
     ways = [signs.get(name, 1) for name in names]
     # An input may be called as a number is, such as the damper's length.
-    inputs = {name for name, one in zip(names, columns, strict=True) if len(one.path) == 1}
-    both = {name for name in inputs if names.count(name) > 1}
-    names = [
-        f"input.{name}" if name in both and len(one.path) == 1 else name
-        for name, one in zip(names, columns, strict=True)
-    ]
+    whole = [".".join(one.path if len(one.path) > 1 else ("input", *one.path)) for one in columns]
+    names = [long if names.count(name) > 1 else name for name, long in zip(names, whole, strict=True)]
     head = tuple(
         f"{'-' if way < 0 else ''}{name} [{one.unit_shown()}]"
         for name, way, one in zip(names, ways, columns, strict=True)

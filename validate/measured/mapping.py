@@ -389,7 +389,8 @@ class _Map:
         """
         said = self._part(column).is_
         if said is None:
-            found = self._named(column) or self._named(column.removesuffix(f"_{_unit_at_the_end(column)}"))
+            name = column.removeprefix("-")
+            found = self._named(name) or self._named(name.removesuffix(f"_{_unit_at_the_end(name)}"))
             if self.said.columns and column not in self.said.columns:
                 return found if column in self.meanings or self._goes_along(column, found) else None
             return found
@@ -504,8 +505,13 @@ class _Map:
         return Series(column, meaning, values, off, part.definition, factor, part.accuracy, told)
 
     def _counted(self, column: str, meaning: Meaning) -> int:
-        """-1 of what the convention counts the other way, where the map says no sign or whole name."""
+        """-1 of what the convention counts the other way, where the map says no sign or whole name.
+
+        So does a minus before a column's own name, as our tables have it.
+        """
         part = self._part(column)
+        if column.startswith("-") and part.is_ is None and "sign" not in part.model_fields_set:
+            return -1
         if part.is_ in self.meanings or column in self.meanings or "sign" in part.model_fields_set:
             return 1
         signs = dict(map(self._convention.number, self._convention.means))
