@@ -392,7 +392,7 @@ RECIPES: dict[str, Recipe] = {
     ),
     "validate.errors.UsageError: a number": Recipe(
         lambda *_: found("cambr", numbers_of(BOUNCE)),
-        ("'cambr' is no number of this scene (did you mean 'camber'?)", "there are: time, "),
+        ("'cambr' names no number that is here (did you mean 'camber'?)", "there are: time, "),
     ),
     "validate.cli.Answer": Recipe(lambda *_: cli._parsed(["--version"]), ("pointcoord ",)),
     "validate.errors.UsageError: a command": Recipe(

@@ -6,6 +6,8 @@ import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from pointcoord import Motion, MotionTooLong, MotionTooRough, PointcoordError, Scene, SceneError, simulate
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
@@ -28,9 +30,11 @@ from validate.output.columns import ENDINGS, require_table, write_csv, write_mot
 from validate.output.console import STANDARD_OUTPUT, Console
 from validate.output.progress import progress
 from validate.paper.printed import PRINTED
+from validate.plain_text import some_of
 
 BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values(), PRINTED)}
 PICTURES = (".svg", ".png")
+NAMED = 8  # columns of a file, in a message
 SMOOTH = 401  # a curve of fewer instants has corners
 
 SIMULATE = """\
@@ -46,7 +50,10 @@ centre's place over time where the scene asks for no angle.
 A number is named by as many words of QUANTITY.NAME.COMPONENT as tell it apart: an angle or
 an input by its name, a place as POINT.z, another quantity of a point as QUANTITY.POINT.z; all
 three components are drawn if none is said. {TIME} is the time, {TRAVEL} how far the wheel centre is
-above its drawn place, measured on the chassis. What is positive is said at each axis."""
+above its drawn place, measured on the chassis. What is positive is said at each axis.
+
+Of a file that sweep, simulate or table wrote the columns are drawn, by their names, and each
+design of a sweep is a curve."""
 SIMULATE_OPTIONS = f"""\
 {SCENE}
 -o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; CSV on standard output if not given
@@ -56,7 +63,8 @@ SIMULATE_OPTIONS = f"""\
     at each instant; printed: that with the paper's formulas as printed, some of which are wrong
 """
 PLOT_OPTIONS = f"""\
-{SCENE}
+scene=SCENE  a built-in scene's name, or the path of a scene file or of a table, by its ending
+    {" or ".join(ENDINGS)}
 -o --output FILE  where to, by its ending {" or ".join(PICTURES)}; SVG on standard output if not given
 --y NUMBER  what goes upward on the paper; may be given again
 --x NUMBER  what goes to the right ({TIME} if only --y is given); may be given again if --y is not, whose
@@ -96,6 +104,8 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw curves."""
     target = place_of_result(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
+    if Path(options.scene).suffix in ENDINGS:
+        return _plot_file(options, target, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     scene, numbers = as_meant(scene)
     chosen = _curves(options, numbers, name)
@@ -109,12 +119,46 @@ def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
         own = options.instants is None and count == len(motion.times)
         samples = motion if own or len(motion.times) == 1 else next(motion.blocks(count, count))
         curves = chosen or usual(scene, numbers, motion)
-        picture = figure(curves, motion, samples, scene.title or name, options.degrees)
-        ending = "svg" if target is None else Path(target).suffix.removeprefix(".")
-        console.put(target, drawn(picture, ending), "the picture")
+        degrees = options.degrees
+        picture = figure(curves, lambda n: n.shown(motion, samples, degrees), scene.title or name, degrees)
+        console.put(target, drawn(picture, _ending(target)), "the picture")
         return "the picture"
 
     return solved(scene, target, options, console, write)
+
+
+def _plot_file(options: argparse.Namespace, target: str | None, console: Console) -> ExitStatus:
+    """Draw the columns of a file; the designs of a sweep by what they differ by."""
+    # Imported here: matplotlib takes a second.
+    from validate.curves.of_file import read_written
+    from validate.curves.picture import Shade, figure
+    from validate.output.figure import drawn
+
+    if options.instants is not None or not options.degrees:
+        raise UsageError("--instants and --no-degrees are about a scene; a file has its own rows and units")
+    name, written = name_of(options.scene), read_written(options.scene)
+    across, up = written.across, [".".join(number.path) for number in written.angles]
+    curves = _curves(options, written.numbers, name, (".".join(across.path),), up)
+    if curves is None:
+        if not up:
+            there = some_of([number.short for number in written.numbers], NAMED)
+            raise UsageError(f"{name} has no angle of a wheel; say --y NAME of its columns: {there}")
+        curves = Curves((across,), written.angles)
+    if written.curves < written.designs and written.curves > 1:
+        console.note(f"{name}: {written.curves} of {written.designs} designs are drawn")
+    shade = None
+    if written.curves > 1:
+        numbers = np.arange(float(written.curves))
+        by = written.varied[0] if len(written.varied) == 1 else None
+        words = "design" if by is None else f"{by.words} [{by.unit}]"
+        shade = Shade(words, numbers if by is None else written.values[by.path][0])
+    picture = figure(curves, lambda n: written.values[n.path], name, False, shade)
+    console.put(target, drawn(picture, _ending(target)), "the picture")
+    return ExitStatus.AGREE
+
+
+def _ending(target: str | None) -> str:
+    return "svg" if target is None else Path(target).suffix.removeprefix(".")
 
 
 def solved(
@@ -170,14 +214,18 @@ def _comment(scene: Scene, name: str, motion: Motion, console: Console) -> None:
         console.note(f"{name}: {note}")
 
 
-def _curves(options: argparse.Namespace, numbers: Sequence[Number], name: str) -> Curves | None:
+def _curves(
+    options: argparse.Namespace,
+    numbers: Sequence[Number],
+    name: str,
+    across_if_not_said: Sequence[str] = (TIME,),
+    up_if_not_said: Sequence[str] = (TRAVEL,),
+) -> Curves | None:
     """What the command line asks for; None if it leaves that open."""
     if options.x is None and options.y is None:
         return None
-    across, up = (
-        _named(words, option, numbers, name)
-        for option, words in (("--x", options.x or [TIME]), ("--y", options.y or [TRAVEL]))
-    )
+    asked = (("--x", options.x or across_if_not_said), ("--y", options.y or up_if_not_said))
+    across, up = (_named(words, option, numbers, name) for option, words in asked)
     if len(across) > 1 and len(up) > 1:
         raise UsageError(
             f"--x are {len(across)} numbers, and --y {len(up)}; allowed: several of one of them; say which "

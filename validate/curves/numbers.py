@@ -249,7 +249,7 @@ def found(words: str, numbers: Sequence[Number]) -> tuple[Number, ...]:
     if not fitting:
         known = dict.fromkeys(name for n in numbers for name in (n.short, ".".join(n.path), *n.path[:2]))
         raise UsageError(
-            f"{shown(words)!r} is no number of this scene{hint(words, known)}; {_there(numbers)}"
+            f"{shown(words)!r} names no number that is here{hint(words, known)}; {_there(numbers)}"
         )
     if len({n.path[:2] for n in fitting}) > 1:
         some = ", ".join(dict.fromkeys(".".join(n.path[:2]) for n in fitting))

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import takewhile
 from textwrap import fill
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Samples
 from validate.curves.numbers import TRAVEL, Curves, Number
 from validate.extras import MissingPackage
 from validate.output.figure import BLUE, FAINT, GREEN, GREY, ORANGE, PINK, RED, SETTINGS, SKY, plain
@@ -23,9 +23,11 @@ except ImportError as error:
     raise MissingPackage("validate.curves.picture", error, "plot") from None
 
 Array = NDArray[np.float64]
+Values = Callable[[Number], Array]
 
 COLOURS = (BLUE, RED, GREEN, ORANGE, PINK, SKY)
 STYLES = ("-", "--", "-.", ":")  # for those who see no colours, and beyond their number
+SHADES = "viridis"
 # Inches: how wide and high panels are, one alone or several that stand side by side or above each other, and
 # what the labels and the title take.
 ALONE, BESIDE, ABOVE, LABELS = (4.4, 3.6), (2.3, 3.6), (5.5, 2.3), (0.9, 1.1)
@@ -34,8 +36,27 @@ TITLE, LETTER = 0.08, 0.066  # inches, of letters of a title and of a label, on 
 STILL = 1e-9
 
 
-def figure(curves: Curves, motion: Motion, samples: Samples, title: str, degrees: bool) -> Figure:
-    """Draw curves of a motion at the instants of samples."""
+@dataclass(frozen=True)
+class Shade:
+    """What curves of designs differ by, from dark to light.
+
+    Attributes:
+        values: of each design, (D,).
+    """
+
+    words: str
+    values: Array
+
+
+def figure(
+    curves: Curves, values: Values, title: str, degrees: bool = True, shade: Shade | None = None
+) -> Figure:
+    """Draw curves.
+
+    Args:
+        values: of each number, as it is shown: (N,), or (N, D) of designs that differ by a shade.
+        degrees: whether angles are in degrees there, or as the numbers have them.
+    """
     upright = len(_panels(curves.across)) > 1 or curves.up[0].path[0] == TRAVEL
     several = _panels(curves.across if upright else curves.up)
     rows, columns = (1, len(several)) if upright else (len(several), 1)
@@ -48,9 +69,16 @@ def figure(curves: Curves, motion: Motion, samples: Samples, title: str, degrees
         grid = page.subplots(rows, columns, sharex=not upright, sharey=upright, squeeze=False)
         for axes, panel in zip(grid.flat, several, strict=True):
             across, up = (panel, curves.up) if upright else (curves.across, panel)
-            _draw(axes, Curves(tuple(across), tuple(up)), motion, samples, degrees, size)
+            _draw(axes, Curves(tuple(across), tuple(up)), values, degrees, size, shade)
             axes.label_outer()
+        if shade is not None:
+            shades = mpl.cm.ScalarMappable(_norm(shade), SHADES)
+            page.colorbar(shades, ax=grid, label=shade.words, aspect=40, pad=0.02)
     return page
+
+
+def _norm(shade: Shade) -> mpl.colors.Normalize:
+    return mpl.colors.Normalize(float(np.min(shade.values)), float(np.max(shade.values)))
 
 
 def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
@@ -62,26 +90,34 @@ def _panels(numbers: Sequence[Number]) -> list[list[Number]]:
 
 
 def _draw(
-    axes: Axes, curves: Curves, motion: Motion, samples: Samples, degrees: bool, size: tuple[float, float]
+    axes: Axes,
+    curves: Curves,
+    values: Values,
+    degrees: bool,
+    size: tuple[float, float],
+    shade: Shade | None,
 ) -> None:
     plain(axes)
     for set_limits, numbers in ((axes.set_xlim, curves.across), (axes.set_ylim, curves.up)):
-        values = np.concatenate([n.shown(motion, samples, degrees) for n in numbers])
-        known = values[np.isfinite(values)]
+        every = np.concatenate([values(number).ravel() for number in numbers])
+        known = every[np.isfinite(every)]
         if known.size and np.ptp(known) <= STILL * max(float(np.abs(known).max()), 1.0):
             middle = float(np.median(known))
             reach = max(0.1 * abs(middle), 0.1)
             set_limits(middle - reach, middle + reach)
     several = len(curves.across) > 1 or len(curves.up) > 1
     for i, (across, up) in enumerate(curves.pairs):
-        axes.plot(
-            across.shown(motion, samples, degrees),
-            up.shown(motion, samples, degrees),
+        lines = axes.plot(
+            values(across),
+            values(up),
             color=COLOURS[i % len(COLOURS)],
             linestyle=STYLES[i % len(STYLES)] if several else "-",
-            linewidth=1.4,
-            label=(across if len(curves.across) > 1 else up).short,
+            linewidth=1.4 if shade is None else 0.9,
         )
+        lines[0].set_label((across if len(curves.across) > 1 else up).short)
+        if shade is not None:
+            for curve, colour in zip(lines, mpl.colormaps[SHADES](_norm(shade)(shade.values)), strict=True):
+                curve.set_color(colour)
     for line, (low, high) in ((axes.axvline, axes.get_xlim()), (axes.axhline, axes.get_ylim())):
         if low < 0.0 < high:
             line(0.0, color=GREY, linewidth=0.6, zorder=1.0)

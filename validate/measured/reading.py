@@ -94,9 +94,7 @@ def _parquet(path: str, source: str) -> Columns:
         raise MissingPackage(".parquet", error, "parquet") from None
     try:
         table = parquet.read_table(path)
-        found = {
-            _name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)
-        }
+        found = {name_and_unit(name): table.column(i).to_numpy() for i, name in enumerate(table.column_names)}
     # pyarrow's errors have no family of their own.
     except Exception as error:
         problem = f"is no Parquet that can be read ({' '.join(str(error).split())})"
@@ -191,7 +189,7 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
             problem = f"has {count} columns of numbers under {len(joined(head[-1]))} names"
             raise FileError(source, "names of the columns", problem, "a name for each column")
         return tuple(str(i + 1) for i in range(count)), ("",) * count
-    names, units = (list(part) for part in zip(*map(_name_and_unit, wide[0]), strict=True))
+    names, units = (list(part) for part in zip(*map(name_and_unit, wide[0]), strict=True))
     for row in wide[1:]:
         told = [cell.strip("[]() ") for cell in row]
         wrong = [cell for cell in told if cell not in ("", "-", "1") and not is_unit(cell)]
@@ -202,7 +200,7 @@ def _names(head: Sequence[Sequence[str]], count: int, source: str) -> tuple[tupl
     return tuple(names), tuple(units)
 
 
-def _name_and_unit(cell: str) -> tuple[str, str]:
+def name_and_unit(cell: str) -> tuple[str, str]:
     """A name and the unit behind it; round brackets may hold anything else."""
     found = _UNIT_BEHIND.fullmatch(cell.strip())
     if found is not None and found.group(2) is not None:

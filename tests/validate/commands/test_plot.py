@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from program import short_scene
 
-from pointcoord import NotComputed, Scene, simulate
+from pointcoord import NotComputed, Scene, simulate, sweep
 from pointcoord.effects.registry import NUMBERS_OF_THE_CAR
 from validate.cli import main
 from validate.curves import picture
 from validate.curves.numbers import Curves, found, numbers_of, usual
+from validate.curves.of_file import read_written
 from validate.errors import UsageError
+from validate.output.columns import ENDINGS
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -76,7 +78,7 @@ def test_angles_are_in_degrees_and_each_axis_says_its_sign() -> None:
     curves = Curves(tuple(found("wheel_centre.z", NUMBERS)), tuple(found("camber", NUMBERS)))
     camber = MOTION.wheel["camber"]
     for degrees, unit, values in ((True, "[deg]", np.degrees(camber)), (False, "[rad]", camber)):
-        (axes,) = picture.figure(curves, MOTION, MOTION, "car", degrees).axes
+        (axes,) = picture.figure(curves, lambda n, d=degrees: n.shown(MOTION, MOTION, d), "car", degrees).axes
         assert np.array_equal(axes.lines[0].get_xdata(), MOTION.position["wheel_centre"][:, 2])
         assert np.array_equal(axes.lines[0].get_ydata(), values)
         said = " ".join(axes.get_ylabel().split())
@@ -88,7 +90,7 @@ def test_no_label_of_a_picture_reaches_over_its_edge_or_another_panel() -> None:
     every = tuple(n for n in NUMBERS if n.of_the_car and n.missing is None)
     travel, time = found("travel", NUMBERS), found("time", NUMBERS)
     for curves in (Curves(every, travel), Curves(time, every + found("velocity.wheel_centre", NUMBERS))):
-        page = picture.figure(curves, MOTION, MOTION, WISHBONE.title, True)
+        page = picture.figure(curves, lambda n: n.shown(MOTION, MOTION), WISHBONE.title)
         page.draw_without_rendering()
         frame = page.bbox
         named = [axis.label for a in page.axes for axis in (a.xaxis, a.yaxis) if axis.label.get_text()]
@@ -106,7 +108,7 @@ def test_a_number_that_does_not_change_is_a_straight_line_and_no_rounding() -> N
     across, (kingpin,) = found("time", numbers_of(steer)), found("kingpin", numbers_of(steer))
     rounding = 2.0**-53 * (-1.0) ** np.arange(len(motion.times))
     rounded = replace(kingpin, read=lambda *of: kingpin.read(*of) * (1.0 + rounding))
-    (axes,) = picture.figure(Curves(across, (rounded,)), motion, motion, "", True).axes
+    (axes,) = picture.figure(Curves(across, (rounded,)), lambda n: n.shown(motion, motion), "").axes
     assert np.ptp(axes.lines[0].get_ydata()) > 0.0
     low, high = axes.get_ylim()
     assert high - low > 1.0
@@ -143,3 +145,67 @@ def test_without_matplotlib_the_extra_is_named(
     assert main(["plot", "bounce"]) == 2
     (said,) = capsys.readouterr().err.splitlines()
     assert "pip install 'pointcoord[plot]'" in said
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A sweep of three designs, of which the middle one cannot be solved, in every kind of file."""
+    folder = tmp_path_factory.mktemp("sweep")
+    for ending in ENDINGS:
+        words = ("--designs", str(folder / "designs.csv"), "--instants", "7", "-q")
+        (folder / "designs.csv").write_text("tie_rod_inner.y\n178\n640\n180\n", encoding="utf-8")
+        assert main(("sweep", "double-wishbone", *words, "-o", str(folder / f"sweep{ending}"))) == 3
+    return folder
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, swept: Path) -> None:
+    written = read_written(str(swept / f"sweep{ending}"))
+    few = WISHBONE.model_copy(update={"time": WISHBONE.time.model_copy(update={"samples": 7})})
+    designs = sweep(few, {"tie_rod_inner.y": [178.0, 180.0]})
+    camber = written.values["wheel", "camber"]
+    assert camber.shape == (7, 3)
+    # CSV has every digit, and degrees are one rounding away.
+    assert pytest.approx(np.degrees(designs.numbers["wheel"]["camber"]), rel=1e-14) == camber[:, ::2].T
+    assert np.isnan(camber[:, 1]).all()
+    assert [n.words for n in written.varied] == ["tie_rod_inner.y"]
+    assert written.across.path == ("time",)
+    assert {number.path[-1] for number in written.angles} == {"camber", "kingpin", "toe", "caster"}
+    shade = picture.Shade("tie_rod_inner.y [mm]", written.values["tie_rod_inner", "y"][0])
+    curves = Curves((written.across,), written.angles[:1])
+    axes, bar = picture.figure(curves, lambda n: written.values[n.path], "sweep", False, shade).axes
+    drawn = [np.asarray(line.get_xydata()) for line in axes.lines if len(line.get_xdata()) == 7]
+    for line, rows in zip(drawn, camber.T, strict=True):
+        assert np.array_equal(line[:, 1], rows, equal_nan=True)
+    assert bar.get_ylabel() == "tie_rod_inner.y [mm]"
+    assert axes.get_ylabel() == "camber [deg]\n+ where the wheel leans out at the top"
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "told"),
+    [
+        ((), 0, ""),
+        (("--x", "camber"), 0, ""),
+        (("--y", "wheel_centre.z"), 0, ""),
+        (("--y", "cambr"), 2, "'cambr' names no number that is here (did you mean 'camber'?)"),
+        (("--instants", "3"), 2, "are about a scene; a file has its own rows and units"),
+    ],
+)
+def test_plot_draws_the_columns_of_a_file(
+    words: tuple[str, ...], status: int, told: str, swept: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = swept / "sweep.png"
+    target.unlink(missing_ok=True)
+    assert main(("plot", str(swept / "sweep.csv"), *words, "-o", str(target))) == status
+    assert target.exists() == (status == 0)
+    assert told in capsys.readouterr().err
+
+
+def test_a_file_without_angles_asks_for_its_columns(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "lengths.csv"
+    file.write_text("time [s],damper [mm]\n0,1\n1,2\n", encoding="utf-8")
+    assert main(("plot", str(file), "-o", str(tmp_path / "a.svg"))) == 2
+    assert "has no angle of a wheel; say --y NAME of its columns: time, damper" in capsys.readouterr().err
+    assert main(("plot", str(file), "--y", "damper", "-o", str(tmp_path / "a.svg"))) == 0
