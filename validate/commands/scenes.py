@@ -16,7 +16,7 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import effort
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.usage import SCENE, Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import SCENE, Command, load_scene, name_of, place_of_picture, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
@@ -52,7 +52,7 @@ def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw a scene's hardpoints."""
-    target = place_of_result(options, PICTURES, console)
+    target = place_of_picture(options, PICTURES, console)
     scene, name = load_scene(options.scene), name_of(options.scene)
     with told_as(name):
         drawing = closed_drawing(scene)
@@ -232,7 +232,9 @@ def _told(value: float, unit: str) -> str:
 COMMANDS = {
     "plan": Command(PLAN, SCENE, run_plan),
     "draw": Command(
-        DRAW, f"{SCENE}-o --output FILE.svg  where to; standard output if not given, or for -", run_draw
+        DRAW,
+        f"{SCENE}-o --output FILE.svg  where to; standard output for -, or if not given and no terminal",
+        run_draw,
     ),
     "scenes": Command("List the built-in scenes with their titles.", "", run_scenes),
 }

@@ -19,6 +19,7 @@ from validate.commands.usage import (
     Command,
     load_scene,
     name_of,
+    place_of_picture,
     place_of_result,
     told_as,
 )
@@ -65,7 +66,8 @@ SIMULATE_OPTIONS = f"""\
 PLOT_OPTIONS = f"""\
 scene=SCENE  a built-in scene's name, or the path of a scene file or of a table, by its ending
     {" or ".join(ENDINGS)}
--o --output FILE  where to, by its ending {" or ".join(PICTURES)}; SVG on standard output if not given
+-o --output FILE  where to, by its ending {" or ".join(PICTURES)}; SVG on standard output if not given,
+    where that is no terminal
 --y NUMBER  what goes upward on the paper; may be given again
 --x NUMBER  what goes to the right ({TIME} if only --y is given); may be given again if --y is not, whose
     place {TRAVEL} takes
@@ -102,7 +104,7 @@ def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_plot(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Draw curves."""
-    target = place_of_result(options, PICTURES, console)
+    target = place_of_picture(options, PICTURES, console)
     needed("plot", "matplotlib", "plot")
     if Path(options.scene).suffix in ENDINGS:
         return _plot_file(options, target, console)
