@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,24 @@ def results() -> bytes:
     return ("\n".join(lines) + "\n").encode("utf-8")
 
 
+@cache
+def swept() -> bytes:
+    """Two designs at three instants as `sweep` writes them."""
+    head = "design,lower_ball_joint.z [mm],time [s],wheel.camber [deg],status"
+    rows = [f"{d},{95.0 + d},{0.5 * i},{0.1 * i - d:.17g},solved" for d in range(2) for i in range(3)]
+    return ("\n".join([head, *rows]) + "\n").encode("utf-8")
+
+
+@cache
+def arrays_of_a_sweep() -> bytes:
+    """The same as arrays."""
+    stream, designs = BytesIO(), np.arange(2.0)
+    camber = 0.05 * np.arange(3.0) - designs[:, None]
+    columns = {"lower_ball_joint.z [mm]": 95.0 + designs, "time [s]": 0.5 * np.arange(3.0)}
+    np.savez(stream, design=designs, **columns, **{"wheel.camber [deg]": camber}, allow_pickle=False)
+    return stream.getvalue()
+
+
 SHORT = {"start": 0.0, "stop": 0.7, "samples": 8}
 MAP = b"""[columns]
 t = { is = "time", unit = "s" }
@@ -106,6 +125,8 @@ FORMATS = {
     ),
     "MuJoCo model": Format("model.xml", lambda: FOUR_BAR.encode("utf-8"), IMPORT),
     "names of points": Format("names.toml", lambda: NAMES, IMPORTED, True),
+    "table of a sweep": Format("sweep.csv", swept, "plot {file} -o {folder}/out.svg"),
+    "arrays of a sweep": Format("sweep.npz", arrays_of_a_sweep, "plot {file} -o {folder}/out.svg"),
     "designs": Format("designs.csv", lambda: DESIGNS, "sweep double-wishbone --designs {file}"),
 }
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 from pointcoord.effects.registry import number_called
 from validate.curves.numbers import TIME, Number
 from validate.measured.reading import name_and_unit, read_columns
-from validate.output.columns import DESIGN, ENDINGS, STATUS
+from validate.output.columns import DESIGN, STATUS
 from validate.plain_text import shown
 from validate.tables.errors import FileError
 
@@ -74,7 +73,8 @@ def read_written(path: str) -> Written:
     if not len(each):
         return Written(tuple(found.values()), {found[head].path: table[head] for head in heads})
     names = [head[0] for head in heads]
-    varied = tuple(found[head] for head in heads[: names.index(TIME)] if head[0] != CLOSING)
+    before = names.index(TIME) if TIME in names else 0
+    varied = tuple(found[head] for head in heads[:before] if head[0] != CLOSING)
     if (counts == counts[0]).all() and counts[0] > 1:
         # A column of a matrix for each design that is drawn.
         drawn = np.unique(np.linspace(0, len(each) - 1, min(len(each), MOST)).astype(np.intp))
@@ -100,10 +100,15 @@ def _of_columns(path: str) -> Table:
 def _of_npz(path: str) -> Table:
     """Arrays by design and instant as rows; what belongs to a design is there at each instant."""
     try:
-        with np.load(path) as arrays:
-            found = {name_and_unit(name): np.asarray(arrays[name]) for name in arrays.files}
-    except (OSError, ValueError, zipfile.BadZipFile) as error:
-        raise FileError(shown(path), "", f"cannot be read ({error})", " or ".join(ENDINGS)) from None
+        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as archive:
+            found = {name_and_unit(name): np.asarray(array) for name, array in archive.items()}
+    except OSError as error:
+        raise FileError(
+            shown(path), "", f"cannot be read ({error.strerror})", "the path of a table"
+        ) from None
+    except Exception:  # what reading other bytes ends with is numpy's affair, and zipfile's
+        problem = "is no npz file, or a damaged one"
+        raise FileError(shown(path), "", problem, "a file of simulate or sweep") from None
     shape = max((array.shape for array in found.values()), key=len, default=())
     if not shape or any(array.ndim > 2 for array in found.values()):
         raise FileError(shown(path), "", "holds no columns of numbers", "a file of simulate or sweep")
