@@ -12,7 +12,8 @@ from validate import check
 
 Numbers = dict[str, dict[str, NDArray[np.float64]]]
 
-EFFECTS = ("camber", "wheel_travel", "steering_axis", "anti_features", "spring")
+FORCES = ("rod_force", "joint_force", "hinge_thrust")
+EFFECTS = ("loads", "camber", "wheel_travel", "steering_axis", "anti_features", "spring")
 CAR = {
     "axle": "front",
     "wheelbase": 2500.0,
@@ -34,11 +35,12 @@ class Given:
         return self.numbers
 
 
-def car(**other: float) -> Scene:
+def car(force: tuple[float, ...] = (100.0, -3000.0, 4000.0), **other: float) -> Scene:
     """A wheel with pushrod and spring over its travel; of one car, or of one that is otherwise."""
     content = Scene.load("wheel-travel").model_dump(exclude_none=True) | {"effects": list(EFFECTS)}
     content["mechanism"]["wheel_radius"] = other.pop("wheel_radius", 270.0)
     content["mechanism"]["car"] = CAR | other
+    content["mechanism"]["loads"] = {"force": list(force)}
     return Scene.from_mapping(content, "car")
 
 
@@ -57,7 +59,7 @@ def named(numbers: Numbers) -> list[str]:
     ("name", "value", "said"),
     [
         ("wheel_radius", 282.5, "wheel_radius is 282.5 mm, not 270"),
-        ("spring_rate", 28.0, "spring_force, wheel_force, wheel_rate: spring_rate is 28, not 30"),
+        ("spring_rate", 28.0, "spring_force, wheel_force, wheel_rate: spring_rate is 28 N/mm, not 30"),
         ("spring_free_length", 310.0, "spring_free_length is 310 mm, not 300"),
         ("centre_of_gravity_height", 520.0, "anti_brake: centre_of_gravity_height is 520 mm, not 500"),
     ],
@@ -76,8 +78,33 @@ def test_what_two_numbers_explain_as_well_is_said_of_both() -> None:
 
 def test_the_wheel_centre_taken_for_the_contact_point_is_said() -> None:
     numbers = numbers_of(car())
+    for forces in FORCES:
+        numbers[forces] = numbers_of(car(wheel_radius=1e-9))[forces]
     sideways = numbers["position"]["wheel_centre"][:, 1] - car().mechanism.points["wheel_centre"][1]
     dimensions = numbers["dimension"]
     dimensions |= {"contact_travel": dimensions["travel"], "half_track_change": sideways}
     (words,) = named(numbers)
-    assert words == "contact_travel, half_track_change: the wheel centre is taken for the contact point"
+    assert {"contact_travel", "half_track_change", "tie_rod", "damper"} <= {*words.split(", ")}
+    assert words.endswith(": the wheel centre is taken for the contact point")
+
+
+@pytest.mark.parametrize(("axis", "value"), [(1, -2500.0), (2, 3500.0)])
+def test_another_load_is_named_by_all_forces(axis: int, value: float) -> None:
+    force = [100.0, -3000.0, 4000.0]
+    said = f"force.{'xyz'[axis]} of the load is {value:g} N, not {force[axis]:g}"
+    force[axis] = value
+    numbers = numbers_of(car()) | {q: numbers_of(car(tuple(force)))[q] for q in FORCES}
+    (words,) = named(numbers)
+    assert words.endswith(said)
+    assert {"tie_rod", "damper", "force at the joint"} <= {*words.partition(":")[0].split(", ")}
+
+
+@pytest.mark.parametrize(
+    ("factor", "said"),
+    [(1e-3, "kN for N"), (1.0 / 4.4482216152605, "pounds for N"), (-1.0, "the other sign")],
+)
+def test_forces_in_another_unit_or_sign_are_told(factor: float, said: str) -> None:
+    numbers = numbers_of(car())
+    numbers["rod_force"] = {name: factor * force for name, force in numbers["rod_force"].items()}
+    (words,) = named(numbers)
+    assert words == f"tie_rod, pushrod, damper: {said}"

@@ -1,8 +1,11 @@
-"""Another number of the car than the scene says, such as the wheel's radius: found by least squares."""
+"""Another number of the car than the scene says, such as the wheel's radius or a load: by least squares."""
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,19 +13,24 @@ from numpy.typing import NDArray
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.registry import EFFECTS
-from validate.diagnosis.evidence import Evidence, Row, kind_of
+from validate.diagnosis.evidence import Evidence, Row
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import as_meant, fitted
+from validate.formulations.asked_numbers import is_force
 
 Array = NDArray[np.float64]
+Path = tuple[str | int, ...]
+"""Of a number in the mechanism's part of a scene, such as ("car", "wheelbase")."""
 
 FEW = 25  # instants that a number is looked for at
 STEP = 1e-4  # of the number, of differences by it
-RADIUS = "wheel_radius"
-LEAST = 1e-9  # of the number, that it may be: at a radius of nothing the contact point is the wheel centre
-UNITS = {"wheelbase": "mm", "centre_of_gravity_height": "mm", "spring_free_length": "mm", RADIUS: "mm"}
+RADIUS: Path = ("wheel_radius",)
+LEAST = 1e-9  # of the radius, that it may be
+NOTHING = 1e-6  # of the radius, below which the contact point is the wheel centre
+LENGTHS = ("wheel_radius", "wheelbase", "centre_of_gravity_height", "spring_free_length")
+UNITS = {**dict.fromkeys(LENGTHS, " mm"), "force": " N", "moment": " N mm", "spring_rate": " N/mm"}
 MADE_OF = {
-    number.name: (*number.data, *([RADIUS] if number.needs_radius else []))
+    number.name: (*(("car", name) for name in number.data), *([RADIUS] if number.needs_radius else []))
     for effect in EFFECTS.values()
     if isinstance(effect, CarNumbers)
     for number in effect.numbers
@@ -32,53 +40,78 @@ MADE_OF = {
 
 def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each number that those which disagree are made of, by itself."""
-    made_of = {row: MADE_OF.get(row[1].rpartition(".")[2], ()) for row in evidence.wrong}
-    for name in dict.fromkeys(name for names in made_of.values() for name in names):
-        value, looked = _of(evidence.scene, name), [row for row, names in made_of.items() if name in names]
-        if evidence.other_cars and value is not None and (one := _other(evidence, name, value, looked)):
+    if not evidence.other_cars:
+        return
+    content = evidence.solved.fine.model_dump(exclude_none=True)
+    part: dict[str, Any] = content["mechanism"]
+    loads: list[Path] = [
+        ("loads", wheel, what, i)
+        for wheel, load in part.get("loads", {}).items()
+        for what in load
+        for i in range(3)
+    ]
+    made_of = {
+        row: (*loads, RADIUS) if is_force(row[0]) else MADE_OF.get(row[1].rpartition(".")[2], ())
+        for row in evidence.wrong
+        if np.isfinite(evidence.given[row]).all()
+    }
+    for path in dict.fromkeys(path for paths in made_of.values() for path in paths):
+        value, looked = _at(part, path), [row for row, paths in made_of.items() if path in paths]
+        if isinstance(value, float) and (one := _other(evidence, content, path, value, looked)):
             yield one
 
 
-def _other(evidence: Evidence, name: str, value: float, looked: list[Row]) -> Hypothesis | None:
+def _other(
+    evidence: Evidence, content: dict[str, Any], path: Path, value: float, looked: list[Row]
+) -> Hypothesis | None:
     few = evidence.thinned(FEW)
-    known = [row for row in looked if kind_of(row) == "car" and np.isfinite(few.given[row]).all()]
-    theirs, off = few.joined(known) if known else (np.empty(0), np.empty(0))
+    theirs, off = few.joined(looked)
+    least = LEAST * value if path == RADIUS else -np.inf
+
+    def car(number: float) -> Scene:
+        other = copy.deepcopy(content)
+        *tables, key = path
+        inner = _at(other["mechanism"], tuple(tables))
+        if isinstance(key, int):
+            *tables, last = tables
+            inner = list(inner)
+            _at(other["mechanism"], tuple(tables))[last] = inner
+        inner[key] = max(number, least)
+        return Scene.from_mapping(other, "another car")
 
     def read(values: Array) -> Array:
         found = np.full((len(values), len(theirs)), np.nan)
-        for i, (other,) in enumerate(values.tolist()):
-            try:
-                car = _with(evidence.solved.fine, name, max(other, LEAST * value))
-                there = simulate(car).at(few.times).numbers
-            except PointcoordError:
-                continue
-            found[i] = np.concatenate([there[quantity][of] for quantity, of in known])
+        for i, (number,) in enumerate(values.tolist()):
+            with suppress(PointcoordError):
+                there = simulate(car(number)).at(few.times).numbers
+                found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
         return found
 
-    found = fitted(read, [value], STEP * value, theirs) if known else None
+    found = fitted(read, [value], STEP * (abs(value) or 1.0), theirs)
     if found is None:
         return None
-    other = max(float(as_meant(found, read, theirs, off)[1][0]), LEAST * value)
-    unit = f" {UNITS[name]}" if name in UNITS else ""
-    words = f"{name} is {other:.6g}{unit}, not {value:.6g}"
-    if name == RADIUS and other == LEAST * value:
+    number = float(as_meant(found, read, theirs, off)[1][0])
+    words = f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
+    if path == RADIUS and number <= NOTHING * value:
         words = "the wheel centre is taken for the contact point"
-    motion = simulate(_with(evidence.solved.fine, name, other))
-    return Hypothesis(name, words, evidence.by(motion), 1, 1.5)
+    return Hypothesis(path, words, evidence.by(simulate(car(number))), 1, 1.5)
 
 
-def _of(scene: Scene, name: str) -> float | None:
-    """A number that a scene says of the car; None of what it does not say, and of words."""
-    part = scene.mechanism
-    value = part.wheel_radius if name == RADIUS else getattr(part.car, name, None)
-    return value if isinstance(value, float) else None
+def _at(tables: Any, path: Path) -> Any:
+    """What stands at a path; None where there is nothing."""
+    for key in path:
+        if isinstance(tables, dict) and key not in tables:
+            return None
+        tables = tables[key]
+    return tables
 
 
-def _with(scene: Scene, name: str, value: float) -> Scene:
-    """The scene with another number."""
-    part = scene.mechanism
-    if name != RADIUS and part.car is not None:
-        other = part.model_copy(update={"car": part.car.model_copy(update={name: value})})
-    else:
-        other = part.model_copy(update={name: value})
-    return scene.model_copy(update={"mechanism": other})
+def _called(path: Path) -> str:
+    if path[0] != "loads":
+        return str(path[-1])
+    _, wheel, what, axis = path
+    return f"{wheel}{'.' if wheel else ''}{what}.{'xyz'[int(axis)]} of the load"
+
+
+def _unit(path: Path) -> str:
+    return UNITS.get(str(path[2] if path[0] == "loads" else path[-1]), "")

@@ -17,7 +17,12 @@ def swapped(evidence: Evidence) -> Iterator[Hypothesis]:
     for one, two in combinations(sorted(evidence.wrong_quantities), 2):
         partner = {one: two, two: one}
         others = {r: (partner[r[0]], r[1]) for r in evidence.wrong if r[0] in partner}
-        rows = {r: (evidence.held[o], evidence.allowed[o]) for r, o in others.items() if o in evidence.held}
+        # A joint may have a vector and a number of the car under its name.
+        rows = {
+            r: (evidence.held[o], evidence.allowed[o])
+            for r, o in others.items()
+            if o in evidence.held and evidence.held[o].shape == evidence.held[r].shape
+        }
         words = f"{QUANTITIES[one].words} is swapped with {QUANTITIES[two].words}"
         yield Hypothesis((one, two), words, rows, cost=1.1)
 

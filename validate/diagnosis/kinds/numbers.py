@@ -17,6 +17,7 @@ from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
 from validate.diagnosis.least import roundest
+from validate.tables.units import FORCES
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ class Unit(NamedTuple):
 
     Attributes:
         words: for what it was taken.
-        of: mm, rad or s, which it stands for.
+        of: mm, rad, N, % or s, which it stands for.
         factor: a number in our unit times this is the number in that one; per second of a rate for s.
         orders: of time derivatives of which it is in use.
     """
@@ -50,6 +51,9 @@ UNITS = (
     Unit("mm taken for m and converted once more", "mm", 1e3),
     Unit("mm taken for inches and converted once more", "mm", 25.4),
     Unit("multiples of 9.80665 m/s^2 for mm/s^2", "mm", 1.0 / 9806.65, (2,)),
+    Unit("kN for N", "N", 1e-3),
+    Unit("pounds for N", "N", 1.0 / FORCES["lbf"]),
+    Unit("parts of 1 for %", "%", 1e-2),
     Unit("per millisecond for per second", "s", 1e-3, (1, 2)),
     Unit("per minute for per second", "s", 60.0, (1, 2)),
 )
