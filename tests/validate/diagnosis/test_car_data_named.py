@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from curve_files import compared, table
 from numpy.typing import NDArray
 
 from pointcoord import Scene, simulate
@@ -108,3 +109,23 @@ def test_forces_in_another_unit_or_sign_are_told(factor: float, said: str) -> No
     numbers["rod_force"] = {name: factor * force for name, force in numbers["rod_force"].items()}
     (words,) = named(numbers)
     assert words == f"tie_rod, pushrod, damper: {said}"
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        ({"wheel_radius": 278.0}, "wheel_radius is 278 mm, not 270"),
+        ({"force": (100.0, -2500.0, 4000.0)}, "force.y of the load is -2500 N, not -3000"),
+    ],
+)
+def test_a_table_over_travel_shows_them_too(other: dict[str, Any], said: str) -> None:
+    numbers = numbers_of(car(**other))
+    travel = np.linspace(-50.0, 50.0, len(numbers["dimension"]["travel"]))
+    columns = {"input.wheel_travel [mm]": travel} | {
+        f"dimension.{name} [mm]": numbers["dimension"][name] for name in ("travel", "scrub_radius")
+    }
+    columns |= {f"rod_force.{name} [N]": force for name, force in numbers["rod_force"].items()}
+    found = compared(table(columns, 6), {}, car()).outcome
+    assert not found.agreed
+    (words,) = (one.words for one in found.explanations)
+    assert said in words

@@ -43,6 +43,7 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
     if not evidence.other_cars:
         return
     content = evidence.solved.fine.model_dump(exclude_none=True)
+    content["effects"] = _effects(evidence)
     part: dict[str, Any] = content["mechanism"]
     loads: list[Path] = [
         ("loads", wheel, what, i)
@@ -59,6 +60,19 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
         value, looked = _at(part, path), [row for row, paths in made_of.items() if path in paths]
         if isinstance(value, float) and (one := _other(evidence, content, path, value, looked)):
             yield one
+
+
+def _effects(evidence: Evidence) -> list[str]:
+    """The scene's, and those that give what disagrees: rows of a file have numbers of single poses too."""
+    scene = evidence.solved.fine
+    topology, wrong = scene.mechanism.topology, {*evidence.wrong}
+    giving = (
+        name
+        for name in scene.mechanism.effects
+        for quantity, names in EFFECTS[name].gives_numbers(topology).items()
+        if not wrong.isdisjoint((quantity, of) for of in names or ())
+    )
+    return [*dict.fromkeys((*scene.effects, *giving))]
 
 
 def _other(
