@@ -27,6 +27,7 @@ STEP = 1e-4  # of the number, of differences by it
 RADIUS: Path = ("wheel_radius",)
 LEAST = 1e-9  # of the radius, that it may be
 NOTHING = 1e-6  # of the radius, below which the contact point is the wheel centre
+FARTHEST = 3.0  # times a number of the car that it may be: another factor is one of the number that is made
 LENGTHS = ("wheel_radius", "wheelbase", "centre_of_gravity_height", "spring_free_length")
 UNITS = {**dict.fromkeys(LENGTHS, " mm"), "force": " N", "moment": " N mm", "spring_rate": " N/mm"}
 MADE_OF = {
@@ -63,7 +64,7 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _effects(evidence: Evidence) -> list[str]:
-    """The scene's, and those that give what disagrees: rows of a file have numbers of single poses too."""
+    """Those that give what disagrees; of rows of a file some that single poses have, beside the scene's."""
     scene = evidence.solved.fine
     topology, wrong = scene.mechanism.topology, {*evidence.wrong}
     giving = (
@@ -72,7 +73,7 @@ def _effects(evidence: Evidence) -> list[str]:
         for quantity, names in EFFECTS[name].gives_numbers(topology).items()
         if not wrong.isdisjoint((quantity, of) for of in names or ())
     )
-    return [*dict.fromkeys((*scene.effects, *giving))]
+    return [*dict.fromkeys(giving)]
 
 
 def _other(
@@ -105,6 +106,8 @@ def _other(
     if found is None:
         return None
     number = float(as_meant(found, read, theirs, off)[1][0])
+    if path[0] == "car" and not value / FARTHEST <= number <= value * FARTHEST:
+        return None
     words = f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
     if path == RADIUS and number <= NOTHING * value:
         words = "the wheel centre is taken for the contact point"
