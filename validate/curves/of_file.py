@@ -69,7 +69,7 @@ def read_written(path: str) -> Written:
     heads = [head for head in table if head[0] not in (DESIGN, STATUS)]
     found = {head: _number(*head) for head in heads}
     design = next((rows for (name, _), rows in table.items() if name == DESIGN), np.zeros(0))
-    each, first, counts = np.unique(design, return_index=True, return_counts=True)
+    each, counts = np.unique(design, return_counts=True)
     if not len(each):
         return Written(tuple(found.values()), {found[head].path: table[head] for head in heads})
     names = [head[0] for head in heads]
@@ -78,7 +78,7 @@ def read_written(path: str) -> Written:
     if (counts == counts[0]).all() and counts[0] > 1:
         # A column of a matrix for each design that is drawn.
         drawn = np.unique(np.linspace(0, len(each) - 1, min(len(each), MOST)).astype(np.intp))
-        rows = np.sort(first)[drawn] + np.arange(counts[0])[:, None]
+        rows = np.argsort(design, kind="stable").reshape(len(each), -1)[drawn].T
     else:
         rows = np.arange(len(design))
     values = {found[head].path: table[head][rows] for head in heads}
@@ -110,13 +110,16 @@ def _of_npz(path: str) -> Table:
         problem = "is no npz file, or a damaged one"
         raise FileError(shown(path), "", problem, "a file of simulate or sweep") from None
     shape = max((array.shape for array in found.values()), key=len, default=())
-    if not shape or any(array.ndim > 2 for array in found.values()):
-        raise FileError(shown(path), "", "holds no columns of numbers", "a file of simulate or sweep")
     rows = {}
     for head, array in found.items():
-        if array.dtype.kind in "iuf":
-            of_a_design = len(shape) == 2 and array.ndim == 1 and head[0] != TIME
+        of_a_design = len(shape) == 2 and array.ndim == 1 and head[0] != TIME
+        try:
             whole = np.broadcast_to(array[:, None] if of_a_design else array, shape)
+        except ValueError:
+            whole = np.zeros(())
+        if whole.ndim not in (1, 2):
+            raise FileError(shown(path), "", "holds no columns of numbers", "a file of simulate or sweep")
+        if array.dtype.kind in "iuf":
             rows[head] = np.ravel(whole).astype(float)
     return rows
 

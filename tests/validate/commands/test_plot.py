@@ -16,6 +16,7 @@ from validate.curves.numbers import Curves, found, numbers_of, usual
 from validate.curves.of_file import read_written
 from validate.errors import UsageError
 from validate.output.columns import ENDINGS
+from validate.tables.errors import FileError
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -179,6 +180,26 @@ def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, swept: Path)
         assert np.array_equal(line[:, 1], rows, equal_nan=True)
     assert bar.get_ylabel() == "tie_rod_inner.y [mm]"
     assert axes.get_ylabel() == "camber [deg]\n+ where the wheel leans out at the top"
+
+
+def test_the_designs_of_a_file_are_told_apart_in_any_order_of_its_rows(swept: Path, tmp_path: Path) -> None:
+    head, *lines = (swept / "sweep.csv").read_text(encoding="utf-8").splitlines()
+    by_time = sorted(lines, key=lambda line: float(line.split(",")[2]))
+    (tmp_path / "mixed.csv").write_text("\n".join([head, *by_time]), encoding="utf-8")
+    whole, mixed = (read_written(str(path)) for path in (swept / "sweep.csv", tmp_path / "mixed.csv"))
+    for path, values in whole.values.items():
+        assert np.array_equal(values, mixed.values[path], equal_nan=True)
+
+
+def test_arrays_that_are_no_columns_are_refused(tmp_path: Path) -> None:
+    for name, arrays in {
+        "unlike": {"a": np.zeros(3), "b": np.zeros(4)},
+        "deep": {"a": np.zeros((2, 2, 2))},
+        "alone": {"a": np.zeros(())},
+    }.items():
+        np.savez(tmp_path / f"{name}.npz", **arrays)
+        with pytest.raises(FileError, match="holds no columns of numbers"):
+            read_written(str(tmp_path / f"{name}.npz"))
 
 
 @pytest.mark.parametrize(
