@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, Scene, simulate
 from pointcoord.effects.car_number import CarNumbers
+from pointcoord.effects.loads import ROD_FORCE
 from pointcoord.effects.registry import EFFECTS
 from validate.diagnosis.evidence import Evidence, Row
 from validate.diagnosis.hypothesis import Hypothesis
@@ -51,6 +52,7 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
         for wheel, load in part.get("loads", {}).items()
         for what in load
         for i in range(3)
+        if _all_wrong(evidence, wheel)
     ]
     made_of = {
         row: (*loads, RADIUS) if is_force(row[0]) else MADE_OF.get(row[1].rpartition(".")[2], ())
@@ -61,6 +63,13 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
         value, looked = _at(part, path), [row for row, paths in made_of.items() if path in paths]
         if isinstance(value, float) and (one := _other(evidence, content, path, value, looked)):
             yield one
+
+
+def _all_wrong(evidence: Evidence, wheel: str) -> bool:
+    """Whether every rod of a wheel disagrees, as under another load."""
+    prefix = f"{wheel}." if wheel else ""
+    rods = {row for row in evidence.held if row[0] == ROD_FORCE.name and row[1].startswith(prefix)}
+    return rods <= {*evidence.wrong}
 
 
 def _effects(evidence: Evidence) -> list[str]:
@@ -111,7 +120,8 @@ def _other(
     words = f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
     if path == RADIUS and number <= NOTHING * value:
         words = "the wheel centre is taken for the contact point"
-    return Hypothesis(path, words, evidence.by(simulate(car(number))), 1, 1.5)
+    # Another load is one of all forces; a radius may be another one for some numbers only.
+    return Hypothesis(path, words, evidence.by(simulate(car(number))), 1, 1.5, whole=path[0] == "loads")
 
 
 def _at(tables: Any, path: Path) -> Any:
