@@ -283,3 +283,21 @@ def test_a_table_of_all_that_a_car_has_agrees_with_the_car(
     status, out, err = printed(capsys, "validate", str(scene), "--data", str(table))
     assert (status, "not tested" in out, "ignored" in out, "Warning" in err) == (0, False, False, False)
     assert said in out
+
+
+def test_too_little_to_tell_a_fault_by_asks_for_more_digits(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    travel = np.linspace(-50.0, 50.0, 5)
+    scene = Scene.load("wheel-travel").model_copy(update={"effects": ("camber",)})
+    scene = scene.model_copy(update={"time": {"start": 0.0, "stop": 1.0, "samples": 5}})
+    camber = np.degrees(simulate(scene).wheel["camber"])
+    for off, told in ((0.0015, True), (0.1, False)):
+        lines = [
+            f"{t:g},{c:.3f}" for t, c in zip(travel, camber + off * np.array([0, 1, 0, 0, 0]), strict=True)
+        ]
+        file = tmp_path / "camber.csv"
+        file.write_text("\n".join(["input.wheel_travel [mm],camber [deg]", *lines]), encoding="utf-8")
+        status, out, _ = printed(capsys, "validate", "wheel-travel", "--data", str(file))
+        assert status == 1
+        assert ("print more digits" in out) == told

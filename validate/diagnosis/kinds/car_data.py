@@ -50,9 +50,9 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
     loads: list[Path] = [
         ("loads", wheel, what, i)
         for wheel, load in part.get("loads", {}).items()
+        if _all_wrong(evidence, wheel)
         for what in load
         for i in range(3)
-        if _all_wrong(evidence, wheel)
     ]
     made_of = {
         row: (*loads, RADIUS) if is_force(row[0]) else MADE_OF.get(row[1].rpartition(".")[2], ())
