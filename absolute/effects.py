@@ -36,6 +36,7 @@ from absolute.vectors import EPS
 Number = Callable[[Motion], Dual]
 
 OUTBOARD, REARWARD, UP = 0, 1, 2
+TIME = "time"
 # As much of a velocity may be rounding at the largest condition number that is not refused.
 ROUNDING = EPS / SMALLEST_RCOND
 # Of the knuckle, rad for a travel of the rack by the wheel's radius, that rounding does not tell from none.
@@ -50,7 +51,7 @@ class Effect:
         unit: of the value.
         value: (N,) of a motion looked at from a wheel; or, of an axle, from the left and the right one.
         by: the input of each wheel that it takes derivatives by: "rack", the one that is the travel of a
-            slide, "travel", the one that is not, or "" for none.
+            slide, "travel", the one that is not; "time" for all of them as they move; or "" for none.
     """
 
     unit: str
@@ -277,7 +278,8 @@ def _wheel_effects() -> Iterator[tuple[str, Effect]]:
         for name, number in numbers.items():
             yield name, Effect(unit, _value(number))
             yield f"{name}_by_travel", Effect(f"{unit}/mm", _by_travel(number), "travel")
-            yield f"{name}_by_rack", Effect(f"{unit}/mm", _by_rack(number), "rack")
+            yield f"{name}_by_rack", Effect(f"{unit}/mm", _by(number, "rack"), "rack")
+            yield f"{name}_by_time", Effect(f"{unit}/s", _by(number, TIME), TIME)
     for by, table in (("travel", OF_VELOCITIES), ("rack", OF_RACK)):
         for name, (unit, value) in table.items():
             yield name, Effect(unit, value, by)
@@ -292,9 +294,9 @@ def _by_travel(number: Number) -> Callable[[Motion], Array]:
     return lambda motion: _ratio(*(_slope(motion, of(motion), "travel") for of in (number, travel)))
 
 
-def _by_rack(number: Number) -> Callable[[Motion], Array]:
-    """Its change for each mm of the slide, all other inputs and the chassis held."""
-    return lambda motion: _slope(motion, number(motion), "rack")
+def _by(number: Number, by: str) -> Callable[[Motion], Array]:
+    """Its change for each mm of the slide, all else held, or for each second, as everything moves."""
+    return lambda motion: _slope(motion, number(motion), by)
 
 
 def track(left: Motion, right: Motion) -> Array:
@@ -382,7 +384,7 @@ def _cot(angle: Array) -> Array:
 
 
 def _slope(motion: Motion, number: Dual, by: str) -> Array:
-    return number.slopes[..., motion.by.index((motion.part, by))]
+    return number.slopes[..., -1 if by == TIME else motion.by.index((motion.part, by))]
 
 
 def _ratio(rise: Array | float, run: Array) -> Array:
@@ -535,7 +537,7 @@ def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str
         (part, asked.effect.by): f"effect {name!r}"
         for name, asked in effects.items()
         for part in asked.parts
-        if asked.effect.by
+        if asked.effect.by not in ("", TIME)
     }
     return {(part, by): model.input_of(part, by, what) for (part, by), what in wanted.items()}
 

@@ -58,7 +58,8 @@ class Motion:
 
     Attributes:
         chassis: (N, 1 + R, 3) displacement of the chassis and its rates, mm and s, after its turns.
-        by: part, and "travel" or "rack", of the K inputs that effects take derivatives by.
+        by: part, and "travel" or "rack", of the K inputs that effects take derivatives by; behind these are
+            those by time.
         part: whose wheel is looked at.
     """
 
@@ -124,10 +125,12 @@ class Motion:
         moved = self.place(point)
         moved[0] -= self.mechanism.drawing.origins[body] + arm
         # A turn takes the difference of two places as a vector, and moves the drawn one as well.
-        turned = np.zeros((1, *moved.shape[1:]))
+        turned = np.zeros((2, *moved.shape[1:]))
         for turn in self.turns:
             turned = turn.seen_point(turned, self.mechanism.drawing.points[point])
-        return self._seen(moved) + constant(turned[0].T)
+        slopes = np.zeros_like(moved[1:])
+        slopes[-1] = turned[1]
+        return self._seen(moved) + Dual(turned[0].T, slopes.T)
 
     def drawn(self, point: str) -> Dual:
         """(3, 1) where a point is drawn, mm."""
@@ -138,8 +141,14 @@ class Motion:
         return Dual(arm.value, cross(self.spin(on).T, arm.value.T).T)
 
     def spin(self, on: str) -> Array:
-        """(3, N, K) angular velocity of a body for unit rates of inputs, as the ground sees it."""
-        return self.turned(self._slopes(self.mechanism.drawing.bodies[on], 1)).T
+        """(3, N, K + 1) angular velocity of a body for unit rates of inputs, and over time, as the ground
+        sees it."""
+        spins = self._slopes(self.mechanism.drawing.bodies[on], 1)
+        seen, over_time = self.turned(spins), spins[-1:]
+        for turn in self.turns:
+            over_time = turn.seen(over_time) + turn.rates[:1]
+        seen[-1] = over_time[0]
+        return seen.T
 
     def turned_back(self, vector: Array) -> Array:
         """Vectors (N, 3) that the ground sees, in the frame of the chassis."""
@@ -154,21 +163,27 @@ class Motion:
         return vector
 
     def _seen(self, vector: Array) -> Dual:
-        """A vector and its slopes (1 + K, N, 3), in units of size, as the ground sees it, mm."""
-        seen = (self.turned(vector) * self.mechanism.drawing.size).T
+        """A vector and its slopes (2 + K, N, 3), in units of size, as the ground sees it, mm."""
+        seen, over_time = self.turned(vector), vector[[0, -1]]
+        for turn in self.turns:
+            over_time = turn.seen(over_time)
+        seen[-1] = over_time[1]
+        seen = (seen * self.mechanism.drawing.size).T
         return Dual(seen[..., 0], seen[..., 1:])
 
     def _slopes(self, body: int, kind: int) -> Array:
-        """(K, N, 3) velocity of the origin of a body, or angular velocity (1), for unit rates of inputs."""
-        return self.instants.slopes[:, :, body, kind].swapaxes(0, 1)
+        """(K + 1, N, 3) velocity of the origin of a body, or angular velocity (1), for unit rates of inputs,
+        and over time."""
+        by_inputs, over_time = self.instants.slopes, self.instants.rates[:, :1]
+        return np.concatenate((by_inputs[:, :, body, kind], over_time[:, :, body, kind]), 1).swapaxes(0, 1)
 
     def _turned_line(self, body: int, line: Array) -> Array:
-        """(1 + K, N, 3) a line of a body, (3,), and its slopes."""
+        """(2 + K, N, 3) a line of a body, (3,), and its slopes."""
         turned = self.instants.rotation[:, body] @ line
         return np.concatenate((turned[None], cross(self._slopes(body, 1), turned)))
 
     def place(self, point: str) -> Array:
-        """(1 + K, N, 3) a point from the middle, on the chassis, and its slopes, in units of size."""
+        """(2 + K, N, 3) a point from the middle, on the chassis, and its slopes, in units of size."""
         body, arm = self._holder(point)
         origin = self.instants.origin[:, body]
         return np.concatenate((origin[None], self._slopes(body, 0))) + self._turned_line(body, arm)

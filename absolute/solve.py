@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.effects import effects_of, inputs_of, numbers_of
+from absolute.effects import TIME, effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
@@ -134,7 +134,7 @@ class Assembled:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects, model)
-        by = inputs_of(asked, model)
+        by, rated = inputs_of(asked, model), rates or any(one.effect.by == TIME for one in asked.values())
         driving = {n: law for n, law in inputs.items() if n not in model.turns or n in model.values}
         orders = orders_of(inputs)
         series = input_series(model.values, driving, orders)
@@ -155,7 +155,7 @@ class Assembled:
             # What effects and loads lack is missing from no instants as well.
             solution()
             try:
-                for run in self._followed(series, rates, tuple(by.values())):
+                for run in self._followed(series, rated, tuple(by.values())):
                     runs.append(run)
             except AbsoluteError as error:
                 error.partial = solution() if len(runs) > 1 else None

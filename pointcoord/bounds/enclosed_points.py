@@ -65,7 +65,7 @@ class EnclosedPoses:
     Attributes:
         points: by time derivative, every point after the turns of the chassis, (N, 3), in the mechanism's
             units.
-        in_chassis: places before these turns.
+        in_chassis: the same before these turns.
         added: by time derivative, what reporting a point adds to it, (N, 3), mm and s.
         powers: of the unit of time, s^d for d = 0, 1, and so on, each (N,).
         slopes: by way, the derivatives of places along it, after the turns of the chassis and before, in
@@ -75,7 +75,7 @@ class EnclosedPoses:
     mechanism: Mechanism
     axes: CarAxes
     points: Sequence[Points]
-    in_chassis: Points
+    in_chassis: Sequence[Points]
     added: Sequence[Enclosed]
     powers: Sequence[Array]
     slopes: Mapping[Way, tuple[Points, Points]] = field(default_factory=dict)

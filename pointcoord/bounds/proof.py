@@ -304,7 +304,7 @@ def _enclosed(
     laws = {name: laws[name] for name in chassis.functions}
     added = chassis.enclosed(laws, mechanism.origin, len(powers) - 1)
     points: Sequence[Mapping[str, Enclosed]] = enclosed_points(mechanism, coordinates)
-    in_chassis = points[0]
+    in_chassis = points
     if chassis.turns:
         scaled = {
             name: [part.scaled(power) for part, power in zip(parts, powers, strict=False)]

@@ -143,11 +143,16 @@ class CarNumbers(Effect):
         base: str = "",
         nowhere: str = "",
         of_axle: bool = False,
+        derivative: int = 0,
     ) -> CarNumbers:
-        """The effect that gives some numbers."""
+        """The effect that gives some numbers.
+
+        Args:
+            derivative: 1 of what takes the points' derivatives by time.
+        """
         signs = "; ".join(f"{number.words}: positive {number.sign or 'always'}" for number in numbers)
         quantities = tuple({number.quantity.name: number.quantity for number in numbers}.values())
-        return cls(name, gives, signs, 0, quantities, numbers, base, nowhere, of_axle)
+        return cls(name, gives, signs, derivative, quantities, numbers, base, nowhere, of_axle)
 
     @property
     def own_names(self) -> tuple[str, ...]:
@@ -206,27 +211,38 @@ class CarNumbers(Effect):
         """Each number, (..., N)."""
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [self._moving(corner_of(poses, wheel), poses.slopes, np.zeros_like) for wheel in wheels]
+            corners = [
+                self._moving(corner_of(poses, wheel), poses, poses.states, np.zeros_like) for wheel in wheels
+            ]
             for number in self.numbers:
                 found[number.quantity.name][prefix + number.name] = number.formula(*corners)
         return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """Of each number by itself."""
-        unit = float(poses.mechanism.unit)
+        unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [self._moving(enclosed_corner(poses, wheel), poses.slopes, still) for wheel in wheels]
+            corners = [
+                self._moving(enclosed_corner(poses, wheel), poses, poses.points, still) for wheel in wheels
+            ]
             for number in self.numbers:
                 quantity, name = number.quantity.name, prefix + number.name
-                found[quantity][name] = number.errors(corners, numbers[quantity][name], unit)
+                # The unit of time is a power of two: neither product rounds.
+                found[quantity][name] = number.errors(corners, numbers[quantity][name] * time, unit) / time
         return found
 
     def _moving(
-        self, corner: Corner[Any], slopes: Mapping[Way, Any], zero: Callable[[Any], Any]
+        self,
+        corner: Corner[Any],
+        poses: Poses | EnclosedPoses,
+        states: Sequence[Mapping[str, Any]],
+        zero: Callable[[Any], Any],
     ) -> Corner[Any]:
-        """A corner with the derivatives along its wheel's way, if the numbers take any."""
-        return corner.moving(slopes[corner.seen.of.way(self.way)], zero) if self.way else corner
+        """A corner with the derivatives by time or along its wheel's way, if the numbers take any."""
+        if self.derivative:
+            return corner.moving((states[1], poses.in_chassis[1]), zero)
+        return corner.moving(poses.slopes[corner.seen.of.way(self.way)], zero) if self.way else corner
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
@@ -280,7 +296,7 @@ def corner_of(poses: Poses, wheel: Wheel) -> Corner[Array]:
     drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
     car = {name: np.array(number) for name, number in axes.car.items()}
     origin = _beside(mechanism.origin, shape)
-    return Corner(view(poses.states[0]), view(poses.in_chassis), view(drawn), origin, car)
+    return Corner(view(poses.states[0]), view(poses.in_chassis[0]), view(drawn), origin, car)
 
 
 def _beside(place: Array, dimensions: int) -> Array:
@@ -303,7 +319,7 @@ def enclosed_corner(poses: EnclosedPoses, wheel: Wheel) -> Corner[Enclosed]:
     drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
     origin = Enclosed.of(mechanism.origin / unit)
     car = {n: Enclosed.of(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
-    return Corner(view(poses.points[0]), view(poses.in_chassis), view(drawn), origin, car)
+    return Corner(view(poses.points[0]), view(poses.in_chassis[0]), view(drawn), origin, car)
 
 
 def still(part: Enclosed) -> Enclosed:

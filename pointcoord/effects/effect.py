@@ -62,7 +62,7 @@ class Poses:
         axes: the car's directions.
         states: by time derivative, the states of the points that were asked for, (..., N, 3), mm per s^d, in
             the chassis' frame and from the mechanism's origin; after the turns of the chassis.
-        in_chassis: the positions before these turns; the same where nothing turns.
+        in_chassis: the states before these turns, as far as effects take them; the same where nothing turns.
         added: by time derivative, what reporting adds to every point: the user's origin and what the chassis
             does, (..., N, 3), mm per s^d; None where that is zero.
         slopes: by way, the derivatives of positions along it, after the turns of the chassis and before,
@@ -72,7 +72,7 @@ class Poses:
     mechanism: Mechanism
     axes: CarAxes
     states: Sequence[Mapping[str, Array]]
-    in_chassis: Mapping[str, Array]
+    in_chassis: Sequence[Mapping[str, Array]]
     added: Sequence[Array | None]
     slopes: Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
 

@@ -1,9 +1,10 @@
-r"""What every number of the car changes by as the wheel travels, or as the rack does: exact, at each pose.
+r"""What every number of the car changes by as the wheel travels, as the rack does, or with time: exact.
 
-With points P, their derivatives P_q by one input q, and a number N(P),
+With points P, their derivatives P_q by one input q or by time, and a number N(P),
 
     by_rack:    N_P P_s                               s the input that steers, mm
     by_travel:  (N_P P_b) / (T_P P_b)                 b the other one, T the travel of the wheel centre, mm
+    by_time:    N_P P'                                as all inputs and the chassis move
 
 The formula of N gives its derivative with it where points are duals (see `arithmetic`).
 """
@@ -19,18 +20,41 @@ from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.wheel_travel import TRAVEL
 
-WAYS = {BY_TRAVEL: "as the wheel centre goes up", BY_RACK: "as the rack travels"}
+BY_TIME = "by_time"
+WAYS = {BY_TRAVEL: "as the wheel centre goes up", BY_RACK: "as the rack travels", BY_TIME: "with time"}
 QUANTITIES = {
     "rad": Quantity("angle_gradient", "wheel angle per mm", "rad/mm", "car"),
     "mm": Quantity("dimension_gradient", "dimension per mm", "mm/mm", "car"),
+}
+RATES = {
+    "rad": Quantity("angle_rate", "rate of a wheel angle", "rad/s", "car"),
+    "mm": Quantity("dimension_rate", "rate of a dimension", "mm/s", "car"),
 }
 
 
 def gradients(base: CarNumbers, way: str) -> CarNumbers:
     """What the numbers of an effect change by along a way."""
-    gives = f"what these change by per mm {WAYS[way]}: {base.gives}"
-    numbers = [_gradient(number, way) for number in base.numbers]
-    return CarNumbers.of(f"{base.name}_{way}", gives, *numbers, base=base.name)
+    if way == BY_TIME:
+        gives, make = f"what these change by per second: {base.gives}", _rate
+    else:
+        gives, make = f"what these change by per mm {WAYS[way]}: {base.gives}", partial(_gradient, way=way)
+    numbers = map(make, base.numbers)
+    return CarNumbers.of(
+        f"{base.name}_{way}", gives, *numbers, base=base.name, derivative=int(way == BY_TIME)
+    )
+
+
+def _rate(number: CarNumber) -> Number:
+    return Number(
+        name=f"{number.name}_{BY_TIME}",
+        words=f"{number.words} per second",
+        sign=f"where it grows {WAYS[BY_TIME]}",
+        formula=partial(_slope, number),
+        roles=number.roles,
+        needs_radius=number.needs_radius,
+        quantity=RATES[number.quantity.unit],
+        power=number.quantity.unit == "mm",
+    )
 
 
 def _gradient(number: CarNumber, way: str) -> Number:
@@ -39,7 +63,7 @@ def _gradient(number: CarNumber, way: str) -> Number:
         name=f"{number.name}_{way}",
         words=f"{number.words} per mm {way.replace('_', ' ')}",
         sign=f"where it grows {WAYS[way]}",
-        formula=partial(_by_travel if travels else _by_rack, number),
+        formula=partial(_by_travel if travels else _slope, number),
         roles=tuple(dict.fromkeys((*number.roles, *(TRAVEL.roles if travels else ())))),
         needs_radius=number.needs_radius,
         quantity=QUANTITIES[number.quantity.unit],
@@ -48,7 +72,7 @@ def _gradient(number: CarNumber, way: str) -> Number:
     )
 
 
-def _by_rack(number: CarNumber, corner: Corner[Dual[Any]]) -> Any:
+def _slope(number: CarNumber, corner: Corner[Dual[Any]]) -> Any:
     return number.formula(corner).slope
 
 

@@ -89,7 +89,7 @@ class Evaluated:
         turned = chassis.turned_exactly(laws, found, unit)
         added = chassis.enclosed(laws, mechanism.origin, len(found) - 1)
         ones = [np.ones(count)] * len(found)
-        return EnclosedPoses(mechanism, self.readout.axes, turned, found[0], added, ones)
+        return EnclosedPoses(mechanism, self.readout.axes, turned, found, added, ones)
 
     def _radii(self, here: slice) -> list[Array]:
         """How far the sums are off, by derivative, each (N, 3 points)."""

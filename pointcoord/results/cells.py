@@ -406,7 +406,7 @@ class CloseInstants:
             states, laws = self.solved.states(here, block), readout.laws(here)
             along_ways = readout.plan.along_ways
             slopes = readout.slopes(laws, self.solved.coordinates(here, 0)[0]) if along_ways else {}
-            readout.compute(states, states[0], readout.added(laws), block, slopes)
+            readout.compute(states, states, readout.added(laws), block, slopes)
         return values[: readout.table.first_still]
 
     @cached_property

@@ -134,10 +134,10 @@ class Readout:
             rows: a table or some columns of one, shape (..., height, N).
             y: the coordinates, (..., N, size), where an effect takes derivatives by an input.
         """
-        in_chassis, slopes = states[0], {} if y is None else self.slopes(laws, y)
+        in_chassis, slopes = states, {} if y is None else self.slopes(laws, y)
         if not self.chassis.centres.keys().isdisjoint(laws):
             # The states may be views of the table, which those of the turned car are written into.
-            in_chassis = {name: place.copy() for name, place in states[0].items()}
+            in_chassis = [{name: state.copy() for name, state in of.items()} for of in states[:2]]
             states = self.chassis.turned_by(laws, states)
             for first, (derivative, point) in self.table.states:
                 vectors(rows, first)[...] = states[derivative][point]
@@ -153,7 +153,7 @@ class Readout:
     def compute(
         self,
         states: States,
-        in_chassis: Mapping[str, Array],
+        in_chassis: States,
         added: Sequence[Array | None],
         rows: Array,
         slopes: Slopes,
@@ -161,7 +161,7 @@ class Readout:
         """Compute the numbers that are made of states.
 
         Args:
-            in_chassis: positions before the turns of the chassis.
+            in_chassis: the states before the turns of the chassis.
             slopes: as `slopes` gives them. added: what reporting adds to these.
             rows: as of `complete`.
         """

@@ -52,6 +52,8 @@ BY_TRAVEL = (
     "arm_roll_centre_height",
 )
 OF_DAMPER = ("damper_per_wheel", "wheel_per_damper", "spring_force", "wheel_force", "wheel_rate")
+# Of the inputs, rad/s and mm/s: of numbers by time.
+RATES = {"turn": 0.7, "steer": 40.0, "roll": -0.3, "pitch": 0.2}
 # Roll about a point of the chassis, and pitch about another: axes forward and left.
 TURNS = {"roll": ("forward", (-1, 0, 0), "damper_top"), "pitch": ("left", (0, -1, 0), "stop")}
 
@@ -93,11 +95,15 @@ def plain(
 
 
 def solved(
-    names: Any, values: Mapping[str, Any] | None = None, points: Mapping[str, Any] = DRAWN, **changed: Any
+    names: Any,
+    values: Mapping[str, Any] | None = None,
+    points: Mapping[str, Any] = DRAWN,
+    rates: Mapping[str, float] = RATES,
+    **changed: Any,
 ) -> dict[str, float]:
     """Effects at one instant, at values of the inputs that are not 0."""
     described = plain(points, **changed)
-    inputs = {name: np.array([[(values or {}).get(name, 0.0), 0.0, 0.0]]) for name in described["inputs"]}
+    inputs = {n: np.array([[(values or {}).get(n, 0.0), rates[n], 0.0]]) for n in described["inputs"]}
     motion = absolute.solve(absolute.compile(described), inputs, rates=False, effects=names)
     return {name: float(number[0]) for name, number in motion.effects.items()}
 
@@ -128,7 +134,7 @@ def written(effect: str, given: Mapping[str, float]) -> float:
     with mp.workdps(DIGITS):
         values = {name: mpf(given.get(name, 0.0)) for name in ("turn", "steer", *TURNS)}
         name, by = effect, ""
-        if effect.endswith(("_by_travel", "_by_rack")):
+        if effect.endswith(("_by_travel", "_by_rack", "_by_time")):
             name, _, by = effect.rpartition("_by_")
 
         def number(name: str, **moved: Any) -> Any:
@@ -150,6 +156,8 @@ def written(effect: str, given: Mapping[str, float]) -> float:
             force = rate * (CAR["spring_free_length"] - number("damper_length"))
             of_damper = (ratio, 1 / ratio, force, force * ratio, rate * ratio**2)
             return float(dict(zip(OF_DAMPER, of_damper, strict=True))[effect])
+        if by == "time":
+            return float(diff(lambda t: number(name, **{n: values[n] + t * RATES[n] for n in RATES}), 0))
         if by == "rack":
             return float(diff(lambda s: number(name, steer=s), values["steer"]))
         if not by:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanism_files import plain_scene
-from one_arm import CAR, DRAWN, RADIUS, ROLES, plain, solved, written
+from one_arm import CAR, DRAWN, RADIUS, RATES, ROLES, plain, solved, written
 from shipped import EPS, Motion, shipped
 
 import absolute
@@ -31,7 +31,8 @@ def tolerance(name: str) -> float:
     if "_view_" in name:
         return 50.0 * OFF
     # A spring gives 27.5 N for each mm.
-    units = {"mm": OFF, "%": 5.0 * OFF, "N": 27.5 * OFF, "N/mm": 27.5 * OFF / 100.0}
+    # The inputs turn the arm and the car by about a radian a second: errors of rates are those of places.
+    units = {"mm": OFF, "mm/s": 2.0 * OFF, "%": 5.0 * OFF, "N": 27.5 * OFF, "N/mm": 27.5 * OFF / 100.0}
     return units.get(absolute.EFFECTS[name].unit, OFF / 100.0)
 
 
@@ -53,7 +54,8 @@ def test_a_mirrored_scaled_moved_or_turned_car_has_the_same_numbers(values: dict
     points = {name: (x, -y, z) for name, (x, y, z) in DRAWN.items()}
     # To the left on either side: a wheel turned in goes the other way.
     signs = {name: -1.0 if name.startswith("steer_angle") else 1.0 for name in EFFECTS}
-    mirrored = solved(EFFECTS, other, points, side="right")
+    rates = {**RATES, "turn": -RATES["turn"], "roll": -RATES["roll"]}
+    mirrored = solved(EFFECTS, other, points, rates, side="right")
     assert_close({name: signs[name] * value for name, value in mirrored.items()}, here, 2)
     for scale in (1e-3, 1e3):
         points = {name: np.multiply(scale, point) for name, point in DRAWN.items()}
@@ -61,10 +63,11 @@ def test_a_mirrored_scaled_moved_or_turned_car_has_the_same_numbers(values: dict
             EFFECTS,
             {**values, "steer": scale * values.get("steer", 0.0)},
             points,
+            {**RATES, "steer": scale * RATES["steer"]},
             wheel_radius=scale * RADIUS,
             car=CAR | {name: scale * CAR[name] for name in LENGTHS},
         )
-        by = {"mm": scale, "N": scale, "rad/mm": 1.0 / scale}
+        by = {"mm": scale, "mm/s": scale, "N": scale, "rad/mm": 1.0 / scale}
         units = {name: by.get(absolute.EFFECTS[name].unit, 1.0) for name in here}
         assert_close({name: value / units[name] for name, value in scaled.items()}, here, 2)
     # The roll centre's plane goes through the origin, so it may not move sideways. Places are rounded anew.
@@ -79,7 +82,7 @@ def test_a_mirrored_scaled_moved_or_turned_car_has_the_same_numbers(values: dict
 
 
 def test_a_displaced_chassis_changes_no_number() -> None:
-    inputs = {name: np.array([[value, 0.0, 0.0]]) for name, value in POSES[2].items()}
+    inputs = {name: np.array([[value, RATES[name], 0.0]]) for name, value in POSES[2].items()}
     still, displaced = (
         Motion(plain(), inputs, chassis).solve(effects=EFFECTS)
         for chassis in (None, np.full((1, 3, 3), 40.0))

@@ -25,7 +25,7 @@ class Car:
         bodies: their names.
         wheel_axis: from the inner point to the outer one. steering_axis: from the lower to the upper one.
         damper: its two ends, if there is one.
-        in_chassis: the positions before the turns of the chassis.
+        in_chassis, rates_in_chassis: positions and velocities before the turns of the chassis.
         drawn: as drawn.
         moving, moving_in_chassis: how the points and those in the chassis' frame change by an input, per mm.
         driven_turn: how every body turns by the input.
@@ -43,6 +43,7 @@ class Car:
     damper: tuple[str, ...]
     wheel_radius: mpf
     in_chassis: Mapping[str, Vector]
+    rates_in_chassis: Mapping[str, Vector]
     drawn: Mapping[str, Vector]
     moving: Mapping[str, Vector]
     moving_in_chassis: Mapping[str, Vector]
@@ -200,6 +201,17 @@ def _by_rack(effect: str) -> Callable[[Car], Numbers]:
     return numbers
 
 
+def _by_time(effect: str) -> Callable[[Car], Numbers]:
+    def numbers(car: Car) -> Numbers:
+        (quantity,) = BY_HAND[effect](car)
+        rates = {name: states[1] for name, states in car.points.items()}
+        over_time = replace(car, moving=rates, moving_in_chassis=car.rates_in_chassis)
+        found = _slopes(BY_HAND[effect], over_time)
+        return {PER_SECOND[quantity]: {f"{name}_by_time": [slope] for name, slope in found.items()}}
+
+    return numbers
+
+
 def _by_travel(effect: str) -> Callable[[Car], Numbers]:
     def numbers(car: Car) -> Numbers:
         (quantity,) = BY_HAND[effect](car)
@@ -335,6 +347,7 @@ def _arm_roll_centre(car: Car) -> Numbers:
 
 
 PER_MM = {"wheel": "angle_gradient", "dimension": "dimension_gradient"}
+PER_SECOND = {"wheel": "angle_rate", "dimension": "dimension_rate"}
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "position": _of_points("position", 0),
     "velocity": _of_points("velocity", 1),
@@ -361,19 +374,10 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "instant_centres": _instant_centres,
     "anti_features": _anti_features,
 }
-OF_THE_CAR = (
-    "camber",
-    "wheel_angles",
-    "toe",
-    "angles_by_arcsine",
-    "steer_angle",
-    "caster",
-    "wheel_travel",
-    "steering_axis",
-    "damper",
-)
-BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in OF_THE_CAR}
-BY_HAND |= {f"{name}_by_rack": _by_rack(name) for name in OF_THE_CAR}
+DIFFERENTIATED = ("wheel_angles", "wheel_travel", "steering_axis", "damper")
+BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in DIFFERENTIATED}
+BY_HAND |= {f"{name}_by_rack": _by_rack(name) for name in DIFFERENTIATED}
+BY_HAND |= {f"{name}_by_time": _by_time(name) for name in DIFFERENTIATED}
 
 
 def by_hand(effect: str, car: Car) -> Numbers:

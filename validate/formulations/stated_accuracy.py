@@ -42,7 +42,8 @@ order k by e_k / e times as much as those of the pose, as if delta changed. Of t
 
     sum_k C(d, k) (e_k / e) |dp^(d-k)|,      k = 1 .. d,
 
-with dp^(j) what missing the equations by a constant delta makes of the order j of a point.
+with dp^(j) what missing the equations by a constant delta makes of the order j of a point; and likewise of
+the rates of the numbers of the car.
 
 The derivatives are those of the pose itself. Within the reach of delta the Jacobian changes; with
 r = |sum_i |C'^-1 dC'_i||, the largest relative change (maximum norm), it may lose so much that a first order
@@ -80,7 +81,7 @@ from validate.reference.design import Known, values_only
 from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
 from validate.reference.effects.car import KNUCKLE, Car
-from validate.reference.effects.effect import RACK
+from validate.reference.effects.effect import RACK, TIME
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.in_doubles import (
     inverse_of,
@@ -294,12 +295,12 @@ class _Held:
         change = _change(with_slopes(jets, slopes), inverse, values_only(known))
         blind |= ~(change < LIMIT)
         growth = [(1.0 - 2.0 * np.where(blind, 0.0, change)) ** -(0.5 + d) for d in range(len(slopes))]
-        along = {}
+        along = {way: (with_slopes(jets, slopes), known) for way in self._ways() if way[1] == TIME}
         for way, driver in self._drivers().items():
             # The derivatives by an input are the rates of a motion that drives it alone, at 1 a unit of time.
             driving = self._driving(way, driver, laws)
-            own = unknown_jets_of(values, inverse, driving)
-            along[way] = with_slopes(own, motion_of_a_miss(first, own, inverse, driving)), driving
+            driven = unknown_jets_of(values, inverse, driving)
+            along[way] = with_slopes(driven, motion_of_a_miss(first, driven, inverse, driving)), driving
         claims = self._claims(off, with_slopes(jets, slopes), known, growth, along)
         condition = np.abs(matrix).sum(axis=-1).max(axis=-1) * np.abs(inverse).sum(axis=-1).max(axis=-1)
         said = {
@@ -310,9 +311,11 @@ class _Held:
 
     def _drivers(self) -> dict[Way, str]:
         """By way, the input that numbers along it are derivatives by; of the ways that are asked for."""
-        ways = {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
         every = {prefix: drivers(self.design, prefix) for prefix in self.drawn}
-        return {(p, along): every[p][along] for p, along in ways if along in every[p]}
+        return {(p, along): every[p][along] for p, along in self._ways() if along in every[p]}
+
+    def _ways(self) -> set[Way]:
+        return {(prefix, number.effect.along) for number in self.of_car for prefix in number.corners}
 
     def _driving(self, way: Way, driver: str, laws: Mapping[str, Array]) -> Known:
         """The inputs where they are, and one that moves; a slide by the design's own lengths."""
@@ -469,6 +472,8 @@ class _Held:
                 for n, p in points.items()
             }
             moved = self._per_length(states, turns)[1]
+            if way == TIME and self.solves:
+                pose = [_with_missed_rates(y, moved) for y in pose]
             cars[prefix, way] = self._car(prefix, off, pose, driving, growth, moved)
         found = {}
         for number in self.of_car:
@@ -518,7 +523,8 @@ class _Held:
             length = 2.0 * _lengths(values_of(each(value_of, line), len(off))) / self.heights[body]
             lines.append(apart(line, i, off * length, rate * length))
         frame = (lines[0], lines[1]) if lines else None
-        return car_at(self.drawn[prefix], known.chassis.still(), held, frame)
+        chassis = known.chassis.still() if per_length is None else known.chassis.with_slopes()
+        return car_at(self.drawn[prefix], chassis, held, frame)
 
 
 def _height(a: Array, b: Array, c: Array) -> float:
@@ -540,6 +546,16 @@ def _change(jets: Sequence[Jet], inverse: Array, known: Known) -> Array:
         changes = np.stack([slope for _, slope in entries]).transpose(2, 0, 1)
         relative += np.abs(inverse[:, :, [i for i, _ in entries]] @ changes).sum(axis=-1)
     return np.asarray(relative.max(axis=-1))
+
+
+def _with_missed_rates(unknown: Dual, per_length: Array) -> Dual:
+    """With as many further slopes, of the rate alone: equations for rates are missed likewise."""
+    value, rate = unknown.value, unknown.slope
+    missed = [
+        np.concatenate(both)
+        for both in ((value.slope, 0.0 * value.slope), (rate.slope, per_length * value.slope))
+    ]
+    return Dual(*(Dual(one.value, slopes) for one, slopes in zip((value, rate), missed, strict=True)))
 
 
 def _with_own(place: Vector, off: Array, first: int, count: int, growth: Array) -> Vector:

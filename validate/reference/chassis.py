@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from validate.reference.directions import directed
+from validate.reference.dual import Dual
 from validate.reference.jet import Jet, part_of
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, times
 
@@ -64,6 +65,15 @@ class ChassisMotion:
         """With the values of the jets."""
         turns = tuple(replace(turn, sine=turn.sine.value, cosine=turn.cosine.value) for turn in self.turns)
         return ChassisMotion(turns, None if self.rise is None else part_of(self.rise, 0))
+
+    def with_slopes(self) -> ChassisMotion:
+        """With the values of the jets and their rates as slopes."""
+
+        def dual(jet: Jet) -> Dual:
+            return Dual(jet.value, jet.part(1))
+
+        turns = tuple(replace(turn, sine=dual(turn.sine), cosine=dual(turn.cosine)) for turn in self.turns)
+        return ChassisMotion(turns, None if self.rise is None else each(dual, self.rise))
 
     def without_displacement(self) -> ChassisMotion:
         """The turns alone."""

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from effects_by_hand import BY_HAND, DIGITS, Car, Vector, by_hand, cross, plus
+from effects_by_hand import BY_HAND, DIFFERENTIATED, DIGITS, Car, Vector, by_hand, cross, plus
 from every_effect import OF_A_WHEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -43,8 +43,13 @@ DATA = {
     "spring_free_length": 823.9,
 }
 TIME = 2.0**-3  # s, a unit of time other than a second
-# What two wheels make is in test_axles, and what loads do in test_loads.
-EVERY = {effect.name: effect for effect in (*ALWAYS, *(EFFECTS[name] for name in OF_A_WHEEL))}
+# What two wheels make is in test_axles, and what loads do in test_loads. One code differentiates all numbers:
+# of those that differ in what they are made of.
+EVERY = {
+    effect.name: effect
+    for effect in (*ALWAYS, *(EFFECTS[name] for name in OF_A_WHEEL))
+    if effect.base in ("", *DIFFERENTIATED)
+}
 each_effect = pytest.mark.parametrize("name", EVERY)
 seeds = st.integers(0, 2**32 - 1)
 cars = st.sampled_from(["off-axis-strut", "pushrod"])
@@ -112,6 +117,7 @@ def moving_car(rng: np.random.Generator, mechanism: Mechanism) -> Car:
             damper=topology.role("damper"),
             wheel_radius=mpf(RADIUS),
             in_chassis=in_chassis,
+            rates_in_chassis={n: plus(cross(alpha, p), speed) for n, p in in_chassis.items()},
             moving={n: plus(shifts[n], cross(turn, p)) for n, p in places.items()},
             moving_in_chassis={n: plus(other_shifts[n], cross(other_turn, p)) for n, p in in_chassis.items()},
             driven_turn=turn,
@@ -138,7 +144,9 @@ def axes_of(car: Car) -> CarAxes:
 def poses_of(car: Car, mechanism: Mechanism) -> Poses:
     """The car as a solver would report it, at one instant."""
     states = [{name: rounded(p[d])[None] for name, p in car.points.items()} for d in ORDERS]
-    in_chassis = {name: rounded(p)[None] for name, p in car.in_chassis.items()}
+    in_chassis = [
+        {name: rounded(p)[None] for name, p in of.items()} for of in (car.in_chassis, car.rates_in_chassis)
+    ]
     added = [rounded(v)[None] for v in car.added]
     one = tuple({n: rounded(p)[None] for n, p in of.items()} for of in (car.moving, car.moving_in_chassis))
     slopes = dict.fromkeys(map(ByInput, mechanism.topology.required_inputs), one)
@@ -165,7 +173,10 @@ def exact_poses_of(
     unit = float(mechanism.unit)
     points = [{n: enclosed(p[d], TIME**d / unit, off[d]) for n, p in car.points.items()} for d in ORDERS]
     added = [enclosed(v, 1.0) for v in car.added]
-    in_chassis = {n: enclosed(p, 1.0 / unit) for n, p in car.in_chassis.items()}
+    in_chassis = [
+        {n: enclosed(p, TIME**d / unit) for n, p in of.items()}
+        for d, of in enumerate((car.in_chassis, car.rates_in_chassis))
+    ]
     one = tuple(
         {n: enclosed(p, 1.0 / unit) for n, p in of.items()} for of in (car.moving, car.moving_in_chassis)
     )
@@ -196,6 +207,9 @@ def check(effect: Effect, car: Car, mechanism: Mechanism) -> None:
         if effect.way and not effect.base:
             # A roll centre is a ratio times how far the wheel is from the user's origin.
             largest = max(largest, float(np.abs(mechanism.origin).max()))
+        if effect.base and effect.derivative:
+            # A rate is what is left of the points' speeds.
+            largest = max(largest, *(float(abs(c)) for states in car.points.values() for c in states[1]))
         if isinstance(effect, CarNumbers) and effect.nowhere:
             # How far a centre is hangs on a turn, which is so much smaller than those it is made of.
             largest *= max(1.0, largest / RADIUS)
@@ -300,7 +314,7 @@ def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
         replace(mechanism, drawing=drawing, origin=mechanism.origin @ turn.T),
         axes,
         [turned_by(states, turn) for states in poses.states],
-        turned_by(poses.in_chassis, turn),
+        [turned_by(states, turn) for states in poses.in_chassis],
         [None if added is None else added @ turn.T for added in poses.added],
         {way: tuple(turned_by(of, turn) for of in both) for way, both in poses.slopes.items()},
     )
@@ -335,7 +349,7 @@ def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
             car={n: v * (scale if n in LENGTHS else 1.0) for n, v in poses.axes.car.items()},
         ),
         states=states,
-        in_chassis={n: place * scale for n, place in poses.in_chassis.items()},
+        in_chassis=[{n: state * scale for n, state in of.items()} for of in poses.in_chassis],
         added=added,
     )
     found = EVERY[name].evaluate(poses)
@@ -355,7 +369,7 @@ def test_an_effect_needs_the_points_that_it_names_and_no_others(name: str, seed:
     poses = poses_of(moving_car(np.random.default_rng(seed), mechanism), mechanism)
     needed = effect.needs(mechanism.topology)
     states = [{n: s for n, s in states.items() if n in needed} for states in poses.states]
-    in_chassis = {n: place for n, place in poses.in_chassis.items() if n in needed}
+    in_chassis = [{n: state for n, state in of.items() if n in needed} for of in poses.in_chassis]
     alone = effect.evaluate(replace(poses, states=states[: effect.derivative + 1], in_chassis=in_chassis))
     found = effect.evaluate(poses)
     for quantity, part, array in parts(alone):

@@ -11,7 +11,7 @@ from pointcoord.effects.registry import EFFECTS
 from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.reference.exact import as_fraction
 
-ALONG = {name for name, effect in EFFECTS.items() if effect.way}
+ALONG = {name for name, effect in EFFECTS.items() if effect.way or effect.base}
 TRAVEL, STEER = {"sine": {"amplitude": 30.0, "angular_frequency": 3.0}}, {"polynomial": [0.0, 8.0]}
 
 

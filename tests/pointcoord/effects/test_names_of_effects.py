@@ -14,7 +14,7 @@ from pointcoord.mechanism.structure import PAIR_ROLES
 
 PACKAGE = Path(pointcoord.__file__).parent
 PAGE = (PACKAGE / "effects" / "README.md").read_text(encoding="utf-8")
-WAYS = ("_by_travel", "_by_rack")
+WAYS = ("_by_travel", "_by_rack", "_by_time")
 
 
 def own_files() -> dict[Path, str]:
@@ -84,6 +84,7 @@ def test_the_page_of_effects_says_what_each_is(name: str) -> None:
     assert f"`{name}`" in PAGE
 
 
-def test_every_effect_of_positions_of_the_car_has_gradients_along_both_ways() -> None:
-    plain = {n for name in OF_A_WHEEL if not EFFECTS[name].way for n in EFFECTS[name].own_names}
+def test_every_effect_of_positions_of_the_car_has_gradients_along_every_way() -> None:
+    effects = [EFFECTS[name] for name in OF_A_WHEEL]
+    plain = {n for one in effects if not (one.way or one.base) for n in one.own_names}
     assert {n + way for n in plain for way in WAYS} <= NUMBERS_OF_THE_CAR.keys()

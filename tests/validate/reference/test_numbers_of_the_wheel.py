@@ -251,13 +251,30 @@ def test_gradients_are_the_differences_of_proven_poses(name: str) -> None:
         assert abs(here.effects[f"{one}_by_rack"] - (ahead - behind) / (2 * number(step))) < off, one
 
 
+@pytest.mark.parametrize("name", CARS)
+def test_numbers_by_time_are_the_differences_of_proven_poses_a_moment_apart(name: str) -> None:
+    # As above: all inputs move by less than 50 rad/s or mm/s here.
+    step, off = Fraction(1, 10**22), mpf("1e-36")
+    rates = {n: Fraction(7 + 3 * k, 5) for k, n in enumerate(poses_of(name))}
+    moving = solved(name, {n: (value, rates[n], 0) for n, (value, *_) in poses_of(name).items()}).effects
+    ahead, behind = (
+        solved(name, poses_of(name, **{n: sign * step * rate for n, rate in rates.items()}), 100).effects
+        for sign in (1, -1)
+    )
+    names = set(OF_POSITIONS) - {"damper_length"}
+    assert {f"{one}_by_time" for one in names} <= set(moving)
+    for one in names:
+        assert abs(moving[f"{one}_by_time"] - (ahead[one] - behind[one]) / (2 * number(step))) < off, one
+
+
 def test_what_a_car_lacks_is_said_by_name() -> None:
     plain = on_an_arm(
         (600, 400, 300), (600, 500, 300), roles={"wheel_axis": ROLES["wheel_axis"]}, wheel_radius=None
     )
     found = closed_drawing(Design.from_plain(plain), effects=EVERY).instant
     of_the_axis = {"camber", "toe", "camber_by_arcsine", "toe_by_arcsine", "steer_angle", "travel"}
-    assert set(found.effects) == of_the_axis | {f"{name}_by_travel" for name in of_the_axis}
+    along = {f"{name}_{way}" for name in of_the_axis for way in ("by_travel", "by_time")}
+    assert set(found.effects) == of_the_axis | along
     assert found.left_out["caster"] == "needs the role steering_axis"
     assert found.left_out["contact_travel"] == "needs a wheel_radius, mm"
     assert found.left_out["scrub_radius"] == "needs the role steering_axis and a wheel_radius, mm"

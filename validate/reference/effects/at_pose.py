@@ -14,7 +14,7 @@ from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
 from validate.reference.dual import Dual, value_of
 from validate.reference.effects.car import KNUCKLE, LINES, RADIUS, Car, DrawnCar, Frame, lines_of
-from validate.reference.effects.effect import PAIR, RACK, TRAVEL, Effect
+from validate.reference.effects.effect import PAIR, RACK, TIME, TRAVEL, Effect
 from validate.reference.effects.registry import named
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
@@ -116,7 +116,7 @@ def car_at(
     """The car at a pose, local.
 
     Args:
-        chassis: how it is moved, without rates.
+        chassis: how it is moved, without rates or with them as slopes, as the places have theirs.
         places: of the lines' points, relative to the chassis.
         knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
     """
@@ -135,25 +135,29 @@ def effects_at(
     """Those of some numbers that the car can have, in balls, rad, mm and %.
 
     Gradients are those of the pose y(q): C(y, w(q)) = 0 differentiated by one driven input q, which is the
-    velocity of a motion that drives it at unit rate.
+    velocity of a motion that drives it at unit rate; those by time are of the motion itself.
 
     Args:
-        known: as jets; their rates are not looked at.
+        known: as jets; their rates are looked at by numbers by time alone.
         inverse: of the Jacobian over the enclosure.
     """
-    unit, chassis, equations = as_ball(design.unit), known.chassis.still(), known.equations
+    unit, equations = as_ball(design.unit), known.equations
     cars: dict[tuple[str, str | None], Car] = {}
 
     def car(prefix: str, along: str | None) -> Car:
         if (prefix, along) not in cars:
             pose: Sequence[Scalar] = enclosure
-            if along is not None:
+            chassis, driven = known.chassis.still(), known
+            if along == TIME:
+                chassis = known.chassis.with_slopes()
+            elif along is not None:
                 # A slide is driven in the design's own lengths, in which the car's are.
                 driver = drivers(design, prefix)[along]
                 rate = unit if along == RACK else arb(1)
                 if "steers" in design.plain["inputs"][driver]:
                     rate /= travel_per_radian(design.plain)
                 driven = known.driven_at(driver, rate)
+            if along is not None:
                 rates = unknown_rates(enclosure, driven, inverse)
                 pose = [Dual(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
             drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)

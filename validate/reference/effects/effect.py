@@ -17,7 +17,7 @@ from validate.reference.car_data import (
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL
 from validate.reference.vectors import Scalar
 
-TRAVEL, RACK = "by_travel", "by_rack"
+TRAVEL, RACK, TIME = "by_travel", "by_rack", "by_time"
 PAIR = "pair"
 
 NEEDS = {
@@ -39,7 +39,18 @@ NEEDS = {
 }
 
 # A force is the rate of a spring, N/mm, times a length.
-POWERS = {"rad": 0, "mm": 1, "rad/mm": -1, "mm/mm": 0, "%": 0, "mm/rad": 1, "N": 1, "N/mm": 0}
+POWERS = {
+    "rad": 0,
+    "mm": 1,
+    "rad/mm": -1,
+    "mm/mm": 0,
+    "rad/s": 0,
+    "mm/s": 1,
+    "%": 0,
+    "mm/rad": 1,
+    "N": 1,
+    "N/mm": 0,
+}
 
 
 @dataclass(frozen=True)
@@ -52,9 +63,9 @@ class Effect:
         needs: what the car must have, of `NEEDS`; with `PAIR` each of the two parts.
         evaluate: the number of a `Car`, or with `PAIR` of the left and the right one, in their kind of scalar
             and their lengths; not a finite ball where it is undefined.
-        along: None, or `TRAVEL` or `RACK`: the numbers of the car are duals, whose slopes are by the one
-            driven input that is not the travel of a slide, in any unit, or by the one that is, in the car's
-            own lengths. The other inputs and the chassis rest.
+        along: None, or `TRAVEL`, `RACK` or `TIME`: the numbers of the car are duals, whose slopes are by the
+            one driven input that is not the travel of a slide, in any unit, or by the one that is, in the
+            car's own lengths, while the other inputs and the chassis rest; or by time, as all of them move.
     """
 
     name: str

@@ -21,7 +21,7 @@ from validate.reference.car_data import (
 )
 from validate.reference.dual import angle, slope_of, value_of
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car, contact_of
-from validate.reference.effects.effect import RACK, TRAVEL, Effect
+from validate.reference.effects.effect import RACK, TIME, TRAVEL, Effect
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
@@ -315,6 +315,17 @@ def _by_rack(effect: Effect) -> Effect:
     return _gradient(effect, RACK, lambda car: slope_of(effect.evaluate(car)))
 
 
+def _by_time(effect: Effect) -> Effect:
+    """N'."""
+    return replace(
+        effect,
+        name=f"{effect.name}_{TIME}",
+        unit=f"{effect.unit}/s",
+        evaluate=lambda car: slope_of(effect.evaluate(car)),
+        along=TIME,
+    )
+
+
 MOVING = (WHEEL, RADIUS, KNUCKLE, TRAVEL)
 _OF_THE_CAR = (*MOVING, AXLE, WHEELBASE, HEIGHT)
 
@@ -366,4 +377,6 @@ OF_MOTION = (
     ),
 )
 
-GRADIENTS = tuple(gradient(effect) for effect in OF_POSITIONS for gradient in (_by_travel, _by_rack))
+GRADIENTS = tuple(
+    gradient(effect) for effect in OF_POSITIONS for gradient in (_by_travel, _by_rack, _by_time)
+)

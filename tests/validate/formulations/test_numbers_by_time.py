@@ -1,0 +1,80 @@
+"""Numbers of the car by time: both models agree, so do the motion's own differences, and faults are seen."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import absolute.results
+from absolute.dual import Dual
+from pointcoord import Scene, simulate
+from pointcoord.bounds.enclosed_points import EnclosedPoses
+from pointcoord.effects.car_number import CarNumbers
+from pointcoord.effects.effect import Poses
+from pointcoord.effects.gradients import BY_TIME
+from pointcoord.effects.registry import EFFECTS
+from validate.comparison.compare import compare
+
+# A car that rolls, one with a rocker, and one that heaves.
+SCENES = ("axle-roll", "pushrod", "bounce-on-a-heaving-chassis")
+each_scene = pytest.mark.parametrize("name", SCENES)
+
+
+def by_time(name: str) -> Scene:
+    """A shipped scene with every number of its car by time, and the numbers themselves."""
+    scene = Scene.load(name)
+    effects = [e for e in scene.mechanism.effects if e.endswith(BY_TIME)]
+    return scene.model_copy(update={"effects": (*effects, *(EFFECTS[e].base for e in effects))})
+
+
+@each_scene
+def test_both_models_agree(name: str) -> None:
+    outcome = compare(by_time(name), "pointcoord", "absolute")
+    assert outcome.agreed
+    assert sum(row.name.endswith(BY_TIME) for row in outcome.rows) > 5
+
+
+@each_scene
+def test_they_are_what_the_numbers_change_by(name: str) -> None:
+    """Against differences over h: the next term is h^4 N^(5) / 30, and numbers of 1,000 mm round by 1e-13."""
+    motion, h = simulate(by_time(name)), 1e-3
+    times = np.linspace(motion.times[0] + 2 * h, motion.times[-1] - 2 * h, 17)
+    around = {k: motion.at(times + k * h).numbers for k in (-2, -1, 1, 2)}
+    here = motion.at(times).numbers
+    checked = 0
+    for quantity, of in (("angle_rate", "wheel"), ("dimension_rate", "dimension")):
+        for one, rate in here[quantity].items():
+            number = {k: numbers[of][one.removesuffix(f"_{BY_TIME}")] for k, numbers in around.items()}
+            slope = (8.0 * (number[1] - number[-1]) - (number[2] - number[-2])) / (12.0 * h)
+            assert np.allclose(rate, slope, rtol=1e-8, atol=1e-8 if of == "wheel" else 1e-6), one
+            checked += 1
+    assert checked > 5
+
+
+def _before_the_turns(patch: pytest.MonkeyPatch) -> None:
+    """Pointcoord's velocities are those in the chassis' frame."""
+    moving = CarNumbers._moving
+
+    def wrong(self: CarNumbers, corner: object, poses: Poses | EnclosedPoses, *rest: object) -> object:
+        return moving(self, corner, poses, poses.in_chassis, *rest[1:])  # type: ignore[arg-type]
+
+    patch.setattr(CarNumbers, "_moving", wrong)
+
+
+def _turns_that_stand_still(patch: pytest.MonkeyPatch) -> None:
+    """The absolute model's lines move as if the chassis did not turn on."""
+
+    def wrong(self: absolute.results.Motion, vector: np.ndarray) -> Dual:
+        seen = (self.turned(vector) * self.mechanism.drawing.size).T
+        return Dual(seen[..., 0], seen[..., 1:])
+
+    patch.setattr(absolute.results.Motion, "_seen", wrong)
+
+
+@pytest.mark.parametrize("plant", [_before_the_turns, _turns_that_stand_still])
+def test_a_chassis_whose_turning_is_forgotten_is_seen(
+    plant: Callable[[pytest.MonkeyPatch], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plant(monkeypatch)
+    outcome = compare(by_time("axle-roll"), "pointcoord", "absolute")
+    assert {row.quantity for row in outcome.disagreements} == {"angle_rate", "dimension_rate"}
