@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
 from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.loads import LOADS
+from pointcoord.effects.gradients import BY_TIME
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
@@ -68,7 +69,7 @@ OPTIONS = f"""\
 --rows N  how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}
 --grid INPUT=VALUES  a row for every combination of values instead, in mm or rad; may be given again
 --number NAME  a column, such as toe, rod_force.tie_rod or velocity.wheel_centre.z; may be given again
---all  every number of the car that there is
+--all  every number of the car that there is at a pose
 --convention NAME  what names mean: {", ".join(CONVENTIONS)}; the scene's if not given, iso if it has none
 {QUIET}"""
 
@@ -97,7 +98,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     if not options.number:
         read += [one for one in every if _is_force(one) and one.missing is None]
     if options.grid:
-        rates = [number for number in signs if number in paths and per_second(paths[number].path[0])]
+        rates = [name for name, number in zip(signs, read, strict=False) if per_second(number.path[0])]
         if rates:
             raise UsageError(f"--number {rates[0]}: poses of a grid have no rates; leave it out, or --grid")
         return _on_grid(scene, read, signs, options, target, console)
@@ -124,7 +125,8 @@ def meant_numbers(
 
     Args:
         named: names of these. name: of the scene, for messages.
-        first: without names, those that are taken of what the car has; of None every number by our names.
+        first: without names, those that are taken of what the car has; of None every number by our names that
+            does not hang on how fast the car moves.
     Raises:
         UsageError: the car has no such number, or none at all.
     """
@@ -134,7 +136,7 @@ def meant_numbers(
         chosen = _chosen_of([*counted], known, scene, name)
         return {number: counted.get(number, counted.get(number.rpartition(".")[2], 1)) for number in chosen}
     if first is None:
-        return dict.fromkeys(known, 1)
+        return dict.fromkeys((one for one in known if not one.endswith(BY_TIME)), 1)
     usual = [number for own in first for number in known if number.rpartition(".")[2] == own]
     return {number: sign for number, sign in map(convention.number, usual) if number in known}
 
