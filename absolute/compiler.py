@@ -445,10 +445,23 @@ class _Compiler:
     # Inputs
 
     def _over(
-        self, name: str, first: str, start: Array, second: str, end: Array, way: Array, **more: Any
+        self,
+        name: str,
+        first: str,
+        start: Array,
+        second: str,
+        end: Array,
+        way: Array,
+        beside: Array = NOTHING,
+        **more: Any,
     ) -> None:
-        """How far a place in a body is from one in another, along a direction of that."""
-        row = self._row(name, "offset", first, second, way, self._arms(first, start, second, end))
+        """How far a place in a body is from one in another, along a direction of that.
+
+        Args:
+            beside: what leads from these to the places meant, mm; a sum would be rounded as they are.
+        """
+        one, other = (arm + beside / self.size for arm in self._arms(first, start, second, end))
+        row = self._row(name, "offset", first, second, way, (one, other))
         value: dict[str, Any] = {"value": name, "factor": 1.0 / self.size}
         value["drawn"] = float(way @ (end - start)) + 0.0
         self.inputs.append(Input(row, **(value | more)))
@@ -480,7 +493,11 @@ class _Compiler:
             self._meet(f"place of {ground}", body, about, ground, about)
         way = self.directions[start]
         cosine = float(way @ (self.points[of] - self.points[about])) / length
-        law = {"factor": length / self.size, "cosine": True, "drawn": math.acos(min(max(cosine, -1.0), 1.0))}
+        law: dict[str, Any] = {
+            "factor": length / self.size,
+            "cosine": True,
+            "drawn": math.acos(min(max(cosine, -1.0), 1.0)),
+        }
         self._over(name, ground, self.points[about], body, self.points[of], way, **law)
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
@@ -505,7 +522,8 @@ class _Compiler:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
             start, end = self.points[through], self.points[point]
-            law = {"factor": per_unit / self.size, "drawn": float(way @ (end - start)) / per_unit + 0.0}
+            drawn = float(way @ (end - start)) / per_unit + 0.0
+            law: dict[str, Any] = {"factor": per_unit / self.size, "drawn": drawn}
             self._over(name, body, start, second, end, way, steers=per_unit, **law)
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
@@ -531,14 +549,14 @@ class _Compiler:
                 name,
             )
         level = level / np.linalg.norm(level)
-        lowest = self.points[centre] - self.radius * np.cross(level, axis)
+        place, down = self.points[centre], -self.radius * np.cross(level, axis)
         over = given.get("over", CHASSIS)
         _one_of(f"`over` of input {name!r}", (CHASSIS, "ground"), over)
         base = self.ground if over == "ground" else CHASSIS
         disc = self._add(f"disc of {name}", (inner, centre))
         self._hinge(f"axle of {name}", carrier, disc, inner, centre)
         self._across(f"level of {name}", base, disc, ((up, level),))
-        self._over(name, base, lowest, disc, lowest, up)
+        self._over(name, base, place, disc, place, up, beside=down)
 
     @cached_property
     def ground(self) -> str:

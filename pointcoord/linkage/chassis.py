@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
+from pointcoord.linkage.directions import axis_along
 from pointcoord.linkage.drives import within_a_turn
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
@@ -44,7 +45,7 @@ class ChassisMotion:
 
     Attributes:
         functions: of those that a scene drives.
-        lacks: what a direction that is a product of the user's lacks by rounding.
+        lacks: what a direction that is made of the user's lacks by rounding.
         centres: of those that turn the car, in order, the place about which they do, (..., 3), mm from the
             mechanism's origin.
     """
@@ -59,7 +60,7 @@ class ChassisMotion:
         """Those of a mechanism's inputs that move its chassis."""
         topology, drawing = mechanism.topology, mechanism.drawing
         turns = topology.chassis_turns
-        along = {**topology.chassis_motion, **{name: line[0] for name, line in turns.items()}}
+        along = {**topology.chassis_motion, **{name: axis_along(line[0]) for name, line in turns.items()}}
         unit = mechanism.unit[..., None]
         return cls(
             {name: function for name, function in functions.items() if name in along},
@@ -189,7 +190,7 @@ class ChassisMotion:
         return points
 
     def _along(self, name: str) -> Enclosed:
-        """A direction, which is what is written or the product of two such."""
+        """A direction: what is written, the product of two such, or either at the length 1."""
         if name in self.lacks:
             return Enclosed.of(self.directions[name], self.lacks[name], PAIRS, PAIRS)
         return Enclosed.of(self.directions[name])

@@ -5,18 +5,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.double_double import Pair, pair_cross
+from pointcoord.numerics.double_double import Pair, pair_cross, pair_dot, pair_quotient, pair_root
 
 Array = NDArray[np.float64]
 
 DIRECTIONS = ("up", "right", "down", "left", "forward", "rearward")
 
 
+def axis_along(direction: str) -> str:
+    """What the axis of a turn about a direction is called, which has the length 1 to twice the precision.
+
+    Vectors of doubles have it to a rounding only, and would change lengths as they turn.
+    """
+    return f"axis {direction}"
+
+
 def car_directions(up: Array, right: Array) -> dict[str, Pair]:
-    """Each direction as a high and a low part, shape (..., 3); forward is up x right, rounded twice over."""
+    """Each direction as a high and a low part, shape (..., 3); forward is up x right, rounded twice over.
+
+    With the axis along each (see `axis_along`).
+    """
     none = np.zeros_like(up), np.zeros_like(right)
     high, low = pair_cross((up, none[0]), (right, none[1]))
-    return {
+    found = {
         "up": (up, none[0]),
         "right": (right, none[1]),
         "down": (-up, none[0]),
@@ -24,3 +35,9 @@ def car_directions(up: Array, right: Array) -> dict[str, Pair]:
         "forward": (high, low),
         "rearward": (-high, -low),
     }
+    return found | {axis_along(name): _unit(direction) for name, direction in found.items()}
+
+
+def _unit(vector: Pair) -> Pair:
+    high, low = pair_root(pair_dot(vector, vector))
+    return pair_quotient(vector, (high[..., None], low[..., None]))

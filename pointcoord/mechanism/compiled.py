@@ -23,7 +23,7 @@ from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBo
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
-from pointcoord.linkage.directions import DIRECTIONS, car_directions
+from pointcoord.linkage.directions import DIRECTIONS, axis_along, car_directions
 from pointcoord.linkage.drives import Drive, Travel, TurnedBy
 from pointcoord.linkage.topology import Sliding, Topology
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS, Ends, Moves, Turn, Turns
@@ -234,7 +234,7 @@ class _Compiler:
         roles |= {role: triangles[body] for role, body in structure.knuckles.items()}
         along = {name: one.along for name, one in inputs if isinstance(one, Moves)}
         turns = {name: (one.along, one.about) for name, one in inputs if isinstance(one, Turns)}
-        directions = [*along.values(), *(line[0] for line in turns.values())]
+        directions = [*along.values(), *(axis_along(line[0]) for line in turns.values())]
         directions += [way for name in self.driven for way in structure.inputs[name].directions]
         directions += [slide.along for slide in structure.slides.values() if slide.along in DIRECTIONS]
         directions += [head for edges in self.choices.edges.values() for head, tail in edges if not tail]
@@ -313,7 +313,7 @@ class _Compiler:
                         (name, one.about),
                     )
                 pair = f"cosine of {name}", f"sine of {name}"
-                turns.append(TurnedBack(name, before, one.along, one.about, *pair))
+                turns.append(TurnedBack(name, before, axis_along(one.along), one.about, *pair))
                 made += [TurnedBy(place, name, quarter) for quarter, place in enumerate(pair)]
                 before = turns[-1].name
             elif isinstance(one, Moves):

@@ -48,7 +48,8 @@ def content_of(
         return content
     # Gradients follow from the rest, and take as long; trees of joints have no jerks.
     had = (EFFECTS[name] for name in Scene.from_mapping(content).mechanism.effects)
-    return content | {"effects": [effect.name for effect in had if not effect.way and effect.derivative <= 2]}
+    plain = [one.name for one in had if not (one.way or one.base) and one.derivative <= 2]
+    return content | {"effects": plain}
 
 
 def _input(law: Law) -> dict[str, Any]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
 from pointcoord.effects.conventions import CONVENTIONS
-from pointcoord.effects.loads import LOADS
 from pointcoord.effects.gradients import BY_TIME
+from pointcoord.effects.loads import LOADS
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
@@ -43,7 +43,18 @@ Array = NDArray[np.float64]
 ENDINGS = (".csv", ".md")
 ROWS = 21
 NAMED = 12  # numbers, in a message
-DIGITS = {"deg": 4, "mm": 3, "deg/mm": 6, "mm/mm": 5, "%": 2, "mm/deg": 5, "N": 2, "N/mm": 4}
+DIGITS = {
+    "deg": 4,
+    "mm": 3,
+    "deg/mm": 6,
+    "mm/mm": 5,
+    "deg/s": 3,
+    "mm/s": 2,
+    "%": 2,
+    "mm/deg": 5,
+    "N": 2,
+    "N/mm": 4,
+}
 OTHERWISE = 4
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
 

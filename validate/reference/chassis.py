@@ -10,7 +10,7 @@ from typing import Any
 from validate.reference.directions import directed
 from validate.reference.dual import Dual
 from validate.reference.jet import Jet, part_of
-from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, times
+from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, root, times
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,10 @@ class ChassisMotion:
                 part = times(each(exact, directed(plain, spec["along"])), driven[name] * exact(1 / unit))
                 rise = part if rise is None else plus(rise, part)
             elif "turns" in spec:
-                about, along = table[spec["about"]], directed(plain, spec["along"])
-                turns.append(Turn(each(exact, about), each(exact, along), *driven[name].sin_cos()))
+                about, along = each(exact, table[spec["about"]]), directed(plain, spec["along"])
+                # A turn keeps lengths only about a vector whose length is exactly 1.
+                unit_vector = times(each(exact, along), 1 / root(exact(dot(along, along))))
+                turns.append(Turn(about, unit_vector, *driven[name].sin_cos()))
         return cls(tuple(turns), rise)
 
     def still(self) -> ChassisMotion:

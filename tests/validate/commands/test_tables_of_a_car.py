@@ -162,7 +162,7 @@ def test_a_number_of_both_wheels_is_asked_for_by_its_own_name(
     status, _, err = printed(capsys, "table", "axle-steer", "--number", "tooe")
     assert status == 2
     assert "no number of a car is called tooe" in err
-    assert "and 126 more (--all shows every one)" in err
+    assert "and 160 more (--all shows every one)" in err
 
 
 def loaded(folder: Path) -> Path:
