@@ -141,14 +141,14 @@ def test_the_screw_axis_is_that_of_a_small_turn_of_the_knuckle() -> None:
 
 
 def test_a_wheel_far_from_the_origin_is_driven_as_one_near_it() -> None:
-    """Drawn on a grid that both places hold exactly; far out a place is rounded by 2^-15 mm."""
+    """Drawn on a grid that both places hold exactly; far out a place is rounded by 2^-23 mm."""
     contact = {"contact": GROUND["contact"]}
     t = np.linspace(0.0, 1.0, 5)
     laws = {
         n: np.stack([a * t, a + 0.0 * t, 0.0 * t], axis=-1) for n, a in (("rack", 12.0), ("wheel", -40.0))
     }
     velocities = []
-    for far in (0.0, 2.0**38):
+    for far in (0.0, 2.0**30):
         described = wishbone({"wheel": contact})
         leaning = {"wheel_axis_inner": np.add(described["points"]["wheel_axis_inner"], (7.0, 0.0, 13.0))}
         places = {n: np.round(np.array(p) * 2.0**10) for n, p in (described["points"] | leaning).items()}
@@ -156,5 +156,5 @@ def test_a_wheel_far_from_the_origin_is_driven_as_one_near_it() -> None:
         model = absolute.compile({**described, "points": points})
         velocities.append(absolute.solve(model, laws).velocity)
     for name, near in velocities[0].items():
-        # No point is faster than 100 mm/s; condition numbers as above.
-        assert np.abs(near - velocities[1][name]).max() < 1e3 * EPS * 100.0, name
+        # No point is faster than 100 mm/s, and no condition number above 100.
+        assert np.abs(near - velocities[1][name]).max() < 100.0 * EPS * 100.0, name
