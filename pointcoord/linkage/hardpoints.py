@@ -15,9 +15,12 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.double_double import PAIRS
 from pointcoord.numerics.linear import null_directions
+from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 AXES = ("up", "right")
+# Of a coordinate or a squared length, in the size of the car: of two places, each to half of its last digit.
+DRAWN_TO = 4.0 * UNIT_ROUNDOFF
 
 
 def build_mechanism(
@@ -66,6 +69,10 @@ def drawn_mechanism(
     vectors |= {name: high for name, (high, _) in along.items()}
     drawing = Drawing(vectors, unit, {name: low for name, (_, low) in along.items() if low.any()})
     drawn, lacks, doubt = _drawn(topology, drawing)
+    if topology.left_out:
+        # Rows that are left out follow from the others to the rounding of the drawing only.
+        far = 1.0 + np.abs(origin).max(axis=-1) / unit
+        doubt[..., topology.layout.one + 1 :] += DRAWN_TO * far[..., None]
     return Mechanism(
         topology=topology,
         origin=origin,

@@ -161,8 +161,9 @@ class Mechanism:
     def known_data(self, y: Array, laws: Mapping[str, Array] | None = None) -> tuple[Array, Array]:
         """What the known coordinates lack of what the user's numbers mean, and what stays uncertain.
 
-        Drawn points and directions are exact. What a length or another constant of the drawing lacks was
-        kept when it was drawn; of a drive its kind knows (see `drives`).
+        Drawn points and directions are exact, but of a mechanism some of whose rows are left out. What a
+        length or another constant of the drawing lacks was kept when it was drawn; of a drive its kind knows
+        (see `drives`).
 
         Args:
             laws: how far the value of each input may be off, shape (...,), rad or mm; nothing unless given.

@@ -47,21 +47,24 @@ def _caster(car: Car) -> Scalar:
     return angle(-dot(car.steering.along, car.forward), dot(car.steering.along, car.up))
 
 
-def _arcsine(sine: Scalar, unit_squared: Scalar) -> Scalar:
-    """asin(s / l) by atan2(s, sqrt(l^2 - s^2))."""
-    return angle(sine, root(unit_squared - sine * sine))
+def _arcsine(sine: Scalar, one: Scalar, other: Scalar) -> Scalar:
+    """asin of a component of a unit vector, from it and the other two of a vector of any length.
+
+    They are all along the car's axes, which are rounded: l^2 - s^2 would be of other axes than s is.
+    """
+    return angle(sine, root(one * one + other * other))
 
 
 def _camber_by_arcsine(car: Car) -> Scalar:
     """-asin(n . up), n = a / |a| (Adams/Car)."""
     a = car.wheel.along
-    return _arcsine(-dot(a, car.up), dot(a, a))
+    return _arcsine(-dot(a, car.up), dot(a, car.outboard), dot(a, car.forward))
 
 
 def _toe_by_arcsine(car: Car) -> Scalar:
     """asin(n . forward), n = a / |a| (OptimumK)."""
     a = car.wheel.along
-    return _arcsine(dot(a, car.forward), dot(a, a))
+    return _arcsine(dot(a, car.forward), dot(a, car.outboard), dot(a, car.up))
 
 
 def steer_angle(car: Car) -> Scalar:
