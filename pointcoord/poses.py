@@ -151,7 +151,7 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
     laws = {name: [value] for name, value in flat.items() if name in chassis.directions}
     readout.complete(laws, readout.by_derivative(places), rows, found.y)
     rows[:, ~np.isfinite(found.bound)] = np.nan
-    rounded, spread = _rounded(chassis, laws, farthest)
+    rounded, spread = _rounded(chassis, laws, farthest, float(np.abs(mechanism.origin).max()))
     return SolvedPoses(
         readout.named(np.zeros(len(found.bound)), rows).shaped(shape).numbers,
         (spread * found.bound + rounded).reshape(shape),
@@ -253,15 +253,17 @@ def _by_paths(
     return {int(some[place]): error for place, error in stopped.items()}
 
 
-def _rounded(chassis: ChassisMotion, laws: Laws, farthest: Array) -> tuple[Array, float]:
+def _rounded(chassis: ChassisMotion, laws: Laws, farthest: Array, origin: float) -> tuple[Array, float]:
     """What turning points with the chassis and adding to them rounds, (N,), mm; and how many times as far
     turning makes a coordinate be off.
 
     Args:
         farthest: distance of the farthest point from the mechanism's origin, (N,), mm.
+        origin: its largest coordinate, mm.
     """
-    shift = sum(chassis.shifts(laws), np.zeros(3))
-    rounded = 2.0 * EPS * np.abs(shift).max(axis=-1)
+    shift = np.abs(sum(chassis.shifts(laws), np.zeros(3))).max(axis=-1)
+    # The displacement is made of products and added to the origin, and then to a place.
+    rounded = np.where(shift > 0.0, 2.0 * EPS * shift + EPS * (farthest + origin), 0.0)
     centres = [chassis.centres[name] for name in laws if name in chassis.centres]
     if not centres:
         return rounded, 1.0

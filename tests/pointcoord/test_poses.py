@@ -1,5 +1,6 @@
 """Unrelated poses are each the pose that the drawing leads to, and their bounds hold."""
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from pointcoord import AssemblyError, InputOutOfRange, Scene, UnknownName, poses, simulate, solve_poses
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import assemble
+from validate.adjudication.reference_solution import reference_instant
 
 CARS = {"bounce": 1.6, "off-axis-strut": 1.6, "double-wishbone": 1.55}
 
@@ -176,3 +178,18 @@ def test_the_bound_of_a_pose_holds_where_a_patch_is_coarse_and_is_not_far_from_t
         off = np.max([np.abs(coarse.position[p] - finest.position[p]).max(axis=-1) for p in points], axis=0)
         assert (off <= bound + rest).all()
         assert (off / bound).max() > 0.01
+
+
+def test_bounds_cover_the_rounding_of_what_the_chassis_adds() -> None:
+    """A small heave and a tight pose: adding the first to the second is most of what is off."""
+    scene, rng = Scene.load("bounce-on-a-heaving-chassis"), np.random.default_rng(4)
+    turns, rises = rng.uniform(1.5, 1.7, 8), rng.uniform(-1.0, 1.0, 8)
+    found = solve_poses(scene, {"arm_angle": turns, "rack": np.zeros(8), "heave": rises})
+    carried = scene.mechanism.topology.carried
+    for k, (turn, rise) in enumerate(zip(turns.tolist(), rises.tolist(), strict=True)):
+        still = {"arm_angle": (turn, 0.0, 0.0), "rack": (0.0,) * 3, "heave": (rise, 0.0, 0.0)}
+        exact = reference_instant(scene, still).position
+        for name, place in found.position.items():
+            bound = Fraction(float((found.carried_bound if name in carried else found.bound)[k]))
+            errors = [abs(Fraction(float(x)) - true) for x, true in zip(place[k], exact[name], strict=True)]
+            assert max(errors) <= bound, name
