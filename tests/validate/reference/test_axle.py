@@ -142,6 +142,14 @@ def test_parallel_wheels_have_nothing_of_ackermann_and_steer_the_outer_one_too_m
     assert abs(found["ackermann_error"] - too_much) < WITHIN
 
 
+@pytest.mark.parametrize("angle", [mpf("1.8"), mpf("-1.8")])
+def test_wheels_beyond_a_right_angle_turn_on_a_radius_too(angle: mpf) -> None:
+    """Of the definition's magnitude; acot is between 0 and pi where the wheels are beyond pi / 2."""
+    found = steered(angle, angle).effects
+    assert abs(found["turning_radius"] - abs(2600 * mpmath.cot(angle))) < WITHIN * 10
+    assert found["turning_radius"] > 0
+
+
 def test_the_axle_of_lotus_turns_on_its_printed_radius_and_with_nearly_its_ackermann() -> None:
     mirrored = {name: (x, -y, z) for name, (x, y, z) in LOTUS.items()}
     driven, car = ["contact_travel"], {"wheelbase": 1600}

@@ -16,7 +16,7 @@ from validate.reference.dual import Dual, angle, slope_of, value_of
 from validate.reference.effects.car import RADIUS, WHEEL, Car
 from validate.reference.effects.effect import PAIR, TRAVEL, Effect
 from validate.reference.effects.wheel import MOVING, steer_angle, velocity_of_contact
-from validate.reference.vectors import Scalar, Vector, dot, each, minus
+from validate.reference.vectors import Scalar, Vector, dot, each, minus, root
 
 
 def _track(left: Car, right: Car) -> Scalar:
@@ -68,7 +68,9 @@ def _cotangent(car: Car) -> Scalar:
 def _turning_radius(left: Car, right: Car) -> Scalar:
     """L |cot d left + cot d right| / 2."""
     twice = left.drawn.data[WHEELBASE] * (_cotangent(left) + _cotangent(right))
-    return _by_side(left, right, twice / 2, -twice / 2)
+    # Wheels that are steered by more than a right angle have negative cotangents to the left.
+    size = root(twice * twice) / 2
+    return _by_side(left, right, size, size)
 
 
 def _drawn_track(left: Car, right: Car) -> Scalar:
