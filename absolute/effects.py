@@ -321,10 +321,10 @@ def turning_radius(left: Motion, right: Motion) -> Array:
 
 
 def ackermann(left: Motion, right: Motion) -> Array:
-    """100 (d_i - d_o) / (atan(L / (R - t/2)) - atan(L / (R + t/2))), %, R the turning radius (Lotus)."""
+    """100 (d_i - d_o) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)), %, R the turning radius (Lotus)."""
     inner, outer, wheelbase, width = _steered(left, right)
     radius = turning_radius(left, right)
-    wanted = (np.arctan(_ratio(wheelbase, radius + half)) for half in (-width / 2.0, width / 2.0))
+    wanted = (np.arctan2(wheelbase, radius + half) for half in (-width / 2.0, width / 2.0))
     return np.asarray(100.0 * _ratio(inner - outer, np.subtract(*wanted)))
 
 

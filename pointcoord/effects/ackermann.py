@@ -3,10 +3,11 @@ r"""How the two wheels of an axle are steered against each other.
 With L the wheelbase, t the track as drawn, d_l and d_r the steer angles, positive to the left, and
 R = L (cot d_l + cot d_r) / 2, whose size is the turning radius,
 
-    Ackermann = 100 (d_l - d_r) / (atan(L / (R - t/2)) - atan(L / (R + t/2))) %        (Lotus),
+    Ackermann = 100 (d_l - d_r) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)) %        (Lotus),
 
 where the inner wheel is the left one if steered to the left; to the right both differences are those of the
-other two magnitudes, and the same. The divisor is atan(L t / (R^2 - t^2/4 + L^2)), in which nothing cancels.
+other two magnitudes, and the same. The divisor is arccot((R^2 - t^2/4 + L^2) / (L t)), in which nothing
+cancels; arccot is between 0 and pi, as a wheel's angle is that rolls about a point nearer than half a track.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from pointcoord.effects.arithmetic import angle, arctangent, chosen, multiple, positive, ratio
+from pointcoord.effects.arithmetic import angle, chosen, multiple, positive, ratio
 from pointcoord.effects.car_number import DIMENSION, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
@@ -38,7 +39,8 @@ def ackermann(left: Corner[Any], right: Corner[Any]) -> Any:
     """The difference of the steer angles, of that which lets both wheels turn about one point; %."""
     radius, wheelbase, half = _radius(left, right), left.car["wheelbase"], multiple(0.5, _track(left, right))
     below = radius * radius - half * half + wheelbase * wheelbase
-    ideal = arctangent(ratio(wheelbase * (half + half), below))
+    # Of as many poses as there are, though the drawing is one.
+    ideal = angle(multiple(0.0, below) + wheelbase * (half + half), below)
     return multiple(PERCENT, ratio(STEER.formula(left) - STEER.formula(right), ideal))
 
 

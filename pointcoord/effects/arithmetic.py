@@ -102,11 +102,6 @@ def reciprocal(x: P) -> P:
     return enclosure.quotient(Enclosed.of(1.0), x) if isinstance(x, Enclosed) else np.asarray(1.0 / x)
 
 
-def arctangent(x: P) -> P:
-    """atan(x), rad."""
-    return enclosure.angle(x, Enclosed.of(1.0)) if isinstance(x, Enclosed) else np.asarray(np.arctan(x))
-
-
 def positive(x: P) -> NDArray[np.bool_]:
     """Where a number is above 0."""
     return np.asarray((x.middle if isinstance(x, Enclosed) else x) > 0.0)

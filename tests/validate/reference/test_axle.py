@@ -119,7 +119,7 @@ def steered(left: object, right: object) -> Instant:
     )
 
 
-@pytest.mark.parametrize("inner", [mpf("0.2"), mpf("1.1")])
+@pytest.mark.parametrize("inner", [mpf("0.2"), mpf("1.1"), mpf("1.7")])
 @pytest.mark.parametrize("way", [1, -1])
 def test_wheels_that_roll_about_one_point_have_no_error_and_all_of_ackermann(inner: mpf, way: int) -> None:
     # The left wheel is the inner one to the left.

@@ -78,7 +78,7 @@ def _drawn_track(left: Car, right: Car) -> Scalar:
 
 
 def _ackermann(left: Car, right: Car) -> Scalar:
-    """100 (d inner - d outer) / (atan(L / (R - t/2)) - atan(L / (R + t/2))), R the turning radius.
+    """100 (d inner - d outer) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)), R the turning radius.
 
     Of magnitudes; their difference is that of the angles, d left - d right, whichever wheel is the inner one.
     """
@@ -86,8 +86,7 @@ def _ackermann(left: Car, right: Car) -> Scalar:
     half = _drawn_track(left, right) / 2
 
     def steered(at: Scalar) -> Scalar:
-        tangent = wheelbase / at
-        return angle(tangent, tangent * 0 + 1)
+        return angle(at * 0 + wheelbase, at)
 
     return 100 * (steer_angle(left) - steer_angle(right)) / (steered(radius - half) - steered(radius + half))
 
