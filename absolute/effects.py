@@ -301,7 +301,7 @@ def _by(number: Number, by: str) -> Callable[[Motion], Array]:
 
 def track(left: Motion, right: Motion) -> Array:
     """Distance of both contact points along right."""
-    return np.asarray(_contact_place(left)[OUTBOARD].value + _contact_place(right)[OUTBOARD].value)
+    return np.asarray(_apart(left, right)[0])
 
 
 def axle_roll_centre_offset(left: Motion, right: Motion) -> Array:
@@ -351,12 +351,27 @@ def _axle_roll_centre(left: Motion, right: Motion) -> tuple[Array, Array]:
     With c, d the contact points and v, w their velocities there, it is c + x with v . x = 0 and
     w . x = w . (d - c). Not a number where the normals are parallel or a velocity is zero.
     """
-    (c, v), (d, w) = _front_view(left), _front_view(right)
-    turn, apart = v[0] * w[1] - v[1] * w[0], d - c
+    (c, v), (_, w) = _front_view(left), _front_view(right)
+    turn, apart = v[0] * w[1] - v[1] * w[0], _apart(left, right)
     speeds = np.hypot(*v) * np.hypot(*w)
     turn = np.where(np.abs(turn) <= ROUNDING * speeds, 0.0, turn)
     x = _ratio((w * apart).sum(axis=0), turn) * np.array([-v[1], v[0]])
     return c[0] + x[0], x[1] - x[0] * apart[1] / apart[0]
+
+
+def _apart(left: Motion, right: Motion) -> Array:
+    """From the left contact point to the right one along right and up, (2, N).
+
+    The drawn places are subtracted first: far out, each of the others would be rounded as they are.
+    """
+    drawn = _drawn_apart(left, right)
+    one, other = (of.components(of.moved(_centre(of)) + contact(of)).value for of in (left, right))
+    return np.array([drawn[OUTBOARD] + one[OUTBOARD] + other[OUTBOARD], drawn[UP] - one[UP] + other[UP]])
+
+
+def _drawn_apart(left: Motion, right: Motion) -> Array:
+    """From the left wheel centre to the right one as drawn, by the components of the right one, (3, 1)."""
+    return right.components(right.drawn(_centre(right)) - left.drawn(_centre(left))).value
 
 
 def _front_view(motion: Motion) -> tuple[Array, Array]:
@@ -375,8 +390,10 @@ def _steered(left: Motion, right: Motion) -> tuple[Array, Array, float, Array]:
     one, other = (steer_angle(of).value for of in (left, right))
     sizes = np.where(one * other > 0.0, np.abs((one, other)), np.nan)
     inner, outer = np.where(one > 0.0, sizes, sizes[::-1])
-    drawn = (of.components(of.drawn(_centre(of)) + contact(of, drawn=True)) for of in (left, right))
-    return inner, outer, wheelbase, np.asarray(sum(place[OUTBOARD].value for place in drawn))
+    width = _drawn_apart(left, right)[OUTBOARD]
+    for wheel in (left, right):
+        width = width + wheel.components(contact(wheel, drawn=True))[OUTBOARD].value
+    return inner, outer, wheelbase, np.asarray(width)
 
 
 def _cot(angle: Array) -> Array:

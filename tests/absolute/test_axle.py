@@ -230,3 +230,21 @@ def test_of_two_parts_on_one_slide_each_has_its_derivatives() -> None:
     # The drawing is symmetrical: so are the wheels' turns to the left.
     assert abs(left - right) <= off(solution)[0] / 10.0
     assert abs(left) > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("upright", "angles", "names"),
+    [
+        (False, turns(0.11, 0.07), ["track", "axle_roll_centre_height"]),
+        (True, turns(0.3, 0.25), ["ackermann"]),
+    ],
+)
+def test_what_both_wheels_make_costs_no_digit_far_from_the_origin(
+    upright: bool, angles: dict[str, float], names: list[str]
+) -> None:
+    """Drawn 2^30 mm out to the right, where a place is rounded by 2^-23 mm; integers are not."""
+    points = swing_axle(upright)["points"]
+    far = {name: np.add(place, (0.0, 2.0**30, 0.0)) for name, place in points.items()}
+    near, there = (solved(swing_axle(upright, points=drawn), names, **angles) for drawn in (points, far))
+    for name in names:
+        assert abs(near[name] - there[name]) < OFF, name

@@ -216,10 +216,16 @@ def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str
         sizes = [np.abs(number).reshape(count, -1).max(axis=-1) for number in numbers]
         rounded = ROUNDINGS * EPS * condition * np.max(sizes, axis=0, initial=0.0)
         found[quantity] = {
-            n: with_it[quantity][n] - without[quantity][n] + rounded.reshape(-1, *(1,) * (number.ndim - 1))
+            n: _more(with_it[quantity][n], without[quantity][n])
+            + rounded.reshape(-1, *(1,) * (number.ndim - 1))
             for n, number in zip(names, numbers, strict=True)
         }
     return found
+
+
+def _more(one: Array, other: Array) -> Array:
+    """One less the other; of what is not bounded nothing is known."""
+    return np.subtract(one, other, out=np.full_like(one, NOTHING), where=np.isfinite(one))
 
 
 @dataclass(frozen=True)
