@@ -12,7 +12,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.errors import SceneError
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import Scene
-from validate.formulations.asked_numbers import asked_numbers, per_second
+from validate.formulations.asked_numbers import asked_numbers, is_force, per_second
 from validate.formulations.input_rates import laws_of
 from validate.formulations.protocol import AccuracyError, FormulationError, Numbers, Solution
 from validate.formulations.stated_accuracy import accuracy_at, places_in
@@ -114,11 +114,12 @@ class Problem:
 def asked_of(found: Numbers, scene: Scene) -> Numbers:
     """What a scene asks for, of all that was found.
 
-    Numbers of the car of a quantity that is not found by its name are taken from `OF_CAR`.
+    Numbers of the car of a quantity that is not found by its name are taken from `OF_CAR`, but for forces: a
+    rod may be called as a number of the car is.
     """
     asked: dict[str, dict[str, Array]] = {}
     for quantity, names in asked_numbers(scene).items():
-        of_car = QUANTITIES[quantity].of == "car" and quantity not in found
+        of_car = QUANTITIES[quantity].of == "car" and quantity not in found and not is_force(quantity)
         numbers = found.get(OF_CAR if of_car else quantity)
         if numbers is not None:
             asked[quantity] = {name: numbers[name] for name in names if name in numbers}

@@ -161,3 +161,15 @@ def test_a_program_that_is_not_installed_is_told_with_its_package_and_extra(
         formulation(who)
     assert f"needs the package {who!r}, which is not installed" in str(caught.value)
     assert "pip install 'pointcoord[peers]'" in str(caught.value)
+
+
+def test_a_rod_that_is_called_as_an_angle_has_no_force_from_a_tree() -> None:
+    """A five-link has a rod `toe`; a tree of joints gives the angle of that name, and no forces."""
+    content = Scene.load("five-link").model_dump(exclude_none=True)
+    content["mechanism"] |= {"loads": {"": {"force": [0.0, 0.0, 4000.0]}}, "wheel_radius": 300.0}
+    content["effects"] = ["toe", "loads"]
+    scene = Scene.from_mapping(content)
+    given = formulation("relative").solve(scene).numbers
+    assert "toe" in given["wheel"]
+    assert "rod_force" not in given
+    assert "toe" in formulation("pointcoord").solve(scene).numbers["rod_force"]
