@@ -34,40 +34,24 @@ RATES = {
 
 def gradients(base: CarNumbers, way: str) -> CarNumbers:
     """What the numbers of an effect change by along a way."""
-    if way == BY_TIME:
-        gives, make = f"what these change by per second: {base.gives}", _rate
-    else:
-        gives, make = f"what these change by per mm {WAYS[way]}: {base.gives}", partial(_gradient, way=way)
-    numbers = map(make, base.numbers)
-    return CarNumbers.of(
-        f"{base.name}_{way}", gives, *numbers, base=base.name, derivative=int(way == BY_TIME)
-    )
-
-
-def _rate(number: CarNumber) -> Number:
-    return Number(
-        name=f"{number.name}_{BY_TIME}",
-        words=f"{number.words} per second",
-        sign=f"where it grows {WAYS[BY_TIME]}",
-        formula=partial(_slope, number),
-        roles=number.roles,
-        needs_radius=number.needs_radius,
-        quantity=RATES[number.quantity.unit],
-        power=number.quantity.unit == "mm",
-    )
+    timed = way == BY_TIME
+    gives = f"what these change by per {'second' if timed else f'mm {WAYS[way]}'}: {base.gives}"
+    numbers = [_gradient(number, way) for number in base.numbers]
+    return CarNumbers.of(f"{base.name}_{way}", gives, *numbers, base=base.name, derivative=int(timed))
 
 
 def _gradient(number: CarNumber, way: str) -> Number:
-    length, travels = number.quantity.unit == "mm", way == BY_TRAVEL
+    length, timed, travels = number.quantity.unit == "mm", way == BY_TIME, way == BY_TRAVEL
+    per = "second" if timed else f"mm {way.replace('_', ' ')}"
     return Number(
         name=f"{number.name}_{way}",
-        words=f"{number.words} per mm {way.replace('_', ' ')}",
+        words=f"{number.words} per {per}",
         sign=f"where it grows {WAYS[way]}",
         formula=partial(_by_travel if travels else _slope, number),
         roles=tuple(dict.fromkeys((*number.roles, *(TRAVEL.roles if travels else ())))),
         needs_radius=number.needs_radius,
-        quantity=QUANTITIES[number.quantity.unit],
-        way=way,
+        quantity=(RATES if timed else QUANTITIES)[number.quantity.unit],
+        way="" if timed else way,
         power=length - travels,
     )
 

@@ -374,7 +374,14 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "instant_centres": _instant_centres,
     "anti_features": _anti_features,
 }
-DIFFERENTIATED = ("wheel_angles", "wheel_travel", "steering_axis", "damper")
+DIFFERENTIATED = (
+    "wheel_angles",
+    "steer_angle",
+    "angles_by_arcsine",
+    "wheel_travel",
+    "steering_axis",
+    "damper",
+)
 BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in DIFFERENTIATED}
 BY_HAND |= {f"{name}_by_rack": _by_rack(name) for name in DIFFERENTIATED}
 BY_HAND |= {f"{name}_by_time": _by_time(name) for name in DIFFERENTIATED}

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
 from pointcoord.effects.conventions import CONVENTIONS
-from pointcoord.effects.gradients import BY_TIME
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
@@ -147,7 +146,8 @@ def meant_numbers(
         chosen = _chosen_of([*counted], known, scene, name)
         return {number: counted.get(number, counted.get(number.rpartition(".")[2], 1)) for number in chosen}
     if first is None:
-        return dict.fromkeys((one for one in known if not one.endswith(BY_TIME)), 1)
+        called = {one: number_called(one) for one in known}
+        return {one: 1 for one, number in called.items() if number and not per_second(number.quantity.name)}
     usual = [number for own in first for number in known if number.rpartition(".")[2] == own]
     return {number: sign for number, sign in map(convention.number, usual) if number in known}
 

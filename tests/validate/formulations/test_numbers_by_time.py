@@ -1,6 +1,7 @@
 """Numbers of the car by time: both models agree, so do the motion's own differences, and faults are seen."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,10 +11,14 @@ from absolute.dual import Dual
 from pointcoord import Scene, simulate
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.effects.car_number import CarNumbers
+from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.gradients import BY_TIME
 from pointcoord.effects.registry import EFFECTS
-from validate.comparison.compare import compare
+from validate.comparison.compare import compare, compare_solutions
+from validate.formulations.registry import formulation
+
+Zero = Callable[[Any], Any]
 
 # A car that rolls, one with a rocker, and one that heaves.
 SCENES = ("axle-roll", "pushrod", "bounce-on-a-heaving-chassis")
@@ -51,12 +56,27 @@ def test_they_are_what_the_numbers_change_by(name: str) -> None:
     assert checked > 5
 
 
+NEAR = 1e-10  # relative: a million roundings
+
+
+@each_scene
+def test_a_rate_that_is_a_little_off_is_seen(name: str) -> None:
+    scene = by_time(name)
+    ours, theirs = (formulation(who).solve(scene) for who in ("pointcoord", "absolute"))
+    for quantity in ("angle_rate", "dimension_rate"):
+        wrong = {n: array * (1.0 + NEAR) for n, array in theirs.numbers[quantity].items()}
+        outcome = compare_solutions(scene, ours, theirs.with_numbers({quantity: wrong}), name)
+        assert {row.name for row in outcome.disagreements} == {n for n in wrong if wrong[n].any()}
+
+
 def _before_the_turns(patch: pytest.MonkeyPatch) -> None:
     """Pointcoord's velocities are those in the chassis' frame."""
     moving = CarNumbers._moving
 
-    def wrong(self: CarNumbers, corner: object, poses: Poses | EnclosedPoses, *rest: object) -> object:
-        return moving(self, corner, poses, poses.in_chassis, *rest[1:])  # type: ignore[arg-type]
+    def wrong(
+        self: CarNumbers, corner: Corner[Any], poses: Poses | EnclosedPoses, states: object, zero: Zero
+    ) -> Corner[Any]:
+        return moving(self, corner, poses, poses.in_chassis, zero)
 
     patch.setattr(CarNumbers, "_moving", wrong)
 

@@ -14,7 +14,7 @@ from validate import check
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
 from validate.formulations.protocol import NOTHING, Solution
-from validate.formulations.stated_accuracy import claims_for
+from validate.formulations.stated_accuracy import _more, claims_for
 from validate.formulations.trees import linkage_in
 from validate.hard.cars import scene_content
 from validate.peers.in_pinocchio import InPinocchio
@@ -179,3 +179,8 @@ def test_a_body_may_have_three_points_at_one_place() -> None:
     outcome = compare(Scene.from_mapping(content | {"mechanism": part}), "pointcoord", "absolute")
     assert outcome.agreed
     assert {row.name for row in outcome.rows} >= {*marks}
+
+
+def test_of_a_force_that_nothing_bounds_nothing_is_known() -> None:
+    unbounded, bounded = _more(np.array([np.inf, 2.0]), np.array([np.inf, 0.5])).tolist()
+    assert (unbounded, bounded) == (NOTHING, 1.5)
