@@ -35,9 +35,10 @@ def car_directions(up: Array, right: Array) -> dict[str, Pair]:
         "forward": (high, low),
         "rearward": (-high, -low),
     }
-    return found | {axis_along(name): _unit(direction) for name, direction in found.items()}
+    return found | {axis_along(name): unit_pair(direction) for name, direction in found.items()}
 
 
-def _unit(vector: Pair) -> Pair:
+def unit_pair(vector: Pair) -> Pair:
+    """A vector over its length, (..., 3), to twice the precision."""
     high, low = pair_root(pair_dot(vector, vector))
     return pair_quotient(vector, (high[..., None], low[..., None]))

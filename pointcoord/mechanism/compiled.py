@@ -20,9 +20,9 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
+from pointcoord.linkage.constraints.kept_turn import KeptTurn
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.scalar_product import ScalarProduct
 from pointcoord.linkage.directions import DIRECTIONS, axis_along, car_directions
 from pointcoord.linkage.drives import Drive, Travel, TurnedBy
 from pointcoord.linkage.topology import Sliding, Topology
@@ -407,7 +407,10 @@ class _Compiler:
             yield from (self._on_line(name, point) for point in slide.points)
         if not slide.turns:
             edges = self.choices.edges[name]
-            yield ScalarProduct(f"turn about the {name}", *edges, f"product of edges across the {name}")
+            line = (slide.along, "" if slide.along in DIRECTIONS else slide.through)
+            own = (slide.points[1], slide.points[0])
+            what, product = f"turn about the {name}", f"product of edges across the {name}"
+            yield KeptTurn(what, *edges, product, line=line, own=own)
 
     def _axis(self, name: str) -> AxisInBody | None:
         """The axis of a body that a slide runs along, unless the line is one of two of the body's points."""

@@ -606,14 +606,17 @@ class Scene(Part):
     def _name_what_fights(self, topology: Topology) -> None:
         part, inputs = self.mechanism, ", ".join(topology.fighting)
         named = free_directions(topology, part.points, {"up": part.up, "right": part.right})
-        others = (
+        others = ", ".join(
             name
             for name, one in part.structure.inputs.items()
             if not (one.moves_the_chassis or name in topology.required_inputs)
         )
+        instead = (
+            f"instead one of {others}" if others else "a new one, of what is free, in [mechanism.inputs]"
+        )
         raise ValueError(
             f"the inputs {inputs} drive more of a {part.name} than it lets them, and leave free "
-            f"{', '.join(named)}; allowed: one of them less, and instead one of {', '.join(others) or 'none'}"
+            f"{', '.join(named)}; allowed: one of them less, and {instead}"
         )
 
     @property

@@ -181,7 +181,8 @@ def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str
     """What points that are off make of forces, and what solving for these rounds.
 
     The first is what pointcoord expects of poses that are left so far unsolved more than of those that are
-    not; the second, of any method, EPS times its condition number of the largest force, ROUNDINGS times.
+    not; the second, of any method, EPS times its condition number of the largest force that acts or holds,
+    ROUNDINGS times.
 
     Args:
         off: at the first instants of the scene, (N,), mm. condition: likewise.
@@ -210,17 +211,20 @@ def _of_forces(scene: Scene, off: Array, condition: Array) -> dict[str, dict[str
 
     # Each coordinate of a point may be off, and each half of a joint by itself.
     with_it, without = expected(2.0 * off / motion.unit), expected(np.zeros(count))
-    found: dict[str, dict[str, Array]] = {}
-    for quantity, names in forces.items():
-        numbers = [motion.numbers[quantity][name][:count] for name in names]
-        sizes = [np.abs(number).reshape(count, -1).max(axis=-1) for number in numbers]
-        rounded = ROUNDINGS * EPS * condition * np.max(sizes, axis=0, initial=0.0)
-        found[quantity] = {
-            n: _more(with_it[quantity][n], without[quantity][n])
-            + rounded.reshape(-1, *(1,) * (number.ndim - 1))
-            for n, number in zip(names, numbers, strict=True)
+    numbers = {q: {n: motion.numbers[q][n][:count] for n in names} for q, names in forces.items()}
+    sizes = [np.abs(one).reshape(count, -1).max(axis=-1) for of in numbers.values() for one in of.values()]
+    applied = [
+        np.abs(force).max() + np.abs(moment).max() / motion.unit
+        for force, moment in readout.axes.loads.values()
+    ]
+    rounded = ROUNDINGS * EPS * condition * np.max(sizes, axis=0, initial=max(applied, default=0.0))
+    return {
+        q: {
+            n: _more(with_it[q][n], without[q][n]) + rounded.reshape(-1, *(1,) * (one.ndim - 1))
+            for n, one in of.items()
         }
-    return found
+        for q, of in numbers.items()
+    }
 
 
 def _more(one: Array, other: Array) -> Array:

@@ -16,7 +16,8 @@ and the rows are
     p = p'                                               a point of two bodies is one point, three rows
     R u . (p - p') = R v . (p - p') = 0                  the second point of a hinge, two rows; u, v across it
     |a - b|^2 = d^2                                      a rod
-    p = through + s R line                               a point on a slide; R u . R' v = 0 if it may not turn
+    p = through + s R line                               a point on a slide; if it may not turn, of u and v
+                                                         across the line  R u . R' v - R v . R' u = 0
     and those of the inputs: see `drives`
 
 A body that shares a point with one before it hangs on that point, so its place is no unknown, unless every
@@ -281,7 +282,12 @@ class Compiler:
             raise BadInputError(f"slides.{name}: turns", False, "points of one other body")
         u, v = across(along)
         other = self.bodies[holders[0]]
-        self.row(f"turn of {name}", dot(one.turned(u), other.turned(v)))
+        # The axis of the turn from the one body to the other has no component along the line: what is drawn
+        # off it is turned onto it by the smallest rotation.
+        self.row(
+            f"turn of {name}",
+            dot(one.turned(u), other.turned(v)) - dot(one.turned(v), other.turned(u)),
+        )
         self.positive.append(dot(one.turned(u), other.turned(u)))
 
 

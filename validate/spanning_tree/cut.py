@@ -220,6 +220,15 @@ def across(axis: Array) -> tuple[Array, Array]:
     return first, np.cross(axis, first)
 
 
+def turned_least(vector: Array, line: Array, other: Array) -> Array:
+    """A vector turned by the smallest rotation of one unit vector into another, of either sense."""
+    cosine, axis = float(line @ other), np.cross(line, other)
+    if cosine < 0.0:
+        cosine, axis = -cosine, -axis
+    turn = np.cross(axis, vector)
+    return np.asarray(vector + turn + np.cross(axis, turn) / (1.0 + cosine))
+
+
 def cut(plain: Mapping[str, Any]) -> SpanningTree:
     """The tree of a flat mechanism.
 
@@ -468,10 +477,12 @@ class _Cutter:
                     if (name, p) not in on_rods:
                         self._on_line(f"closure {next(numbers)} {p}", p, self._place(body, p), through, axis)
                 if len(points) > 1 and not slide["turns"]:
-                    # Of any two points of the body: its frame's origin, and one along the direction.
+                    # Of any two points of the body: its frame's origin, and one along the direction, which
+                    # goes with the body's own line as that is turned the least onto the slide's.
                     u, v = across(axis)
+                    own = unit_vector(self.drawn[points[1]] - self.drawn[points[0]], *points[:2])
                     start = next(joint.at for joint in self.joints if joint.body == body)
-                    ends = Place(body, start), Place(body, start + u)
+                    ends = Place(body, start), Place(body, start + turned_least(u, axis, own))
                     self._level(f"closure {next(numbers)} {name}", name, slide["body"], v, *ends)
         for name, (one, other) in self.rods.items():
             length, number = self._distance(one, other, f"{name} has no length"), next(numbers)

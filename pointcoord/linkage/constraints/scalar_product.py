@@ -22,9 +22,7 @@ class ScalarProduct(Constraint):
 
     An edge runs from its second point to its first; with an empty second name it is a direction of the car
     or the place of a point. So x is the height of a point over another, with d cos(theta) the paper's arm
-    angle, eq. (12), or over where it is drawn, with k; or the square of a distance. Two bodies that do not
-    turn against each other about a line keep k for an edge of each: about a line along d the product changes
-    as d . (v x u), so the three may not lie in one plane.
+    angle, eq. (12), or over where it is drawn, with k; or the square of a distance.
 
     Attributes:
         what: its name in messages.

@@ -16,6 +16,7 @@ from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
 from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
+from pointcoord.linkage.constraints.kept_turn import KeptTurn
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.constraints.scalar_product import ScalarProduct
@@ -36,7 +37,7 @@ BACK = TurnedBack("roll", "up", "e", "o", "travel", "sine")
 BACK_AGAIN = TurnedBack("pitch", BACK.name, "up", "o", "sine", "travel")
 MOVED = Displaced((("travel", "e"), ("sine", "up")))
 OVER_GROUND = ContactHeight("b", "c", "travel", 0.3, Ground((BACK, BACK_AGAIN), (MOVED,)))
-KEPT = ScalarProduct("turn about the line", ("a", "b"), ("c", "d"), "kept product")
+KEPT = KeptTurn("turn about the line", ("a", "b"), ("c", "d"), "kept product")
 LINKS = (Link("a", "b"), Link("a", "o"))
 FURTHER = PointInBody("d", "body", BODY)
 TURN = Turn("turn", "c", "a", "b", "travel", "sine")
