@@ -11,9 +11,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from pointcoord import AssemblyError, PointcoordError, Scene
 from pointcoord.linkage.mechanism import Mechanism
+from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.results.closing import Closing, closing
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
@@ -52,6 +54,29 @@ def closed_drawing(scene: Scene) -> ClosedDrawing:
     unit, moved = float(mechanism.unit), closing(mechanism, y)
     places = {name: mechanism.origin + unit * place for name, place in mechanism.places(y).items()}
     return ClosedDrawing(scene, mechanism, places, moved, moved.words)
+
+
+def closed_mechanism(drawing: ClosedDrawing) -> dict[str, Any]:
+    """The flat mechanism with its points where they are when the drawing is closed.
+
+    A slide along a direction of the car that is fixed in a moving body turns with it as the drawing closes;
+    so it runs towards a further point of that body.
+    """
+    plain = drawing.scene.mechanism.plain(tuple(drawing.scene.inputs))
+    drawn, places = plain["points"], dict(drawing.places)
+    bodies, slides = dict(plain["bodies"]), dict(plain["slides"])
+    for name, slide in slides.items():
+        body, direction = slide["body"], drawing.mechanism.drawing.vectors.get(slide["along"])
+        if body == CHASSIS or slide["along"] in drawn or direction is None:
+            continue
+        own, through = bodies[body], places[slide["through"]]
+        before, now = (np.array([of[p] for p in own]) - of[slide["through"]] for of in (drawn, places))
+        turn, _ = Rotation.align_vectors(now, before)
+        end = f"{name}_end"
+        places[end] = through + float(np.abs(now).max()) * turn.apply(direction)
+        bodies[body], slides[name] = [*own, end], {**slide, "along": end}
+    points = {point: place.tolist() for point, place in places.items()}
+    return {**plain, "points": points, "bodies": bodies, "slides": slides}
 
 
 def closing_of(scene: Scene) -> Closing | None:

@@ -128,6 +128,13 @@ def _one_body(structure: Structure, points: tuple[str, ...], place: tuple[str, .
             f"{points[0]} and {points[1]} are of no one body, so there is no turn to be kept from",
             "with turns = false, the first two of one body",
         )
+    if len(bodies) > 1:
+        raise TableFault(
+            (*place, "points"),
+            f"{points[0]} and {points[1]} are of {' and of '.join(sorted(bodies))}, so that it is not said "
+            "which of them is kept from turning",
+            "with turns = false, the first two of one body alone",
+        )
 
 
 def _inputs(structure: Structure) -> None:

@@ -105,7 +105,7 @@ def _triangles(
     """The three points that stand for each moving body in a drawing.
 
     Those that something is joined to come first, in the order of the file; others only where there are fewer
-    than three, and where there are more, those that are drawn in one line are passed over.
+    than three or all are drawn in one line, and where there are more, those in one line are passed over.
     """
     needed = needed_points(structure, driven)
     found: dict[str, Triangle] = {}
@@ -117,11 +117,20 @@ def _triangles(
         settled = order[:2] if len(joined) < 3 or len(paired) >= 2 else []
         tried = [
             (one, two, three)
-            for one, two, three in combinations(order[: len(joined)] if len(joined) > 2 else order, 3)
+            for one, two, three in combinations(order, 3)
             if not settled or settled == [one, two]
         ]
-        found[body] = tried[0] if len(joined) == 3 else _best(tried, points)
+        of_joined = [one for one in tried if {*one} <= {*joined}]
+        if of_joined and (len(of_joined) == len(tried) or not _in_line(of_joined, points)):
+            tried = of_joined
+        found[body] = tried[0] if tried == of_joined and len(joined) == 3 else _best(tried, points)
     return found
+
+
+def _in_line(tried: list[Triangle], points: Mapping[str, Place]) -> bool:
+    """Whether all of some triangles are drawn in one line; points that are all in one place are not drawn."""
+    sines = (_sine(*(points[name] for name in one)) for one in tried)
+    return len({*points.values()}) > 1 and max(sines) <= IN_LINE
 
 
 def _held_pairs(structure: Structure, body: str) -> Iterator[Ends]:

@@ -590,7 +590,7 @@ class Scene(Part):
             )
         inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in inputs if name in self.inputs]
-        others = ", ".join(name for name in inputs if name not in told) or "none"
+        others = ", ".join(name for name in inputs if name not in told)
         count = part.freedoms
         words = f"a {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
         words += f"{'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
@@ -600,7 +600,7 @@ class Scene(Part):
         named = free_directions(part.topology, part.points, {"up": part.up, "right": part.right})
         raise ValueError(
             f"{words}; free are {', '.join(named)}; allowed: {count} inputs, so drive "
-            f"{count - len(told)} more of {others}"
+            f"{count - len(told)} more{f' of {others}' if others else ': a new one in [mechanism.inputs]'}"
         )
 
     def _name_what_fights(self, topology: Topology) -> None:

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import Phase, assume, event, given, note, settings
+from hypothesis import Phase, assume, given, note, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from random_mechanisms import random_mechanism
 from scipy.spatial.transform import Rotation
 
-from pointcoord import Scene, SceneError
+from pointcoord import Scene, SceneError, simulate
 from validate.adjudication.reference_solution import reference_solution, told_by
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
@@ -43,45 +43,44 @@ def test_a_mechanism_at_random_moves_as_the_reference_says_by_every_formulation(
     except FormulationError as error:
         assume(not why_refused(error))
         raise
+    told = told_by(reference, scene)
     for name in FORMULATIONS:
         solution = first if name == "pointcoord" else formulation(name).solve(scene)
-        outcome = compare_solutions(scene, solution, reference, "random", told_by(reference, scene))
+        outcome = compare_solutions(scene, solution, reference, "random", told)
         for row in outcome.rows:
             if row.verdict == "not given":
                 assert row.unit == "N"
                 assert name not in STATICS
-            # What the others expect of themselves is that of usual cars: here it holds to a small factor.
-            assert row.verdict == "not given" or row.share <= (1.0 if name == "pointcoord" else 4.0)
-        event(f"{name} is right")
+            # What is expected of usual cars; of one that only slides a component may be lost in the others.
+            assert row.verdict == "not given" or row.share <= (4.0 if row.quantity == "position" else 100.0)
+    motion = simulate(scene)
+    proven = motion.proof(rates=True).proven
+    for quantity, names in told.items():
+        for part in names:
+            off = np.abs(motion.numbers[quantity][part] - reference.numbers[quantity][part])
+            assert (off <= proven[quantity][part] + reference.accuracy.claims[quantity][part]).all()
 
 
 LINE = np.array([1.0, 2.0, 2.0]) / 3.0
 SIZE = 300.0
 
 
-@pytest.mark.parametrize("off", [1e-13, 1e-3, 1.0])
-@pytest.mark.parametrize("name", [*FORMULATIONS, "mujoco", "exudyn", "reference"])
-def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_least(
-    name: str, off: float
-) -> None:
-    through, rear = np.array([40.0, -30.0, 20.0]), np.array([40.0, -30.0, 20.0]) + SIZE * LINE
+def carriage(off: float, **more: Any) -> tuple[dict[str, Array], dict[str, Any]]:
+    """A body on a rail that it does not turn about, one of its two points there drawn so far off, mm."""
+    through = np.array([40.0, -30.0, 20.0])
     points: dict[str, Array] = {
         "through": through,
         "front": through + 0.4 * SIZE * LINE + off * np.array([0.6, -1.0, 0.3]),
-        "rear": rear,
+        "rear": through + SIZE * LINE,
         "above": through + np.array([70.0, 20.0, 190.0]),
         "beside": through + np.array([-60.0, 210.0, 130.0]),
     }
+    rail = {"points": ["front", "rear"], "through": "through", "along": "rear", "turns": False}
     content: dict[str, Any] = {
         "mechanism": {
             "points": {point: place.tolist() for point, place in points.items()},
-            "bodies": {"chassis": ["through"], "carriage": ["front", "rear", "above", "beside"]},
-            "slides": {
-                "rail": {
-                    "points": ["front", "rear"],
-                    **{"through": "through", "along": "rear", "turns": False},
-                }
-            },
+            "bodies": {"chassis": ["through"], "carriage": ["front", "rear", "above", "beside"], **more},
+            "slides": {"rail": rail},
             "inputs": {"travel": {"travel": "rail"}},
             **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "left"},
         },
@@ -89,6 +88,16 @@ def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_leas
         "effects": [],
         "time": {"start": 0.0, "stop": 1.0, "samples": 2},
     }
+    return points, content
+
+
+@pytest.mark.parametrize("off", [1e-13, 1e-3, 1.0])
+@pytest.mark.parametrize("name", [*FORMULATIONS, "mujoco", "exudyn", "reference"])
+def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_least(
+    name: str, off: float
+) -> None:
+    points, content = carriage(off)
+    through = points["through"]
     scene = Scene.from_mapping(content)
     solve = reference_solution if name == "reference" else formulation(name).solve
     solution = solve(scene)
@@ -103,3 +112,10 @@ def test_what_is_drawn_off_a_slide_that_does_not_turn_is_turned_onto_it_the_leas
             found = solution.position[point][k]
             # The closed form rounds some ten times at 400 mm, and a tilt of 1e-15 by a part of itself.
             assert np.abs(found - there).max() <= 1e-12 + solution.accuracy.claims["position"][point][k].max()
+
+
+def test_a_slide_whose_points_are_those_of_a_hinge_does_not_say_which_body_is_kept_from_turning() -> None:
+    points, content = carriage(0.0, arm=["front", "rear", "tip"])
+    content["mechanism"]["points"]["tip"] = (points["above"] + 50.0).tolist()
+    with pytest.raises(SceneError, match=r"of arm and of carriage, so that it is not said which of them"):
+        Scene.from_mapping(content)

@@ -133,11 +133,25 @@ class _Maker:
         first, second = str(self.random.choice(moving)), str(self.random.choice([*self.points]))
         if first != second:
             found.append(({"distance": [first, second]}, self._apart(first, second), False))
+        for body, on in self.hinges:
+            of, about = self.bodies[body][2], self.bodies[body][0]
+            if on == CHASSIS:
+                up = self.points[of] - self.points[about]
+                turn = float(np.arccos(up[2] / np.linalg.norm(up)))
+                found.append(({"angle": body, "of": of, "about": about, "from": "up"}, turn, True))
+        inner, centre = self.bodies[[*self.bodies][-1]][-2:]
+        over = {"over": "ground"} if self.bodies[CHASSIS] and self.random.random() < 0.5 else {}
+        found.append(({"contact": [inner, centre], **over}, 0.0, False))
+        chosen = [found[i] for i in self.random.permutation(len(found))[:number]]
+        if self.bodies[CHASSIS] and self.random.random() < 0.3:
+            about = str(self.random.choice(self.bodies[CHASSIS]))
+            chosen.append(({"turns": CHASSIS, "about": about, "along": "forward"}, 0.0, True))
+        if self.random.random() < 0.3:
+            chosen.append(({"moves": CHASSIS, "along": "up"}, 0.0, False))
         inputs, laws = {}, {}
-        for i, chosen in enumerate(self.random.permutation(len(found))[:number].tolist()):
-            inputs[f"input{i}"], start, is_angle = found[chosen]
+        for i, (one, start, is_angle) in enumerate(chosen):
             by = self.random.uniform(0.003, 0.03) * (3.0 if is_angle else self.size)
-            laws[f"input{i}"] = {"polynomial": [start, by, -0.4 * by]}
+            inputs[f"input{i}"], laws[f"input{i}"] = one, {"polynomial": [start, by, -0.4 * by]}
         return inputs, laws
 
     def _apart(self, one: str, other: str) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from validate.closed_drawing import closed_drawing, warnings_of
+from validate.closed_drawing import closed_drawing, closed_mechanism, warnings_of
 from validate.commands.usage import SCENE, Command, load_scene, name_of, require_results, told_as
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -42,10 +42,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         return ExitStatus.NO_VERDICT
     for warning in warnings_of(scene, drawing.closing):
         console.warn(f"{name}: {warning}")
-    places = {point: place.tolist() for point, place in drawing.places.items()}
-    plain = {**scene.mechanism.plain(tuple(scene.inputs)), "points": places}
     target = None if options.mjcf == "-" else options.mjcf
-    console.put(target, mjcf.mjcf_of(plain, scene.title or name), "the model")
+    console.put(target, mjcf.mjcf_of(closed_mechanism(drawing), scene.title or name), "the model")
     if target is not None:
         console.say(f"{shown(target)} is written; try: python -m mujoco.viewer --mjcf={shown(target)}")
     return ExitStatus.AGREE

@@ -16,7 +16,7 @@ from pointcoord import Scene, simulate
 from pointcoord.mechanism.file import MechanismFile
 from validate import compare
 from validate.cli import main
-from validate.closed_drawing import closed_drawing
+from validate.closed_drawing import closed_drawing, closed_mechanism
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.hardpoint_files.mjcf import read_mjcf
 from validate.hardpoint_files.mjcf_mechanism import mechanism_of
@@ -134,6 +134,72 @@ def test_an_exported_linkage_comes_back_with_its_motion(name: str, tmp_path: Pat
     first, second = simulate(scene), simulate(changed)
     for point, places in first.position.items():
         # Drawings differ by rounding, which a motion near its ends makes a thousand times as large: 1e-10 mm.
+        assert np.abs(places - second.position[point]).max() <= 2.1 * TOLERANCE, point
+
+
+def carriage(along: str, turns: bool) -> Scene:
+    """A sled on a rail, drawn 1 mm off it, on which a rider slides along one direction of the car.
+
+    Where the sled turns about its rail, the height of a point of it is driven.
+    """
+    points = {
+        "rail": [0.0, 0.0, 0.0],
+        "rear": [300.0, 30.0, 20.0],
+        "front": [120.0, 12.0, 9.0],
+        "above": [100.0, 40.0, 250.0],
+        "guide": [150.0, 100.0, 60.0],
+        "rider": [150.0, 180.0, 60.0] if along == "right" else [230.0, 100.0, 60.0],
+        "stay": [-100.0, 300.0, 200.0],
+    }
+    slides = {
+        "rail": {"points": ["front", "rear"], "through": "rail", "along": "rear", "turns": turns},
+        "way": {"point": "rider", "body": "sled", "through": "guide", "along": along},
+    }
+    inputs = {"height": {"height": "rear"}} | (
+        {"lean": {"height": "above", "along": "right"}} if turns else {}
+    )
+    return Scene.from_mapping(
+        {
+            "mechanism": {
+                "points": points,
+                "bodies": {"chassis": ["rail", "stay"], "sled": ["front", "rear", "above", "guide"]},
+                **{"rods": {"stay": ["rider", "stay"]}, "slides": slides, "inputs": inputs},
+                **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "right"},
+            },
+            "inputs": {name: {"polynomial": [0.0, 0.5]} for name in inputs},
+            "effects": [],
+            "time": {"start": 0.0, "stop": 1.0, "samples": 3},
+        }
+    )
+
+
+@pytest.mark.parametrize("along", ["right", "rearward"])
+@pytest.mark.parametrize("turns", [False, True])
+def test_what_slides_comes_back_as_it_closes_whether_it_turns_or_not(along: str, turns: bool) -> None:
+    scene = carriage(along, turns)
+    drawing = closed_drawing(scene)
+    assert drawing.closing is not None
+    assert drawing.closing.largest > 0.1
+    model = mechanism_of(read_mjcf(mjcf_of(closed_mechanism(drawing), "sled"), "sled", np.eye(3)), "sled")
+    back = {
+        "mechanism": {
+            **model.tables,
+            # The same inputs; the joints of a model are free.
+            "inputs": scene.model_dump(exclude_none=True)["mechanism"]["inputs"],
+            "points": {name: (1e3 * place).tolist() for name, (place, _) in model.points.items()},
+            **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "right"},
+        }
+    }
+    # Heights are counted from the drawing, which is closed now.
+    rise = {
+        name: float(drawing.places[at][axis] - scene.mechanism.points[at][axis])
+        for name, at, axis in (("height", "rear", 2), ("lean", "above", 1))
+        if name in scene.inputs
+    }
+    laws = {name: {"polynomial": [-off, 0.5]} for name, off in rise.items()}
+    same = {key: getattr(scene, key) for key in ("effects", "time")}
+    first, second = simulate(scene), simulate(Scene.from_mapping({**same, **back, "inputs": laws}))
+    for point, places in first.position.items():
         assert np.abs(places - second.position[point]).max() <= 2.1 * TOLERANCE, point
 
 
