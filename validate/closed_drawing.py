@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from pointcoord import AssemblyError, PointcoordError, Scene
 from pointcoord.linkage.mechanism import Mechanism
@@ -62,6 +61,9 @@ def closed_mechanism(drawing: ClosedDrawing) -> dict[str, Any]:
     A slide along a direction of the car that is fixed in a moving body turns with it as the drawing closes;
     so it runs towards a further point of that body.
     """
+    # Imported here: a plan and a picture do without it.
+    from scipy.spatial.transform import Rotation
+
     plain = drawing.scene.mechanism.plain(tuple(drawing.scene.inputs))
     drawn, places = plain["points"], dict(drawing.places)
     bodies, slides = dict(plain["bodies"]), dict(plain["slides"])

@@ -82,8 +82,11 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
         )
     lines += [f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects]
     if plan.left_out:
-        names = ", ".join(plan.left_out)
-        lines.append(f"left out: {names}; name one under effects to have it (pointcoord help effects)")
+        plain = [effect for effect in plan.left_out if not EFFECTS[effect].base]
+        made = [effect for effect in plan.left_out if EFFECTS[effect].base]
+        more = f" and, of what these change by, such as {made[0]}, {len(made)} more" if made else ""
+        names = ", ".join(plain)
+        lines.append(f"left out: {names}{more}; name one under effects to have it (pointcoord help effects)")
     console.say("\n".join([*lines, *_work(plan, part.topology), *_effort(scene, plan)]))
     return _say_where_it_stands(scene, name, console)
 
