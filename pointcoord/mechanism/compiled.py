@@ -128,9 +128,9 @@ def _triangles(
 
 
 def _in_line(tried: list[Triangle], points: Mapping[str, Place]) -> bool:
-    """Whether all of some triangles are drawn in one line; points that are all in one place are not drawn."""
-    sines = (_sine(*(points[name] for name in one)) for one in tried)
-    return len({*points.values()}) > 1 and max(sines) <= IN_LINE
+    """Whether the corners of all of some triangles are drawn apart and in one line."""
+    corners = [(points[a], points[b], points[c]) for a, b, c in tried]
+    return all(len({*map(tuple, one)}) == len(one) and _sine(*one) <= IN_LINE for one in corners)
 
 
 def _held_pairs(structure: Structure, body: str) -> Iterator[Ends]:

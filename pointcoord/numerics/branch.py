@@ -20,7 +20,7 @@ of it no computed pose tells the branches apart: a motion may end there, and doe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -124,7 +124,8 @@ def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.b
     scaled = series * (s ** np.arange(order + 1.0))[:, None]
     for parts in PARTS:
         local = _about_middles(order, parts) @ scaled[..., None, :, :]
-        good = _regular(system, local[..., 0, :], system.entries(local[..., 1:, :]), False).all(axis=-1)
+        starts, rest = local[..., 0, :], local[..., 1:, :]
+        good = _proven(system, starts, np.abs(rest).sum(axis=-2), rest.__getitem__).all(axis=-1)
         if good.all():
             break
     return np.asarray(good)
@@ -140,13 +141,28 @@ def regular_on(system: QuadraticMap, y: Array, series: Array, moving: Sequence[i
     """
     sums = np.zeros_like(y)
     sums[:, moving] = np.abs(series).sum(axis=0)
-    good = _regular(system, y, system.spread_entries(sums)[:, None], True)
-    # By |X| |D_k| it is quicker, and proves less.
-    left = np.flatnonzero(~good)
-    if left.size:
-        whole = np.zeros((left.size, len(series), y.shape[-1]))
-        whole[..., moving] = series[:, left].swapaxes(0, 1)
-        good[left] = _regular(system, y[left], system.entries(whole), False)
+
+    def whole(left: NDArray[np.bool_]) -> Array:
+        found = np.zeros((np.count_nonzero(left), len(series), y.shape[-1]))
+        found[..., moving] = series[:, left].swapaxes(0, 1)
+        return found
+
+    return _proven(system, y, sums, whole)
+
+
+def _proven(
+    system: QuadraticMap, y: Array, sums: Array, series: Callable[[NDArray[np.bool_]], Array]
+) -> NDArray[np.bool_]:
+    """Whether no block is singular about poses, (..., size): by |X| |D_k|, or by |X D_k|, which proves more.
+
+    Args:
+        sums: of the magnitudes of all coefficients after the first, (..., size).
+        series: these coefficients of some of the poses, (left, powers - 1, size).
+    """
+    good = _regular(system, y, system.spread_entries(sums)[..., None, :], True)
+    left = ~good
+    if left.any():
+        good[left] = _regular(system, y[left], system.entries(series(left)), False)
     return good
 
 

@@ -218,7 +218,7 @@ class _Builder:
         start, step = self.points[ends[0]].at, ARM * self.size * joint.axis
         if len(ends) > 1 and self.points[ends[0]].bodies & self.points[ends[1]].bodies - {body}:
             # Of a hinge about the line: its two points do not say which of its bodies is kept from turning.
-            del ends[1]
+            ends[1] = self._made(f"{joint.name}_end", start - 2.0 * step, {body}, source)
         if not is_point and len(ends) < 2:
             ends.append(self._made(f"{joint.name}_end", start + step, {body}, source))
         words = [word for word in DIRECTIONS if np.array_equal(vector_along(word), joint.axis)]
