@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,7 @@ from pointcoord.numerics.double_double import Pair, pair_cross, pair_dot, pair_q
 Array = NDArray[np.float64]
 
 DIRECTIONS = ("up", "right", "down", "left", "forward", "rearward")
+AXIS = "axis "
 
 
 def axis_along(direction: str) -> str:
@@ -17,17 +20,14 @@ def axis_along(direction: str) -> str:
 
     Vectors of doubles have it to a rounding only, and would change lengths as they turn.
     """
-    return f"axis {direction}"
+    return f"{AXIS}{direction}"
 
 
 def car_directions(up: Array, right: Array) -> dict[str, Pair]:
-    """Each direction as a high and a low part, shape (..., 3); forward is up x right, rounded twice over.
-
-    With the axis along each (see `axis_along`).
-    """
+    """Each direction as a high and a low part, shape (..., 3); forward is up x right, rounded twice over."""
     none = np.zeros_like(up), np.zeros_like(right)
     high, low = pair_cross((up, none[0]), (right, none[1]))
-    found = {
+    return {
         "up": (up, none[0]),
         "right": (right, none[1]),
         "down": (-up, none[0]),
@@ -35,7 +35,11 @@ def car_directions(up: Array, right: Array) -> dict[str, Pair]:
         "forward": (high, low),
         "rearward": (-high, -low),
     }
-    return found | {axis_along(name): unit_pair(direction) for name, direction in found.items()}
+
+
+def direction_of(car: Mapping[str, Pair], name: str) -> Pair:
+    """One of a car's directions, or the axis along one (see `axis_along`)."""
+    return car[name] if name in car else unit_pair(car[name.removeprefix(AXIS)])
 
 
 def unit_pair(vector: Pair) -> Pair:

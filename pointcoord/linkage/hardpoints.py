@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.errors import MechanismError, UnknownName
 from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
-from pointcoord.linkage.directions import car_directions
+from pointcoord.linkage.directions import car_directions, direction_of
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
@@ -65,7 +65,10 @@ def drawn_mechanism(
     vectors = {name: np.ascontiguousarray(scaled[..., i, :]) for i, name in enumerate(located)}
     vectors |= {name: car[name][0] for name in AXES}
     drawing = Drawing(vectors, unit)
-    along = {n: drawing.axis(*ends) if ends[0] else car[ends[1]] for n, ends in topology.directions.items()}
+    along = {
+        name: drawing.axis(start, end) if start else direction_of(car, end)
+        for name, (start, end) in topology.directions.items()
+    }
     vectors |= {name: high for name, (high, _) in along.items()}
     drawing = Drawing(vectors, unit, {name: low for name, (_, low) in along.items() if low.any()})
     drawn, lacks, doubt = _drawn(topology, drawing)
