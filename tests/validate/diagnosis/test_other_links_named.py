@@ -9,8 +9,10 @@ import pytest
 from curve_files import compared, table, verdicts
 from mechanism_files import mechanism_file
 from numpy.typing import NDArray
+from random_mechanisms import random_mechanism
 
 from pointcoord import Scene
+from validate import check
 from validate.comparison.compare import compare_solutions
 from validate.diagnosis import Explanation, explain
 from validate.formulations.protocol import Solution
@@ -251,3 +253,15 @@ def test_velocities_in_metres_are_not_said_to_be_per_millisecond_as_well() -> No
     given = held.with_numbers({"velocity": in_metres})
     (only,) = explain(scene, given, held, compare_solutions(scene, held, given, "car"))
     assert only.words == "velocity: m for mm"
+
+
+def test_points_each_off_by_a_constant_are_those_of_another_rod_where_little_moves() -> None:
+    content = random_mechanism(12) | {"effects": []}
+    content["time"]["samples"] = 9
+    scene = Scene.from_mapping(content)
+    longer = with_rod(content, "rod3", -0.3)
+    given = formulation("absolute").solve(Scene.from_mapping(longer)).numbers["position"]
+    size = float(np.ptp(list(scene.mechanism.points.values()), axis=0).max())
+    outcome = check(lambda _: {"position": given}, scene, accuracy=1e-6 * size)
+    (told,) = outcome.explanations
+    assert "rod3 is 0.3 mm too short" in told.words

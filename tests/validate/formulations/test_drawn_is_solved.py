@@ -31,7 +31,7 @@ MODELS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
 SHARES = st.floats(-1.0, 1.0)
 # A car is solved by four models at one or two places, so the short profile searches briefly.
 EXAMPLES = settings.default.max_examples if settings.default else 100
-searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 30)
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 15)
 
 
 @pytest.fixture(autouse=True)

