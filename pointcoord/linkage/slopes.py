@@ -129,7 +129,8 @@ def _known_slopes(mechanism: Mechanism, y: Array, way: Way) -> Array:
 def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
     """Of a gap the coordinates that move, (size,), and 1 for the rows that read so.
 
-    None of a joint of the chassis, whose point moves as what is known does.
+    The point of a joint of the chassis moves as what is known does; but not what the chassis turns about,
+    which is no half of the joint.
     """
     layout, system = topology.layout, topology.map
     moved, rows = np.zeros(layout.size), np.zeros(len(system.rows))
@@ -139,7 +140,12 @@ def shifted(topology: Topology, way: Way) -> tuple[Array, Array]:
         for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
             if constraint.name in names:
                 rows[list(numbers)] = 1.0
-    elif isinstance(way, ByGap) and way.point not in topology.chassis:
+    elif isinstance(way, ByGap) and way.point in topology.chassis:
+        moved[layout.vector(way.point)[way.axis]] = -1.0
+        for constraint, numbers in zip(topology.constraints, topology.rows_of, strict=True):
+            if way.point in constraint.pivots:
+                rows[list(numbers)] = 1.0
+    elif isinstance(way, ByGap):
         moved[layout.vector(way.point)[way.axis]] = 1.0
         there = {*topology.moving, *topology.chassis}
         beside = next(others for points, others in topology.joints.items() if way.point in points)

@@ -25,6 +25,7 @@ class Constraint(ABC):
         aligned: points that it puts on one line although they may be drawn beside it: two of the line and a
             third.
         segments: pairs of points that a picture of the linkage joins.
+        pivots: points that its rows read as what the chassis turns about, and not as joined to anything.
         along_axes: whether its rows are the three components of one equation between vectors.
         may_lock: whether it can be what a motion ends at.
         holds_a_body: whether it only says how a body is made, and joins it to nothing.
@@ -57,6 +58,10 @@ class Constraint(ABC):
 
     @property
     def segments(self) -> tuple[tuple[str, str], ...]:
+        return ()
+
+    @property
+    def pivots(self) -> tuple[str, ...]:
         return ()
 
     @property

@@ -66,6 +66,10 @@ class ContactHeight(Constraint):
         what = ("squared length of the axis", "radius by the length of the axis", "drawn contact height")
         return tuple(f"{each} of {self.centre}" for each in what)
 
+    @property
+    def pivots(self) -> tuple[str, ...]:
+        return tuple(turn.about for turn in self.ground.turns)
+
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         zero, one = layout.zero, (layout.one, layout.zero)
         zeros: Triple = (zero, zero, zero)

@@ -33,6 +33,22 @@ CARS = (
 
 
 GUIDED = "a knuckle that an arm guides"
+ROLLING = "a car that rolls about a point of a hinge"
+ARM: dict[str, Any] = {
+    "bodies": {"chassis": ["front", "rear"], "arm": ["front", "rear", "inner", "centre"]},
+    "inputs": {
+        "ground": {"contact": ["inner", "centre"], "over": "ground"},
+        "roll": {"turns": "chassis", "about": "front", "along": "forward"},
+    },
+    "roles": {"knuckle": "arm", "wheel_axis": ["inner", "centre"]},
+    "points": {
+        "front": [-200.0, 300.0, 250.0],
+        "rear": [180.0, 350.0, 270.0],
+        "inner": [0.0, 650.0, 290.0],
+        "centre": [10.0, 750.0, 300.0],
+    },
+    "side": "right",
+}
 HINGED = {
     "a knuckle hinged to an arm": ("chassis", "arm", "knuckle"),
     "an arm hinged to a knuckle": ("chassis", "knuckle", "arm"),
@@ -40,6 +56,11 @@ HINGED = {
 
 
 def loaded(name: str, samples: int = 5) -> Scene:
+    if name == ROLLING:
+        motion = {"ground": {"constant": 0.0}, "roll": {"polynomial": [0.0, 0.05]}}
+        time = {"start": 0.0, "stop": 1.0, "samples": samples}
+        part = ARM | {"loads": {"": LOAD}, "wheel_radius": 300.0}
+        return Scene.from_mapping({"mechanism": part, "inputs": motion, "effects": ["loads"], "time": time})
     if name == GUIDED:
         return guided_knuckle({"": LOAD}, 300.0, samples)
     if name in HINGED:
@@ -56,7 +77,7 @@ def forces(outcome: Outcome) -> dict[tuple[str, str], str]:
     return {(r.quantity, r.name): r.verdict for r in outcome.rows if r.unit == "N"}
 
 
-@pytest.mark.parametrize("name", [*CARS, *HINGED, GUIDED])
+@pytest.mark.parametrize("name", [*CARS, *HINGED, GUIDED, ROLLING])
 def test_three_mechanics_give_the_same_forces(name: str) -> None:
     scene = loaded(name)
     gives = EFFECTS["loads"].gives_numbers(scene.mechanism.topology)
