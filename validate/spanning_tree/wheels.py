@@ -58,7 +58,7 @@ class Wheels:
                 points=points,
                 up=_vector(directions["up"]),
                 right=_vector(directions["right"]),
-                side=_side(plain, roles, directions["right"]),
+                side=_side(plain, prefix, roles, directions["right"]),
                 wheel_radius=None if radius is None else radius / tree.unit,
                 origin=_vector(-tree.origin / tree.unit),
                 data=data,
@@ -142,10 +142,13 @@ def _vector(array: Array) -> Vector:
     return array[..., 0], array[..., 1], array[..., 2]
 
 
-def _side(plain: Mapping[str, Any], roles: Mapping[str, Any], right: Array) -> int:
-    """1 where outboard of a part is right, from its inboard point to the wheel centre; without such points by
-    the car's side.
+def _side(plain: Mapping[str, Any], prefix: str, roles: Mapping[str, Any], right: Array) -> int:
+    """1 where outboard of a part is right: by the side that it says, else from its inboard point to the wheel
+    centre, and without such points by the car's side.
     """
+    own = plain["sides"].get(prefix.removesuffix("."))
+    if own:
+        return 1 if own == "right" else -1
     inboard, wheel = roles.get("inboard"), roles.get("wheel_axis", ("", ""))[1]
     if inboard and wheel:
         points = plain["points"]

@@ -173,3 +173,13 @@ def test_a_rod_that_is_called_as_an_angle_has_no_force_from_a_tree() -> None:
     assert "toe" in given["wheel"]
     assert "rod_force" not in given
     assert "toe" in formulation("pointcoord").solve(scene).numbers["rod_force"]
+
+
+def test_outboard_is_the_side_of_a_part_wherever_its_wheel_is_drawn() -> None:
+    """A wheel drawn further in than the points of its arms counts its angles as the part says."""
+    content = Scene.load("axle-parallel").model_dump(exclude_none=True)
+    # The left arm's points are 388 mm to the left.
+    points = {"left.wheel_centre": (0.0, -350.0, 210.0), "left.wheel_axis_inner": (0.0, -290.0, 210.0)}
+    content["mechanism"]["points"] |= points
+    outcome = compare(Scene.from_mapping(content), "pointcoord", "relative")
+    assert outcome.agreed, outcome.disagreements
