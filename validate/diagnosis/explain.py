@@ -96,7 +96,11 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
 def _explained(evidence: Evidence) -> list[_Found]:
     """What the numbers carry, the best first."""
     found = list(_supposed(evidence, "numbers"))
-    if evidence.other_cars and _open(evidence, _as_one(found), mostly=True) and _elsewhere(evidence):
+    if (
+        evidence.other_cars
+        and _open(evidence, _but_for_moved_points(found), mostly=True)
+        and _elsewhere(evidence)
+    ):
         cars: list[_Found] = []
         for kind in KINDS:
             others = [one for one in cars if one.hypothesis.kind != kind.beside]
@@ -132,7 +136,7 @@ def _elsewhere(evidence: Evidence) -> bool:
     return not moving or any(row in evidence.wrong for row in moving)
 
 
-def _as_one(found: Sequence[_Found]) -> list[_Found]:
+def _but_for_moved_points(found: Sequence[_Found]) -> list[_Found]:
     """Without points that are off by a constant each, as those of another car are that hardly moves."""
     apart = [one for one in found if one.hypothesis.kind == "offset" and kind_of(one.rows[0]) == "point"]
     return [one for one in found if one not in apart] if len(apart) > 1 else list(found)

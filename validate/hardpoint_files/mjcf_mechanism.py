@@ -218,6 +218,7 @@ class _Builder:
         start, step = self.points[ends[0]].at, ARM * self.size * joint.axis
         if len(ends) > 1 and self.points[ends[0]].bodies & self.points[ends[1]].bodies - {body}:
             # Of a hinge about the line: its two points do not say which of its bodies is kept from turning.
+            # A step either way there may be a point that was made already.
             ends[1] = self._made(f"{joint.name}_end", start - 2.0 * step, {body}, source)
         if not is_point and len(ends) < 2:
             ends.append(self._made(f"{joint.name}_end", start + step, {body}, source))

@@ -58,7 +58,7 @@ class Wheels:
                 points=points,
                 up=_vector(directions["up"]),
                 right=_vector(directions["right"]),
-                side=_side(plain, prefix, roles, directions["right"]),
+                side=_side(plain, prefix),
                 wheel_radius=None if radius is None else radius / tree.unit,
                 origin=_vector(-tree.origin / tree.unit),
                 data=data,
@@ -142,15 +142,6 @@ def _vector(array: Array) -> Vector:
     return array[..., 0], array[..., 1], array[..., 2]
 
 
-def _side(plain: Mapping[str, Any], prefix: str, roles: Mapping[str, Any], right: Array) -> int:
-    """1 where outboard of a part is right: by the side that it says, else from its inboard point to the wheel
-    centre, and without such points by the car's side.
-    """
-    own = plain["sides"].get(prefix.removesuffix("."))
-    if own:
-        return 1 if own == "right" else -1
-    inboard, wheel = roles.get("inboard"), roles.get("wheel_axis", ("", ""))[1]
-    if inboard and wheel:
-        points = plain["points"]
-        return 1 if (np.array(points[wheel]) - np.array(points[inboard])) @ right > 0.0 else -1
-    return 1 if plain["side"] == "right" else -1
+def _side(plain: Mapping[str, Any], prefix: str) -> int:
+    """1 where outboard of a part, or of the whole, is right: by its side, wherever its wheel is drawn."""
+    return 1 if plain["sides"].get(prefix.removesuffix("."), plain["side"]) == "right" else -1

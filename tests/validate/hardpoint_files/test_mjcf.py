@@ -137,7 +137,7 @@ def test_an_exported_linkage_comes_back_with_its_motion(name: str, tmp_path: Pat
         assert np.abs(places - second.position[point]).max() <= 2.1 * TOLERANCE, point
 
 
-def carriage(along: str, turns: bool) -> Scene:
+def sled(along: str, turns: bool) -> Scene:
     """A sled on a rail, drawn 1 mm off it, on which a rider slides along one direction of the car.
 
     Where the sled turns about its rail, the height of a point of it is driven.
@@ -176,7 +176,7 @@ def carriage(along: str, turns: bool) -> Scene:
 @pytest.mark.parametrize("along", ["right", "rearward"])
 @pytest.mark.parametrize("turns", [False, True])
 def test_what_slides_comes_back_as_it_closes_whether_it_turns_or_not(along: str, turns: bool) -> None:
-    scene = carriage(along, turns)
+    scene = sled(along, turns)
     drawing = closed_drawing(scene)
     assert drawing.closing is not None
     assert drawing.closing.largest > 0.1
