@@ -381,12 +381,16 @@ class MechanismPart(Part):
     def drawn_inputs(self, driven: Collection[str]) -> dict[str, float]:
         """The values at which inputs are drawn, if these are driven; rad or mm.
 
+        None if these are more or fewer than there are freedoms, which is told when the scene is checked.
+
         Raises:
             MechanismError: the hardpoints make no mechanism that these drive.
         """
         directions = {"up": self.up, "right": self.right}
         known = [name for name in self.structure.inputs if name in driven]
         topology = self.file.topology(self.closure, known, self.points, directions, self._lengths)
+        if topology.layout.unknowns != len(topology.labels):
+            return {}
         mechanism = build_mechanism(topology, dict(self.points), directions)
         coordinates = mechanism.drawn[mechanism.map.unknowns :]
         return {name: float(value) + 0.0 for name, value in mechanism.input_values(coordinates).items()}
@@ -585,14 +589,14 @@ class Scene(Part):
             return
         if not missing:
             raise ValueError(
-                f"a {part.name} has no freedom and no input is driven: it is a structure that nothing moves; "
+                f"the {part.name} has no freedom and no input is driven: it is a structure that nothing moves; "
                 "allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
             )
         inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in inputs if name in self.inputs]
         others = ", ".join(name for name in inputs if name not in told)
         count = part.freedoms
-        words = f"a {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
+        words = f"the {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
         words += f"{'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
         if count < len(told):
             exact = "" if count else "; parallel hinges let it move only if they are drawn exactly so"
@@ -615,7 +619,7 @@ class Scene(Part):
             f"instead one of {others}" if others else "a new one, of what is free, in [mechanism.inputs]"
         )
         raise ValueError(
-            f"the inputs {inputs} drive more of a {part.name} than it lets them, and leave free "
+            f"the inputs {inputs} drive more of the {part.name} than it lets them, and leave free "
             f"{', '.join(named)}; allowed: one of them less, and {instead}"
         )
 

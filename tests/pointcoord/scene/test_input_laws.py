@@ -95,6 +95,22 @@ def test_what_is_no_law_is_refused_with_its_place(law: Any, words: str) -> None:
     assert words in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("inputs", "words"),
+    [
+        (("arm_angle", "rack"), r"no input is called 'arm_angle' \(did you mean 'left.arm_angle'"),
+        (("rack",), "the axle has 4 freedoms, and 1 is driven: rack"),
+    ],
+)
+def test_drawn_values_of_inputs_that_do_not_hold_the_car_hide_no_fault(
+    inputs: tuple[str, ...], words: str
+) -> None:
+    content = Scene.load("axle-steer").model_dump(exclude_none=True)
+    content["inputs"] = dict.fromkeys(inputs, {"constant": "drawn"})
+    with pytest.raises(SceneError, match=words):
+        Scene.from_mapping(content)
+
+
 def test_of_a_mechanism_that_is_none_the_mechanism_is_told() -> None:
     content = wishbone({"constant": "drawn"})
     content["mechanism"]["type"] = "double_wishbne"

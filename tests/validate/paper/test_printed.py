@@ -138,5 +138,5 @@ def test_the_papers_strut_is_known_by_its_linkage_and_not_by_its_name() -> None:
     motion, own = simulate(Scene.load("bounce"), PRINTED), simulate(with_tables("bounce"), PRINTED)
     for name, rate in motion.angular_velocity.items():
         assert np.array_equal(rate, own.angular_velocity[name], equal_nan=True)
-    with pytest.raises(SceneError, match="cannot solve a macpherson with closure = 'drawn'"):
+    with pytest.raises(SceneError, match="cannot solve the macpherson with closure = 'drawn'"):
         simulate(with_tables("off-axis-strut", title="macpherson"), PRINTED)
