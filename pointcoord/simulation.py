@@ -425,7 +425,9 @@ def scene_mechanism(scene: Scene, method: Method = SERIES) -> Mechanism:
     if method.linkage is not None:
         own = method.linkage(topology)
         if own is None:
-            problem = f"the method {method.name!r} cannot solve the {part.name} with closure = {part.closure!r}"
+            problem = (
+                f"the method {method.name!r} cannot solve the {part.name} with closure = {part.closure!r}"
+            )
             raise SceneError(source, "mechanism.closure", problem, method.only)
         topology = own
     try:

@@ -64,7 +64,7 @@ class Angle:
         """Whether it is measured from the front or the rear."""
         return not {"forward", "rearward", "to_the_left"}.isdisjoint((self.sine, self.cosine))
 
-    def ends(self, wheel: Wheel | Topology) -> tuple[str, str]:
+    def ends(self, wheel: Wheel) -> tuple[str, str]:
         """The two points that the line runs through."""
         ends = wheel.role(self.line)
         if not ends:

@@ -23,6 +23,11 @@ class Wheel:
     topology: Topology
     part: str = ""
 
+    @classmethod
+    def of(cls, topology: Topology, number: str) -> Wheel:
+        """The wheel that a number is of, by the number's name."""
+        return cls(topology, number.rpartition(".")[0])
+
     @property
     def prefix(self) -> str:
         """What its names begin with."""

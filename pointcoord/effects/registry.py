@@ -128,6 +128,12 @@ ANGLES: Mapping[str, Angle] = {
 }
 """Those that are angles of a line."""
 
+
+def angle_called(name: str) -> Angle | None:
+    """The angle of a line by its name, which may have that of a part before it; None if there is none."""
+    return ANGLES.get(name.rpartition(".")[2])
+
+
 QUANTITIES: Mapping[str, Quantity] = {
     quantity.name: quantity for effect in (*ALWAYS, *EFFECTS.values()) for quantity in effect.quantities
 }

@@ -589,8 +589,8 @@ class Scene(Part):
             return
         if not missing:
             raise ValueError(
-                f"the {part.name} has no freedom and no input is driven: it is a structure that nothing moves; "
-                "allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
+                f"the {part.name} has no freedom and no input is driven: it is a structure that nothing moves"
+                "; allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
             )
         inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in inputs if name in self.inputs]

@@ -5,7 +5,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -68,6 +68,11 @@ def axes_of(scene: Scene) -> CarAxes:
 
 def _in_digits(amount: Array | float) -> str:
     return f"{amount:.6g}" if np.ndim(amount) == 0 else f"({', '.join(f'{c:.6g}' for c in np.ravel(amount))})"
+
+
+def nearest(instants: Array, to: Array) -> NDArray[np.intp]:
+    """Of each of some instants the place of the nearest of all, which rise."""
+    return np.searchsorted(0.5 * (instants[1:] + instants[:-1]), to)
 
 
 def _apart_by(step: float, numbers: Array) -> int:
@@ -217,6 +222,13 @@ class Evidence:
         held = {**self.held, **{row: value for row, (value, _) in rows.items()}}
         allowed = {**self.allowed, **{row: width for row, (_, width) in rows.items()}}
         return replace(self, held=held, allowed=allowed, wrong=wrong)
+
+    def undone(self, rows: Collection[Row], undo: Callable[[Row, Array], Array]) -> Evidence:
+        """The same with other given numbers of some rows; wrong is what then disagrees."""
+        given = {row: undo(row, array) if row in rows else array for row, array in self.given.items()}
+        there = replace(self, given=given)
+        wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
+        return replace(there, wrong=tuple(wrong))
 
     def left(self, row: Row, value: Array, allowed: Array) -> float:
         """The largest difference of given numbers from others, in parts of what is allowed."""

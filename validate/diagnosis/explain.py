@@ -81,16 +81,28 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = _explained(evidence)
-    if evidence.moving_all_wrong and _open(evidence, found):
-        # Rows that are one late or early hide which car it is: it is looked for with these in their places.
-        for words, undone in evidence.without_a_late_sample():
+    if _open(evidence, found):
+        for kind, words, undone in _undone(evidence, found):
             for one in _explained(undone):
                 if one.whole and one.hypothesis.kind in OTHER_CARS and not _open(undone, [one]):
                     told = _in_words(undone, one)
                     return (
-                        replace(told, words=f"{told.words}, and {words}", kind=f"{told.kind} and sample"),
+                        replace(told, words=f"{told.words}, and {words}", kind=f"{told.kind} and {kind}"),
                     )
     return tuple(_in_words(evidence, one) for one in found)
+
+
+def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, str, Evidence]]:
+    """Without a fault that all numbers may have, and that hides which car it is: its kind and its words.
+
+    Axes, signs and units are supposed where some numbers show them, rows in their neighbours' places always.
+    """
+    for fault in (one.hypothesis for one in found):
+        if fault.undo is not None:
+            yield fault.kind, fault.words, evidence.undone(fault.rows, fault.undo)
+    if evidence.moving_all_wrong:
+        for words, undone in evidence.without_a_late_sample():
+            yield "sample", words, undone
 
 
 def _explained(evidence: Evidence) -> list[_Found]:
@@ -144,7 +156,12 @@ def _but_for_moved_points(found: Sequence[_Found]) -> list[_Found]:
 
 def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> tuple[Row, ...]:
     """The rows that nothing explains yet; or nothing explains mostly."""
-    done = {row for one in found if one.whole or (mostly and one.lowered >= ENOUGH) for row in one.rows}
+    done = {
+        row
+        for one in found
+        if one.whole or (mostly and one.lowered >= ENOUGH and not one.hypothesis.fitted)
+        for row in one.rows
+    }
     return tuple(
         row for row in evidence.wrong if row not in done and evidence.clear(row, evidence.allowed[row])
     )
@@ -191,7 +208,8 @@ def _carried(evidence: Evidence, hypothesis: Hypothesis) -> _Found | None:
             return None
     fitted = hypothesis.fitted
     exact = [row for row, share in left.items() if share <= 1.0]
-    exact = [row for some in together(exact) if evidence.distinct(some) > fitted for row in some]
+    if not hypothesis.rests:
+        exact = [row for some in together(exact) if evidence.distinct(some) > fitted for row in some]
     if exact:
         return _Found(hypothesis, (*exact, *barely), max(left[row] for row in exact), np.inf)
     lowered = {some: _lowered(evidence, hypothesis, some) for some in together(left)}
@@ -310,7 +328,8 @@ def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
         better = any(
             set(one.rows) <= set(other.rows)
             and (
-                other.whole != one.whole
+                other.hypothesis.words == one.hypothesis.words
+                or other.whole != one.whole
                 or other.hypothesis.cost < one.hypothesis.cost
                 or len(other.rows) > len(one.rows)
                 or (not one.whole and other.lowered > 2.0 * one.lowered)

@@ -14,6 +14,7 @@ from validate.diagnosis.evidence import Evidence, Row
 Array = NDArray[np.float64]
 WouldBe = tuple[Array, Array]
 """What given numbers would be, and how far from that they may be."""
+Undo = Callable[[Row, Array], Array]
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,8 @@ class Hypothesis:
         decimals: of its amounts; of what is as far-fetched the rounder one is likelier meant.
         looser: whether it says that the numbers are ours, and may be farther off than is claimed of them.
         whole: whether it is about the whole car, so that rows that agree must agree under it too.
+        rests: whether it says where points rest, which one number tells.
+        undo: makes ours again of a given row's numbers, where all may have the fault beside another one.
         kind: of fault, two kinds joined by "and".
     """
 
@@ -40,6 +43,8 @@ class Hypothesis:
     decimals: int = 0
     looser: bool = False
     whole: bool = False
+    rests: bool = False
+    undo: Undo | None = None
     kind: str = ""
 
 

@@ -11,8 +11,9 @@ Array = NDArray[np.float64]
 
 # What a linear step from where the parameters are ours must leave of the difference, to be worth a search.
 LIKELY = 0.5
-# What the search may leave of it at most.
-PROMISING = 0.1
+# What the search may leave of it at most; or of what each number may be off by, which rounder ones, as they
+# are meant, may leave less of.
+PROMISING, NEARLY = 0.1, 2.0
 MOST_STEPS = 12
 # The search ends where a step lessens the sum of squares by less than this part: of what is explained whole
 # that is at rounding, and of what is not it is soon.
@@ -28,13 +29,18 @@ MEANT = 1e-8
 
 
 def fitted(
-    read: Callable[[Array], Array], start: Sequence[float], step: float, theirs: Array
+    read: Callable[[Array], Array],
+    start: Sequence[float],
+    step: float,
+    theirs: Array,
+    off: Array | float = 0.0,
 ) -> Array | None:
     """Parameters at which `read` is nearest to given numbers; None where that leaves much of the difference.
 
     Args:
         read: the numbers (B, M) at sets of parameters (B, P); NaN where there are none.
         start: where the parameters are ours. step: of differences by each.
+        off: how far the numbers may be from theirs; if all are within it nothing is left.
     """
     begin = np.array(start)
     (first,) = read(begin[None]) - theirs
@@ -63,7 +69,8 @@ def fitted(
     found = least_squares(
         gap, begin, slopes, x_scale="jac", xtol=1e-15, ftol=SETTLED, gtol=1e-15, max_nfev=MOST_STEPS
     )
-    return np.asarray(found.x) if float(np.linalg.norm(found.fun)) <= PROMISING * apart else None
+    left, nearly = float(np.linalg.norm(found.fun)), NEARLY * np.asarray(off)
+    return np.asarray(found.x) if left <= PROMISING * apart or (np.abs(found.fun) <= nearly).all() else None
 
 
 def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool], unit: float = 1.0) -> Array:

@@ -14,7 +14,7 @@ from itertools import product
 from typing import Literal
 
 from pointcoord.effects.angle import Angle
-from pointcoord.effects.registry import ANGLES, QUANTITIES
+from pointcoord.effects.registry import QUANTITIES, angle_called
 from pointcoord.linkage.topology import Topology
 from validate.solvers.names import known_names
 
@@ -100,5 +100,5 @@ def named(name: str, meanings: Mapping[str, Meaning]) -> Meaning | None:
 
 def angle_of(meaning: Meaning) -> Angle | None:
     """The angle that a number is; None if it is none of a line."""
-    angle = ANGLES.get(meaning.name)
+    angle = angle_called(meaning.name)
     return angle if angle and meaning.quantity == angle.quantity.name else None

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from pointcoord import KinematicMap, Motion, Scene, kinematic_map, simulate, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.corner import Wheel
 from pointcoord.effects.effect import Effect
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
@@ -204,8 +205,10 @@ class Driven:
         axes, topology = axes_of(self.scene), self.scene.mechanism.topology
         for s in asked:
             if (angle := angle_of(s.meaning)) is not None:
-                start, end = (places[point] for point in angle.ends(topology))
-                numbers.setdefault(s.meaning.quantity, {})[s.meaning.name] = angle.value(start, end, axes)
+                wheel = Wheel.of(topology, s.meaning.name)
+                start, end = (places[point] for point in angle.ends(wheel))
+                value = angle.value(start, end, axes.on(wheel.side))
+                numbers.setdefault(s.meaning.quantity, {})[s.meaning.name] = value
         bounds = {PLACES: {name: np.zeros_like(place) for name, place in places.items()}}
         return Found(numbers, bounds, reached, reasons, inputs)
 
@@ -250,7 +253,8 @@ def _of_a_line(series: Series, angle: Angle, found: Found, scene: Scene) -> tupl
 
     With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
     """
-    axes, (start, end) = axes_of(scene), angle.ends(scene.mechanism.topology)
+    wheel = Wheel.of(scene.mechanism.topology, series.meaning.name)
+    axes, (start, end) = axes_of(scene).on(wheel.side), angle.ends(wheel)
 
     def line(of: Found, quantity: str) -> tuple[Array, Array]:
         """From end to end, and how far it may be off: each end may be by its bound along each axis."""

@@ -9,6 +9,7 @@ import pytest
 from every_effect import every_effect
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
+from pointcoord.effects.corner import Wheel
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import ANGLES
@@ -112,7 +113,7 @@ def plain(motion: Motion, instants: np.ndarray) -> Numbers:
             numbers[quantity] = {point: found[d][point] + added[d] for point in topology.points}
     for effect in plan.computed:
         for angle in (ANGLES[name] for name in effect.own_names if name in ANGLES):
-            start, end = (found[0][point] for point in angle.ends(topology))
+            start, end = (found[0][point] for point in angle.ends(Wheel(topology)))
             numbers.setdefault("wheel", {})[angle.name] = angle.value(start, end, readout.axes)
     if "damper" in plan.effects:
         lower, upper = (found[0][point] for point in topology.role("damper"))

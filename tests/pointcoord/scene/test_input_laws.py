@@ -106,7 +106,7 @@ def test_drawn_values_of_inputs_that_do_not_hold_the_car_hide_no_fault(
     inputs: tuple[str, ...], words: str
 ) -> None:
     content = Scene.load("axle-steer").model_dump(exclude_none=True)
-    content["inputs"] = dict.fromkeys(inputs, {"constant": "drawn"})
+    content["inputs"] = {name: {"constant": "drawn"} for name in inputs}
     with pytest.raises(SceneError, match=words):
         Scene.from_mapping(content)
 

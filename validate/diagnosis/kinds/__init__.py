@@ -6,7 +6,7 @@ from validate.diagnosis.hypothesis import Kind
 from validate.diagnosis.kinds.angles import other_definitions
 from validate.diagnosis.kinds.assembly import other_assemblies, other_closures
 from validate.diagnosis.kinds.car_data import other_data
-from validate.diagnosis.kinds.hardpoint import misread_hardpoints
+from validate.diagnosis.kinds.hardpoint import misread_hardpoints, points_that_rest_elsewhere
 from validate.diagnosis.kinds.inputs import wrong_inputs
 from validate.diagnosis.kinds.links import other_lines, wrong_lengths
 from validate.diagnosis.kinds.names import anothers, sides_exchanged, swapped
@@ -22,13 +22,14 @@ from validate.diagnosis.kinds.numbers import (
 from validate.diagnosis.kinds.rates import differences, rates_per_input
 from validate.diagnosis.kinds.time_shift import one_sample_off, shifted_in_time
 
-UNIT, LINK = "unit", "link"
+UNIT, LINK, HARDPOINT = "unit", "link", "hardpoint"
 KINDS = (
     Kind("sign", other_signs, opens=True, closes=True),
     Kind("axes", exchanged_axes, opens=True),
     Kind("mirror", mirrored),
     Kind(UNIT, other_units, opens=True, closes=True),
     Kind("offset", offsets, closes=True),
+    Kind(HARDPOINT, points_that_rest_elsewhere),
     Kind("definition", other_definitions, opens=True),
     Kind("digits", printed_digits, closes=True),
     Kind("swapped", swapped),
@@ -45,6 +46,6 @@ KINDS = (
     Kind("line", other_lines, "car"),
     Kind(LINK, wrong_lengths, "car"),
     # A rod of another length may be one whose end was misread, and the other way round.
-    Kind("hardpoint", misread_hardpoints, "car", beside=LINK),
+    Kind(HARDPOINT, misread_hardpoints, "car", beside=LINK),
     Kind("factor", factors, "last"),
 )

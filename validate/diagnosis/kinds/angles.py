@@ -12,7 +12,8 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.registry import ANGLES
+from pointcoord.effects.corner import Wheel
+from pointcoord.effects.registry import angle_called
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, kind_of
 from validate.diagnosis.hypothesis import Hypothesis
@@ -32,14 +33,15 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each definition, of all angles that disagree."""
     topology = evidence.scene.mechanism.topology
     for row in evidence.wrong:
-        angle = ANGLES.get(row[1])
+        angle, wheel = angle_called(row[1]), Wheel.of(topology, row[1])
         if kind_of(row) != "car" or angle is None:
             continue
-        start, end = (evidence.places(point) for point in angle.ends(topology))
+        start, end = (evidence.places(point) for point in angle.ends(wheel))
         if start is None or end is None:
             continue
         length = np.linalg.norm(end - start, axis=-1)
-        p, q = (evidence.axes.component(end - start, side) for side in (angle.sine, angle.cosine))
+        axes = evidence.axes.on(wheel.side)
+        p, q = (axes.component(end - start, direction) for direction in (angle.sine, angle.cosine))
         # The line is a difference of coordinates that are each rounded; a few such roundings.
         size = max(float(np.abs(start).max()), float(np.abs(end).max()))
         for words, rule in DEFINITIONS.items():

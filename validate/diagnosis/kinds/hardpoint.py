@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, sweep
 from pointcoord.linkage.car_axes import Direction
-from validate.diagnosis.evidence import Evidence, Row, kind_of
+from validate.diagnosis.evidence import Evidence, Row, kind_of, nearest, order
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import LIKELY, as_meant, decimals_of, fitted
 
@@ -27,6 +27,7 @@ Coordinate = tuple[str, ...]
 Chosen = tuple[Coordinate, ...]
 
 STEP = 0.05  # mm, of the differences
+SAME = 1e-9  # of a scene's time: instants that are counted from another start are rounded otherwise
 MOST_INSTANTS = 25  # that amounts are found from
 ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
 LIKELIEST = 4  # of each number of coordinates
@@ -42,6 +43,20 @@ TOO: Mapping[Direction, str] = {
     "rearward": "far back",
     "forward": "far forward",
 }
+
+
+def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Each point of the chassis that is given elsewhere than drawn, and otherwise as ours: it was misread."""
+    topology = evidence.scene.mechanism.topology
+    for row in evidence.wrong:
+        if kind_of(row) != "point" or order(row) or row[1] in (*topology.moving, *topology.carried):
+            continue
+        gap, allowed = evidence.given[row] - evidence.held[row], evidence.allowed[row].max(axis=0)
+        off = [i for i in range(3) if abs(gap[0, i]) > allowed[i]]
+        if off and (np.ptp(gap, axis=0) <= 2.0 * allowed).all():
+            said = (_said(evidence, (f"{row[1]}.{'xyz'[i]}",), float(gap[0, i])) for i in off)
+            there = {row: (evidence.held[row] + gap[0], evidence.rounded(row, gap[0]))}
+            yield Hypothesis(row, " and ".join(said), there, len(off), 1.5 + len(off), rests=True)
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -68,10 +83,11 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypot
     """The likeliest by some numbers, with more coordinates, `most` at most, only where fewer do not do."""
     scene, every = evidence.solved.fine, evidence.scene.instants
     some = np.arange(0, len(every), -(-len(every) // MOST_INSTANTS))
-    if not np.isin(every[some], evidence.times).all():
+    at = nearest(evidence.times, every[some])
+    if np.abs(evidence.times[at] - every[some]).max() > SAME * np.ptp(every):
         return []
     time = scene.time.model_copy(update={"stop": float(every[some[-1]]), "samples": len(some)})
-    few, at = scene.model_copy(update={"time": time}), np.searchsorted(evidence.times, every[some])
+    few = scene.model_copy(update={"time": time})
     ours = np.concatenate([evidence.held[row][at].ravel() for row in looked])
     theirs, off = evidence.joined(looked, at)
     if not np.isfinite(theirs).all():
@@ -115,7 +131,7 @@ def _amounts(
         off: how far the numbers may be from theirs.
     """
 
-    amounts = fitted(read, [0.0] * count, STEP, theirs)
+    amounts = fitted(read, [0.0] * count, STEP, theirs, off)
     if amounts is None or not np.abs(amounts).max() < farthest:
         return None
     return as_meant(amounts, read, theirs, off)
@@ -180,7 +196,7 @@ def _supposed(evidence: Evidence, chosen: Chosen, amounts: Array) -> Hypothesis 
     found = sweep(scene, offsets=_offsets(scene, chosen, amounts[:, None]))
     if not found.solved.all():
         return None
-    at = np.searchsorted(evidence.scene.instants, evidence.times)
+    at = nearest(evidence.scene.instants, evidence.times)
     rows = {
         (q, name): (np.asarray(array[0])[at], evidence.rounded((q, name), *amounts))
         for q, part in found.numbers.items()

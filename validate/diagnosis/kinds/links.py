@@ -58,7 +58,7 @@ def _wrong_length(evidence: Evidence, tables: Mapping[str, Any], rod: str) -> Hy
                 found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
         return found
 
-    found = fitted(read, [0.0], STEP, theirs)
+    found = fitted(read, [0.0], STEP, theirs, off)
     if found is None:
         return None
     _, amounts = as_meant(found, read, theirs, off)

@@ -15,7 +15,7 @@ from pointcoord import PointcoordError, solve_poses
 from pointcoord.drawing_stands import drawn_inputs
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
-from validate.diagnosis.hypothesis import Hypothesis, WouldBe
+from validate.diagnosis.hypothesis import Hypothesis, Undo, WouldBe
 from validate.diagnosis.least import roundest
 from validate.tables.units import FORCES
 
@@ -80,11 +80,16 @@ def other_signs(evidence: Evidence) -> Iterator[Hypothesis]:
                 for row in (*vectors, *_vectors(evidence.beside))
             }
             words = f"the other sign of {' and '.join(flipped)}"
-            yield Hypothesis(tuple(flipped), words, rows, cost=1.0 + 0.1 * len(flipped))
+            undo = partial(_signed, np.array(signs))
+            yield Hypothesis(tuple(flipped), words, rows, cost=1.0 + 0.1 * len(flipped), undo=undo)
     cars = [row for row in evidence.wrong if kind_of(row) == "car"]
     if cars:
         turned = {row: (-evidence.held[row], evidence.allowed[row]) for row in cars}
         yield Hypothesis("car", "the other sign", turned)
+
+
+def _signed(signs: Array, row: Row, numbers: Array) -> Array:
+    return numbers if kind_of(row) == "car" else np.asarray(numbers * signs)
 
 
 def _in_axes(evidence: Evidence, matrix: Array, rows: Iterable[Row]) -> dict[Row, WouldBe]:
@@ -92,10 +97,22 @@ def _in_axes(evidence: Evidence, matrix: Array, rows: Iterable[Row]) -> dict[Row
     exact = np.isin(np.abs(matrix), (0.0, 1.0)).all()
     found: dict[Row, WouldBe] = {}
     for row in _vectors(rows):
-        axial = np.linalg.det(matrix) if kind_of(row) == "body" else 1.0
         allowed = evidence.allowed[row] if exact else evidence.rounded(row)
-        found[row] = (evidence.held[row] @ (np.sign(axial) * matrix).T, allowed @ np.abs(matrix).T)
+        found[row] = (_turned(matrix, row, evidence.held[row]), allowed @ np.abs(matrix).T)
     return found
+
+
+def _turned(matrix: Array, row: Row, vectors: Array) -> Array:
+    """Vectors of a row in other axes; those of a number of the car are no vectors."""
+    if kind_of(row) == "car":
+        return vectors
+    axial = np.linalg.det(matrix) if kind_of(row) == "body" else 1.0
+    return np.asarray(vectors @ (np.sign(axial) * matrix).T)
+
+
+def _back(matrix: Array) -> Undo:
+    """From other axes to ours."""
+    return partial(_turned, matrix.T)
 
 
 def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -117,15 +134,18 @@ def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
         named = tuple("-" * (s < 0.0) + "xyz"[p] for s, p in zip(signs, places, strict=True))
         rows = _in_axes(evidence, matrix, (*evidence.wrong, *evidence.beside))
         words = f"other axes: its x, y, z are our {', '.join(named)}"
-        yield Hypothesis(named, words, rows, cost=1.5 + 0.01 * sum(s < 0.0 for s in signs))
+        cost = 1.5 + 0.01 * sum(s < 0.0 for s in signs)
+        yield Hypothesis(named, words, rows, cost=cost, undo=_back(matrix))
 
 
 def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
     """Left for right: vectors are mirrored in the car's middle plane, angles that count outboard stay."""
     right = evidence.axes.right
-    rows = _in_axes(evidence, np.eye(3) - 2.0 * np.outer(right, right), evidence.held)
+    matrix = np.eye(3) - 2.0 * np.outer(right, right)
+    rows = _in_axes(evidence, matrix, evidence.held)
     rows |= {r: (evidence.held[r], evidence.allowed[r]) for r in evidence.held if kind_of(r) == "car"}
-    yield Hypothesis("mirror", "left for right: the car is mirrored", rows, whole=True)
+    words = "left for right: the car is mirrored"
+    yield Hypothesis("mirror", words, rows, whole=True, undo=_back(matrix))
 
 
 def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -138,7 +158,13 @@ def other_units(evidence: Evidence) -> Iterator[Hypothesis]:
                 rows[row] = (factor * evidence.held[row], factor * evidence.rounded(row))
         if rows:
             # A velocity in m/s is one in mm per millisecond: the length is meant.
-            yield Hypothesis(unit.words, unit.words, rows, cost=1.05 if unit.of == "s" else 1.0)
+            cost = 1.05 if unit.of == "s" else 1.0
+            yield Hypothesis(unit.words, unit.words, rows, cost=cost, undo=partial(_in_our_unit, unit))
+
+
+def _in_our_unit(unit: Unit, row: Row, numbers: Array) -> Array:
+    """Numbers of a row that are given in another unit."""
+    return np.asarray(numbers / (unit.factor ** order(row) if unit.of == "s" else unit.factor))
 
 
 def factors(evidence: Evidence) -> Iterator[Hypothesis]:

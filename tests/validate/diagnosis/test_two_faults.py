@@ -1,0 +1,121 @@
+"""A misread hardpoint is named beside a fault that every number has, and where it moves nothing."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from pointcoord import Scene, simulate
+from validate import check
+from validate.formulations.protocol import Numbers
+
+Array = NDArray[np.float64]
+Change = Callable[[Array], Array]
+
+
+def over_travel(name: str, *effects: str) -> Scene:
+    """A built-in car over its wheel's travel."""
+    content = Scene.load(name).model_dump(exclude_none=True)
+    rest = {"rack": {"constant": 0.0}} if "rack" in content["inputs"] else {}
+    content |= {"effects": effects, "inputs": {"wheel_travel": {"sweep": (-45.0, 45.0)}} | rest}
+    # 19 instants: those of the first 18 are counted anew with other roundings.
+    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 19}
+    return Scene.from_mapping(content, name)
+
+
+def misread(scene: Scene, coordinate: str, amount: float) -> Numbers:
+    """The numbers of the car with a coordinate drawn so much more."""
+    content = scene.model_dump(exclude_none=True)
+    points = {name: list(place) for name, place in content["mechanism"]["points"].items()}
+    point, _, axis = coordinate.rpartition(".")
+    points[point]["xyz".index(axis)] += amount
+    content["mechanism"]["points"] = points
+    return simulate(Scene.from_mapping(content, "misread")).numbers
+
+
+def told(scene: Scene, given: Mapping[str, Mapping[str, Array]]) -> list[str]:
+    return [one.words for one in check(lambda _: given, scene, accuracy=1e-5).explanations]
+
+
+def late(values: Array) -> Array:
+    return np.concatenate([values[:1], values[:-1]])
+
+
+@pytest.mark.parametrize(
+    ("name", "coordinate", "amount", "change", "words"),
+    [
+        (
+            "five-link",
+            "upper_rear_inner.y",
+            4.9,
+            late,
+            "4.9 mm too far in, at -415.1 for -420, and one sample late",
+        ),
+        ("hmmwv-front", "lower_arm_rear.z", 1.9, late, "1.9 mm too high, at 1.9 for 0, and one sample late"),
+        (
+            "wheel-travel",
+            "pushrod_inner.y",
+            1.2,
+            lambda v: v * [1.0, -1.0, 1.0],
+            "1.2 mm too far out, at 344.2 for 343, and left for right: the car is mirrored",
+        ),
+        (
+            "double-wishbone",
+            "upper_arm_front.z",
+            -3.0,
+            lambda v: v / 1000.0,
+            "3 mm too low, at 252 for 255, and m for mm",
+        ),
+        (
+            "bmw-e90-strut",
+            "strut_top.x",
+            2.5,
+            lambda v: v[:, [1, 0, 2]],
+            "2.5 mm too far back, at 86.32 for 83.82, and other axes: its x, y, z are our y, x, z",
+        ),
+    ],
+)
+def test_a_misread_hardpoint_is_named_with_what_is_wrong_with_every_number(
+    name: str, coordinate: str, amount: float, change: Change, words: str
+) -> None:
+    scene = over_travel(name)
+    wrong = misread(scene, coordinate, amount)["position"]
+    (only,) = told(scene, {"position": {point: change(places) for point, places in wrong.items()}})
+    assert only == f"position: {coordinate} drawn {words}"
+
+
+@pytest.mark.parametrize("amount", [3.1, -40.0])
+def test_a_point_that_moves_nothing_is_misread_all_the_same(amount: float) -> None:
+    """The arm's hinge is along x: where on it its rear point is drawn shows in that point alone."""
+    scene = over_travel("double-wishbone")
+    right = simulate(scene).numbers["position"]
+    there = right["upper_arm_rear"] + [amount, 0.0, 0.0]
+    (only,) = told(scene, {"position": {**right, "upper_arm_rear": there}})
+    assert only.startswith(f"position of upper_arm_rear: upper_arm_rear.x drawn {abs(amount):g} mm too far")
+
+
+def test_an_offset_that_leaves_a_little_hides_no_misread_wheel_centre() -> None:
+    """Toe is off by a constant but for a ten thousandth of it."""
+    scene = over_travel("five-link", "camber", "toe")
+    wheel = misread(scene, "wheel_centre.x", 1.3)["wheel"]
+    (only,) = told(scene, {"wheel": wheel})
+    assert "wheel_centre.x drawn 1.3 mm too far back" in only
+
+
+@pytest.mark.parametrize(("change", "words"), [(np.tan, "the slope"), (np.sin, "the sine")])
+def test_angles_of_an_axle_by_another_definition_are_said_to_be(change: Change, words: str) -> None:
+    content = Scene.load("axle-opposed").model_dump(exclude_none=True)
+    scene = Scene.from_mapping(content | {"effects": ("wheel_angles", "caster")})
+    wheel = simulate(scene).numbers["wheel"]
+    (only,) = told(scene, {"wheel": {name: change(angles) for name, angles in wheel.items()}})
+    # Camber is so little that its slope is the angle.
+    assert only == f"left.kingpin, right.kingpin, left.caster, right.caster: {words}, no angle"
+
+
+def test_the_same_fault_is_said_once_beside_a_misread_hardpoint() -> None:
+    scene = over_travel("pushrod", "wheel_angles", "toe", "caster")
+    wheel = misread(scene, "wheel_axis_inner.x", 1.3)["wheel"]
+    first, second = told(scene, {"wheel": {**wheel, "caster": -wheel["caster"]}})
+    assert "wheel_axis_inner.x drawn 1.3 mm" in first
+    assert second == "caster: the other sign"
