@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.evidence import Evidence, Row, kind_of
 
 Array = NDArray[np.float64]
 WouldBe = tuple[Array, Array]
 """What given numbers would be, and how far from that they may be."""
 Undo = Callable[[Row, Array], Array]
+
+ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,32 @@ class Hypothesis:
     rests: bool = False
     undo: Undo | None = None
     kind: str = ""
+
+
+def by_what_tells(
+    evidence: Evidence, suppose: Callable[[Sequence[Row], bool], Sequence[Hypothesis]]
+) -> Iterator[Hypothesis]:
+    """Other cars that the numbers that tell most show; where none gives all of these, all but one of them.
+
+    A number that has a fault of its own hides what the others say, and positions in another unit what angles
+    do.
+
+    Args:
+        suppose: the likeliest by some numbers, and whether none of these is left out.
+    """
+    for looked in evidence.telling:
+        found = suppose(looked, True)
+        yield from found
+        if any(gives(evidence, one, looked) for one in found):
+            return
+        if len(looked) >= ENOUGH_NUMBERS and all(kind_of(row) == "car" for row in looked):
+            for others in combinations(looked, len(looked) - 1):
+                yield from (one for one in suppose(others, False) if gives(evidence, one, others))
+
+
+def gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:
+    """Whether a fault explains rows whole."""
+    return all(evidence.left(row, *one.rows[row]) <= 1.0 for row in rows)
 
 
 @dataclass(frozen=True)

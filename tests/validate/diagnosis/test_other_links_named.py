@@ -140,6 +140,17 @@ def test_a_table_over_travel_shows_a_rod_of_another_length(name: str, rod: str, 
     assert all(f"{rod}_inner." in other.words for other in others)
 
 
+def test_a_rod_of_another_length_is_named_though_one_number_has_a_fault_of_its_own() -> None:
+    scene, content = car("five-link")
+    scene = scene.model_copy(update={"effects": ["camber", "toe", "steer_angle"]})
+    content["effects"] = scene.effects
+    wheel = absolute(with_rod(content, "upper_front", 2.5)).numbers["wheel"]
+    wrong = {"wheel": {**wheel, "steer_angle": -wheel["steer_angle"]}}
+    told = [one.words for one in check(lambda _: wrong, scene, accuracy=1e-5).explanations]
+    assert told[0].startswith("camber, toe: upper_front is 2.5 mm too long")
+    assert told[1:] == ["steer_angle: the other sign"]
+
+
 def test_what_two_names_have_exchanged_is_said_of_each() -> None:
     scene, _ = car("double-wishbone")
     held = formulation("pointcoord").solve(scene)

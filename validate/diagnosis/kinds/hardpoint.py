@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene, sweep
 from pointcoord.linkage.car_axes import Direction
 from validate.diagnosis.evidence import Evidence, Row, kind_of, nearest, order
-from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.hypothesis import Hypothesis, by_what_tells, gives
 from validate.diagnosis.least import LIKELY, as_meant, decimals_of, fitted
 
 Array = NDArray[np.float64]
@@ -29,7 +29,6 @@ Chosen = tuple[Coordinate, ...]
 STEP = 0.05  # mm, of the differences
 SAME = 1e-9  # of a scene's time: instants that are counted from another start are rounded otherwise
 MOST_INSTANTS = 25  # that amounts are found from
-ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
 LIKELIEST = 4  # of each number of coordinates
 # How many times what the best choice leaves another may leave.
 POORER = 30.0
@@ -60,23 +59,10 @@ def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The likeliest; and where no drawing gives every number that is looked at, one that gives all but one.
-
-    A number that has a fault of its own hides what the others say, and positions in another unit what angles
-    do.
-    """
-    for looked in evidence.telling:
-        found = _misread(evidence, looked, 3)
-        yield from found
-        if any(_gives(evidence, one, looked) for one in found):
-            return
-        if len(looked) >= ENOUGH_NUMBERS and all(kind_of(row) == "car" for row in looked):
-            for others in combinations(looked, len(looked) - 1):
-                yield from (one for one in _misread(evidence, others, 1) if _gives(evidence, one, others))
-
-
-def _gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:
-    return all(evidence.left(row, *one.rows[row]) <= 1.0 for row in rows)
+    """The likeliest, of three coordinates at most, or of one where a number is left out."""
+    return by_what_tells(
+        evidence, lambda looked, all_of_them: _misread(evidence, looked, 3 if all_of_them else 1)
+    )
 
 
 def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypothesis]:
@@ -117,7 +103,7 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypot
         best = min((left for left, *_ in tried), default=0.0)
         likely = [(chosen, amounts) for left, amounts, chosen in tried if left <= POORER * best]
         hypotheses = [one for chosen, amounts in likely if (one := _supposed(evidence, chosen, amounts))]
-        if any(_gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
+        if any(gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
             return hypotheses
     return []
 

@@ -6,14 +6,15 @@ k or m of one input, then k and m of all together, are found by least squares. I
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, simulate
 from pointcoord.scene.input_part import InputPart
-from validate.diagnosis.evidence import Evidence
-from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.hypothesis import Hypothesis, by_what_tells, gives
 from validate.diagnosis.least import fitted, meant
 from validate.formulations.input_rates import rates
 
@@ -29,10 +30,15 @@ NEAR = 1e-5  # how near to pi an amount is meant to be it
 
 def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
     """Simple before far-fetched, and no more of these where something explains all."""
-    laws, looked, few = evidence.scene.inputs, evidence.first_wrong, evidence.thinned(FEW)
+    return by_what_tells(evidence, partial(_wrong, evidence))
+
+
+def _wrong(evidence: Evidence, looked: Sequence[Row], all_of_them: bool) -> list[Hypothesis]:
+    """One number of an input by itself; all together only if this does not do, of all numbers that tell."""
+    laws, few = evidence.scene.inputs, evidence.thinned(FEW)
     theirs, _ = few.joined(looked)
     if not np.isfinite(theirs).all():
-        return
+        return []
     sizes = {name: np.abs(rates(law, few.times)[:, 0]) for name, law in laws.items()}
 
     def numbers(places: Sequence[tuple[str, int]], sets: Array) -> Array:
@@ -54,15 +60,18 @@ def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
             found[i] = meant(found[i], 1.0 if which == 0 else float(sizes[name].max()) or 1.0)
         return {name: km for name, km in _taken(places, found).items() if km != OURS}
 
-    # One number alone, then all together; of an input that stands still k and m are one, of one at 0 only m.
+    # Of an input that stands still k and m are one, of one at 0 only m.
     moves = [name for name in laws if np.ptp(sizes[name]) > 0.0]
     single = [[(name, 0)] for name in laws if sizes[name].any()] + [[(name, 1)] for name in laws]
     every = [(name, which) for name in laws for which in (0, 1) if which or name in moves]
-    for stage in (single, [every]):
-        some = [one for places in stage if (taken := search(places)) and (one := _supposed(evidence, taken))]
-        yield from some
-        if any(all(evidence.left(row, *one.rows[row]) <= 1.0 for row in looked) for one in some):
-            return
+    found: list[Hypothesis] = []
+    for stage in (single, [every]) if all_of_them else (single,):
+        found += (
+            one for places in stage if (taken := search(places)) and (one := _supposed(evidence, taken))
+        )
+        if any(gives(evidence, one, looked) for one in found):
+            break
+    return found
 
 
 def _taken(places: Sequence[tuple[str, int]], values: Array) -> dict[str, tuple[float, float]]:

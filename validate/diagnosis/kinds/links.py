@@ -8,7 +8,7 @@ and what slides on it is drawn on that line.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
-from validate.diagnosis.evidence import Evidence
-from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.evidence import Evidence, Row
+from validate.diagnosis.hypothesis import Hypothesis, by_what_tells
 from validate.diagnosis.least import as_meant, decimals_of, fitted
 
 Array = NDArray[np.float64]
@@ -30,13 +30,18 @@ FEW = 25  # instants that a length is looked for at
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each rod by itself."""
     tables = _tables(evidence.scene)
-    for rod in tables.get("rods", {}):
-        if found := _wrong_length(evidence, tables, rod):
-            yield found
+
+    def supposed(looked: Sequence[Row], _: bool) -> list[Hypothesis]:
+        rods = (_wrong_length(evidence, looked, tables, rod) for rod in tables.get("rods", {}))
+        return [one for one in rods if one is not None]
+
+    return by_what_tells(evidence, supposed)
 
 
-def _wrong_length(evidence: Evidence, tables: Mapping[str, Any], rod: str) -> Hypothesis | None:
-    looked, few, ends = evidence.first_wrong, evidence.thinned(FEW), tables["rods"][rod]
+def _wrong_length(
+    evidence: Evidence, looked: Sequence[Row], tables: Mapping[str, Any], rod: str
+) -> Hypothesis | None:
+    few, ends = evidence.thinned(FEW), tables["rods"][rod]
     theirs, off = few.joined(looked)
     if not np.isfinite(theirs).all():
         return None
