@@ -224,8 +224,12 @@ class Evidence:
         return replace(self, held=held, allowed=allowed, wrong=wrong)
 
     def undone(self, rows: Collection[Row], undo: Callable[[Row, Array], Array]) -> Evidence:
-        """The same with other given numbers of some rows; wrong is what then disagrees."""
-        given = {row: undo(row, array) if row in rows else array for row, array in self.given.items()}
+        """The same with other given numbers of rows and of vectors beside; wrong is what then disagrees."""
+        quantities = {row[0] for row in rows if kind_of(row) != "car"}
+        given = {
+            row: undo(row, array) if row in rows or row[0] in quantities else array
+            for row, array in self.given.items()
+        }
         there = replace(self, given=given)
         wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
         return replace(there, wrong=tuple(wrong))

@@ -125,6 +125,9 @@ def _explained(evidence: Evidence) -> list[_Found]:
             if left and one.whole:
                 found += _supposed(evidence.after(one.hypothesis.rows, left), "numbers")
     if left := _open(evidence, found):
+        # What is found from all numbers, such as a shift, may be another one of those that are left.
+        found += _supposed(replace(evidence, wrong=left), "numbers")
+    if left := _open(evidence, found):
         found += _pairs(replace(evidence, wrong=left))
     if left := _open(evidence, found):
         found += _supposed(replace(evidence, wrong=left), "last")
@@ -307,7 +310,7 @@ def _needed(evidence: Evidence, singly: Sequence[Hypothesis], both: _Found) -> b
         for one in singly
         if set(both.rows) <= one.rows.keys()
     )
-    return both.leftover <= 1.0 or all(left >= WORTH * both.leftover for left in alone)
+    return all(left > 1.0 and (both.whole or left >= WORTH * both.leftover) for left in alone)
 
 
 def _ranked(found: Iterable[_Found]) -> list[_Found]:

@@ -8,6 +8,7 @@ the projected angle, and the slope p / q.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import angle_called
 from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import Evidence, kind_of
+from validate.diagnosis.evidence import Evidence, Row, kind_of
 from validate.diagnosis.hypothesis import Hypothesis
 
 Array = NDArray[np.float64]
@@ -27,6 +28,11 @@ DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
     "the sine, no angle": lambda p, q, n: p / np.hypot(p, q),
 }
 """By words, from p, q and the line's length."""
+BACK: Mapping[str, Callable[[Array], Array]] = {
+    "the slope, no angle": np.arctan,
+    "the sine, no angle": lambda sine: np.arcsin(np.clip(sine, -1.0, 1.0)),
+}
+"""Of those that need no line the projected angle."""
 
 
 def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -49,4 +55,10 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
                 value = rule(p, q, length)
             if np.isfinite(value).all():
                 allowed = evidence.rounded(row, value) + 8.0 * EPS * size / length
-                yield Hypothesis(words, words, {row: (value, allowed)}, cost=1.2)
+                undo = partial(_projected, BACK[words]) if words in BACK else None
+                yield Hypothesis(words, words, {row: (value, allowed)}, cost=1.2, undo=undo)
+
+
+def _projected(back: Callable[[Array], Array], row: Row, numbers: Array) -> Array:
+    """The angles that numbers of a row stand for; those of other rows are no such numbers."""
+    return back(numbers) if kind_of(row) == "car" else numbers

@@ -34,6 +34,7 @@ LIKELIEST = 4  # of each number of coordinates
 POORER = 30.0
 # Of the car's size: what is read wrongly by more is another car, and whether it closes takes long to find.
 FARTHEST = 0.1
+MOST_POINTS = 2  # that are misread each by itself
 TOO: Mapping[Direction, str] = {
     "up": "high",
     "down": "low",
@@ -45,11 +46,14 @@ TOO: Mapping[Direction, str] = {
 
 
 def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Each point of the chassis that is given elsewhere than drawn, and otherwise as ours: it was misread."""
+    """A point of the chassis that is given elsewhere than drawn, and otherwise as ours, was misread.
+
+    More than a few that are have something else in common.
+    """
     topology = evidence.scene.mechanism.topology
-    for row in evidence.wrong:
-        if kind_of(row) != "point" or order(row) or row[1] in (*topology.moving, *topology.carried):
-            continue
+    moving = (*topology.moving, *topology.carried)
+    rest = [r for r in evidence.wrong if kind_of(r) == "point" and order(r) == 0 and r[1] not in moving]
+    for row in rest if len(rest) <= MOST_POINTS else ():
         gap, allowed = evidence.given[row] - evidence.held[row], evidence.allowed[row].max(axis=0)
         off = [i for i in range(3) if abs(gap[0, i]) > allowed[i]]
         if off and (np.ptp(gap, axis=0) <= 2.0 * allowed).all():

@@ -243,7 +243,8 @@ def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
     """One shift for all points; of another origin only where every given point has it."""
     if len(rows) < 2:
         return  # one point alone tells of no other
-    shift = np.mean(np.concatenate([evidence.given[row] - evidence.held[row] for row in rows]), axis=0)
+    # Not the mean: a few points may be elsewhere by themselves besides.
+    shift = np.median(np.concatenate([evidence.given[row] - evidence.held[row] for row in rows]), axis=0)
     shift[np.abs(shift) < max(float(evidence.rounded(row).max()) for row in rows)] = 0.0
     fitted = int(np.count_nonzero(shift))
     if not fitted or not np.isfinite(shift).all():
@@ -254,7 +255,12 @@ def _origin(evidence: Evidence, rows: list[Row]) -> Iterator[Hypothesis]:
     # The points that agree say where the origin is: what is off beside them is off by itself.
     found = evidence.in_words(rows[0], shift)
     words = f"another origin: every point is shifted by {found}" if every else f"shifted by {found}"
-    yield Hypothesis("origin", words, moved, fitted, 1.0 + 0.5 * fitted)
+    undo = partial(_shifted, -shift)
+    yield Hypothesis("origin", words, moved, fitted, 1.0 + 0.5 * fitted, undo=undo)
+
+
+def _shifted(shift: Array, row: Row, places: Array) -> Array:
+    return np.asarray(places + shift)
 
 
 def _decimal_step(numbers: Array, places: int) -> Array:
