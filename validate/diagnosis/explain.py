@@ -9,7 +9,8 @@ Of a row that is off by few times what is allowed nothing is claimed: what is al
 wider, and would explain it by itself.
 
 The kinds that need only arithmetic come first, each alone; then those that solve other cars; then two faults
-in the same numbers.
+in the same numbers. Where that leaves rows open, what all numbers may have besides (other axes, signs or
+units, a shift, every row one late) is undone, and the car is looked for again.
 """
 
 from __future__ import annotations

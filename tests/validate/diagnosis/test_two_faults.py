@@ -110,14 +110,14 @@ def test_an_offset_that_leaves_a_little_hides_no_misread_wheel_centre() -> None:
     assert "wheel_centre.x drawn 1.3 mm too far back" in only
 
 
-@pytest.mark.parametrize(("change", "words"), [(np.tan, "the slope"), (np.sin, "the sine")])
-def test_angles_of_an_axle_by_another_definition_are_said_to_be(change: Change, words: str) -> None:
+def test_angles_of_an_axle_by_another_definition_are_said_to_be() -> None:
     content = Scene.load("axle-opposed").model_dump(exclude_none=True)
+    content["time"]["samples"] = 9
     scene = Scene.from_mapping(content | {"effects": ("wheel_angles", "caster")})
     wheel = simulate(scene).numbers["wheel"]
-    (only,) = told(scene, {"wheel": {name: change(angles) for name, angles in wheel.items()}})
+    (only,) = told(scene, {"wheel": {name: np.tan(angles) for name, angles in wheel.items()}})
     # Camber is so little that its slope is the angle.
-    assert only == f"left.kingpin, right.kingpin, left.caster, right.caster: {words}, no angle"
+    assert only == "left.kingpin, right.kingpin, left.caster, right.caster: the slope, no angle"
 
 
 def test_the_same_fault_is_said_once_beside_a_misread_hardpoint() -> None:
