@@ -122,6 +122,7 @@ class Evidence:
         wrong: the rows that disagree.
         over_time: whether the instants are times; else rows of a file, of inputs or travels.
         other_cars: whether the instants are those of the scene, so that other cars are solved there.
+        parted: whether a fault of all numbers was undone, so that one car has to explain every one of them.
         own: how far a given number may be off by itself, in its own unit, beside what is allowed.
         known: where points are, (N, 3), beside the rows.
         not_given: our numbers of the car that are not given, (N,).
@@ -138,6 +139,7 @@ class Evidence:
     solved: Solved
     over_time: bool = True
     other_cars: bool = True
+    parted: bool = False
     own: Rows = field(default_factory=dict)
     known: Mapping[str, Array] = field(default_factory=dict)
     not_given: Rows = field(default_factory=dict)
@@ -230,7 +232,7 @@ class Evidence:
             row: undo(row, array) if row in rows or row[0] in quantities else array
             for row, array in self.given.items()
         }
-        there = replace(self, given=given)
+        there = replace(self, given=given, parted=True)
         wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
         return replace(there, wrong=tuple(wrong))
 
@@ -341,6 +343,7 @@ class Evidence:
                     known={point: places[ours] for point, places in self.known.items()},
                     not_given=not_given,
                     solved=Solved(scene),
+                    parted=True,
                 ),
             )
 

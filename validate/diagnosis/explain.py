@@ -39,7 +39,6 @@ ENOUGH = 1e3
 FITTED = 2.0
 # Instants that pairs of faults are tried at before all are looked at.
 FEW = 8
-OTHER_CARS = {kind.name for kind in KINDS if kind.stage == "car" and not kind.of_time}
 
 
 @dataclass(frozen=True)
@@ -84,8 +83,8 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
     found = _explained(evidence)
     if _open(evidence, found):
         for kind, words, undone in _undone(evidence, found):
-            for one in _explained(undone):
-                if one.whole and one.hypothesis.kind in OTHER_CARS and not _open(undone, [one]):
+            for one in _ranked(_other_cars(undone)):
+                if one.whole and not _open(undone, [one]):
                     told = _in_words(undone, one)
                     return (
                         replace(told, words=f"{told.words}, and {words}", kind=f"{told.kind} and {kind}"),
@@ -114,11 +113,7 @@ def _explained(evidence: Evidence) -> list[_Found]:
         and _open(evidence, _but_for_moved_points(found), mostly=True)
         and _elsewhere(evidence)
     ):
-        cars: list[_Found] = []
-        for kind in KINDS:
-            others = [one for one in cars if one.hypothesis.kind != kind.beside]
-            if kind.stage == "car" and _open(evidence, others):
-                cars += _of_kind(evidence, kind)
+        cars = _other_cars(evidence)
         found += cars
         for one in _ranked(cars)[:1]:
             # What other faults the same car has beside it.
@@ -133,6 +128,16 @@ def _explained(evidence: Evidence) -> list[_Found]:
     if left := _open(evidence, found):
         found += _supposed(replace(evidence, wrong=left), "last")
     return list(_best(_ranked(found)))
+
+
+def _other_cars(evidence: Evidence) -> list[_Found]:
+    """What the numbers carry of other motions and cars, one kind after the other until nothing is left."""
+    cars: list[_Found] = []
+    for kind in KINDS:
+        others = [one for one in cars if one.hypothesis.kind != kind.beside]
+        if kind.stage == "car" and not (evidence.parted and kind.of_time) and _open(evidence, others):
+            cars += _of_kind(evidence, kind)
+    return cars
 
 
 def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
