@@ -60,10 +60,11 @@ def by_what_tells(
     do.
 
     Args:
-        suppose: the likeliest by some numbers, and whether none of these is left out.
+        suppose: the likeliest by some numbers, and whether several changes at once are looked for: not where
+            another fault is supposed already.
     """
     for looked in evidence.telling:
-        found = suppose(looked, True)
+        found = suppose(looked, not evidence.parted)
         yield from found
         if any(gives(evidence, one, looked) for one in found):
             return

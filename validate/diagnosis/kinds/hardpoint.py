@@ -63,10 +63,8 @@ def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
-    """The likeliest, of three coordinates at most, or of one where a number is left out."""
-    return by_what_tells(
-        evidence, lambda looked, all_of_them: _misread(evidence, looked, 3 if all_of_them else 1)
-    )
+    """The likeliest, of three coordinates at most, or of one where another fault is supposed already."""
+    return by_what_tells(evidence, lambda looked, several: _misread(evidence, looked, 3 if several else 1))
 
 
 def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypothesis]:

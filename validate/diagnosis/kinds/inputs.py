@@ -33,8 +33,8 @@ def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
     return by_what_tells(evidence, partial(_wrong, evidence))
 
 
-def _wrong(evidence: Evidence, looked: Sequence[Row], all_of_them: bool) -> list[Hypothesis]:
-    """One number of an input by itself; all together only if this does not do, of all numbers that tell."""
+def _wrong(evidence: Evidence, looked: Sequence[Row], several: bool) -> list[Hypothesis]:
+    """One number of an input by itself; all together if several are looked for and this does not do."""
     laws, few = evidence.scene.inputs, evidence.thinned(FEW)
     theirs, _ = few.joined(looked)
     if not np.isfinite(theirs).all():
@@ -65,7 +65,7 @@ def _wrong(evidence: Evidence, looked: Sequence[Row], all_of_them: bool) -> list
     single = [[(name, 0)] for name in laws if sizes[name].any()] + [[(name, 1)] for name in laws]
     every = [(name, which) for name in laws for which in (0, 1) if which or name in moves]
     found: list[Hypothesis] = []
-    for stage in (single, [every]) if all_of_them else (single,):
+    for stage in (single, [every]) if several else (single,):
         found += (
             one for places in stage if (taken := search(places)) and (one := _supposed(evidence, taken))
         )
