@@ -381,7 +381,7 @@ class MechanismPart(Part):
     def drawn_inputs(self, driven: Collection[str]) -> dict[str, float]:
         """The values at which inputs are drawn, if these are driven; rad or mm.
 
-        None if these are more or fewer than there are freedoms, which is told when the scene is checked.
+        Empty if these are more or fewer than there are freedoms, which is told when the scene is checked.
 
         Raises:
             MechanismError: the hardpoints make no mechanism that these drive.

@@ -108,11 +108,7 @@ def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, 
 def _explained(evidence: Evidence) -> list[_Found]:
     """What the numbers carry, the best first."""
     found = list(_supposed(evidence, "numbers"))
-    if (
-        evidence.other_cars
-        and _open(evidence, _but_for_moved_points(found), mostly=True)
-        and _elsewhere(evidence)
-    ):
+    if _open(evidence, _but_for_moved_points(found), mostly=True):
         cars = _other_cars(evidence)
         found += cars
         for one in _ranked(cars)[:1]:
@@ -133,6 +129,8 @@ def _explained(evidence: Evidence) -> list[_Found]:
 def _other_cars(evidence: Evidence) -> list[_Found]:
     """What the numbers carry of other motions and cars, one kind after the other until nothing is left."""
     cars: list[_Found] = []
+    if not (evidence.other_cars and _elsewhere(evidence)):
+        return cars
     for kind in KINDS:
         others = [one for one in cars if one.hypothesis.kind != kind.beside]
         if kind.stage == "car" and not (evidence.parted and kind.of_time) and _open(evidence, others):

@@ -68,9 +68,8 @@ def by_what_tells(
         yield from found
         if any(gives(evidence, one, looked) for one in found):
             return
-        if evidence.parted:
-            continue
-        if len(looked) >= ENOUGH_NUMBERS and all(kind_of(row) == "car" for row in looked):
+        by_themselves = not evidence.parted and all(kind_of(row) == "car" for row in looked)
+        if by_themselves and len(looked) >= ENOUGH_NUMBERS:
             for others in combinations(looked, len(looked) - 1):
                 yield from (one for one in suppose(others, False) if gives(evidence, one, others))
 
