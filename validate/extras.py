@@ -18,17 +18,17 @@ class MissingPackage(ImportError):
     def __init__(self, part: str, error: ImportError, extra: str = "validate") -> None:
         self.part = part
         self.package = error.name or "pin"
-        if "pointcoord[validate]" in str(error):
+        if "the absolute model needs Pinocchio" in str(error):
             # The part says it itself.
             super().__init__(str(error), name=error.name)
             return
-        missing = isinstance(error, ModuleNotFoundError)
-        problem = "is not installed" if missing else f"does not load ({' '.join(str(error).split())})"
-        super().__init__(
-            f"{part!r} needs the package {self.package!r}, which {problem}; "
-            f"try: pip install 'pointcoord[{extra}]'",
-            name=error.name,
-        )
+        problem = "is not installed"
+        advice = f"pip install 'pointcoord[{extra}]'"
+        if not isinstance(error, ModuleNotFoundError):
+            problem = f"does not load ({' '.join(str(error).split())})"
+            advice += ", and the system's package with the library, if one is named"
+        said = f"{part!r} needs the package {self.package!r}, which {problem}; try: {advice}"
+        super().__init__(said, name=error.name)
 
 
 def needed(part: str, module: str, extra: str = "validate") -> Any:

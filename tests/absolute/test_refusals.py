@@ -1,7 +1,5 @@
 """What cannot be described or solved is refused in one line with the name, the place and the value."""
 
-import subprocess
-import sys
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -249,18 +247,3 @@ def test_rates_are_in_proportion_to_those_of_the_inputs(fast: float) -> None:
         assert np.abs(quick.velocity[name] / fast - plain.velocity[name]).max() <= 1e-10
         if fast > 1.0:
             assert np.abs(quick.acceleration[name] / fast**2 - plain.acceleration[name]).max() <= 1e-10
-
-
-def test_importing_without_pinocchio_names_the_extra() -> None:
-    program = (
-        "import sys; sys.modules['pinocchio'] = None\n"
-        "try:\n"
-        "    import absolute.errors\n"
-        "except ImportError as error:\n"
-        "    print(type(error).__name__, error, sep='|')\n"
-    )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
-    name, message = done.stdout.rstrip("\n").split("|")
-    assert name == "MissingPinocchioError"
-    assert "pinocchio" in message
-    assert message.endswith("pip install 'pointcoord[validate]'")

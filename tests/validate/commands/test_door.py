@@ -238,6 +238,15 @@ def test_without_pinocchio_another_program_is_the_second_model_and_that_is_said(
     assert "the absolute model needs Pinocchio" in asked.stderr
 
 
+def test_where_pinocchio_lacks_a_library_of_the_system_that_is_asked_for(tmp_path: Path) -> None:
+    lacking = "libgomp.so.1: cannot open shared object file"
+    (tmp_path / "pinocchio.py").write_text(f"raise ImportError({lacking!r})\n")
+    said = with_fake(tmp_path, "validate", "steer", "--second", "absolute").stderr
+    assert f"there and does not load ({lacking})" in said
+    assert "install the system's package" in said
+    assert "pip install" not in said
+
+
 def test_every_module_says_which_extra_it_lacks() -> None:
     program = (
         "import importlib, pkgutil, sys\n"
