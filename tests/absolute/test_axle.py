@@ -1,11 +1,11 @@
-"""Wheels of an axle: each as if it were alone, and what both make together."""
+"""Wheels of an axle: each as if it were alone, and what both need."""
 
 from typing import Any
 
 import numpy as np
 import pytest
 from mechanism_files import plain_scene
-from shipped import EPS, Array, Motion, off
+from shipped import EPS, Motion, off
 
 import absolute
 
@@ -15,7 +15,6 @@ OFF = 64 * EPS * 1000.0 * (3000.0 / 400.0) ** 2
 # Hinges along x in the front view, and wheels of different heights.
 HINGES = {"left": (-150.0, 220.0), "right": (180.0, 160.0)}
 CENTRES = {"left": (-750.0, 300.0), "right": (760.0, 310.0)}
-ROLL_CENTRE = ["axle_roll_centre_offset", "axle_roll_centre_height"]
 
 
 def swing_axle(upright: bool = False, **changed: Any) -> dict[str, Any]:
@@ -100,102 +99,6 @@ def test_every_number_of_a_wheel_is_that_of_its_part_alone(part: str) -> None:
         # Instant centres are up to 10 m away, and their distances as far off as its square.
         times = 1e4 if "_view_" in name or "anti" in name else 1.0
         assert abs(here[f"{part}.{name}"] - there[name]) <= times * OFF, name
-
-
-@pytest.mark.parametrize(("left", "right"), [(0.0, 0.0), (0.1, 0.0), (-0.05, 0.12)])
-def test_the_roll_centre_is_where_the_lines_from_contact_points_to_hinges_meet(
-    left: float, right: float
-) -> None:
-    found = solved(swing_axle(), [*ROLL_CENTRE, "track"], **turns(left, right))
-    # About x the turn leads from y to z; a disc hangs along the wheel plane.
-    contacts, hinges = [], []
-    for part, turn in (("left", left), ("right", right)):
-        hinge, centre = np.array(HINGES[part]), np.array(CENTRES[part])
-        turned = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-        contacts.append(hinge + turned @ (centre - [0.0, RADIUS] - hinge))
-        hinges.append(hinge)
-    ways = np.array([h - c for h, c in zip(hinges, contacts, strict=True)])
-    shares = np.linalg.solve(np.array([ways[0], -ways[1]]).T, contacts[1] - contacts[0])
-    y, z = contacts[0] + shares[0] * ways[0]
-    ground = np.interp(y, *np.transpose(contacts)) if contacts[0][0] < y < contacts[1][0] else np.nan
-    assert abs(found["axle_roll_centre_offset"] - y) <= OFF
-    assert abs(found["axle_roll_centre_height"] - (z - ground)) <= OFF
-    assert abs(found["track"] - (contacts[1] - contacts[0])[0]) <= OFF
-
-
-def test_a_car_that_rolls_has_its_roll_centre_where_the_turned_lines_meet() -> None:
-    # The whole picture turns about the pivot, but discs hang along the car's up and not along their plane.
-    thin = {"wheel_radius": 1e-6}
-    still, rolled = (
-        solved(swing_axle(**thin), ROLL_CENTRE, **turns(0.1, -0.1, roll=roll)) for roll in (0.0, 0.05)
-    )
-    pivot, (y, above) = np.array(HINGES["left"]), still.values()
-    centres = {}
-    for part, turn in (("left", 0.1), ("right", -0.1)):
-        arm = np.subtract(CENTRES[part], HINGES[part])
-        c, s = np.cos(turn), np.sin(turn)
-        centres[part] = np.add(HINGES[part], [c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]])
-
-    def height(y: float, places: dict[str, Array]) -> float:
-        left, right = places["left"], places["right"]
-        return float(left[1] + (y - left[0]) * (right[1] - left[1]) / (right[0] - left[0]))
-
-    # Forward is minus x, about which z turns to y.
-    c, s = np.cos(0.05), np.sin(0.05)
-
-    def turned(place: Any) -> Array:
-        a, b = np.subtract(place, pivot)
-        return np.add(pivot, [c * a + s * b, c * b - s * a])
-
-    p = turned((y, above + height(y, centres)))
-    wanted = p[1] - height(p[0], {part: turned(place) for part, place in centres.items()})
-    # A disc of 1e-6 mm moves its lowest point by as much, which is seen 30 times as far.
-    assert abs(rolled["axle_roll_centre_offset"] - p[0]) <= OFF + 3e-5
-    assert abs(rolled["axle_roll_centre_height"] - wanted) <= OFF + 3e-5
-
-
-def test_parallel_lines_and_a_wheel_that_stands_have_no_roll_centre() -> None:
-    # A hinge as high as the contact point makes its line level; one in the contact point makes no line.
-    points = swing_axle()["points"]
-    for heights in ({"left": 0.0, "right": 10.0}, {}):
-        moved = dict(points)
-        for part, height in heights.items():
-            for end in ("pivot", "pivot_end"):
-                moved[f"{part}.{end}"] = (*np.array(points[f"{part}.{end}"])[:2], height)
-        if not heights:
-            moved["left.pivot"], moved["left.pivot_end"] = (0.0, -750.0, 0.0), (100.0, -750.0, 0.0)
-        found = solved(swing_axle(points=moved), [*ROLL_CENTRE, "track"], **turns(0.0, 0.0))
-        assert np.isnan([found[name] for name in ROLL_CENTRE]).all()
-        assert found["track"] == 1510.0
-
-
-@pytest.mark.parametrize(("left", "right"), [(0.3, 0.25), (0.2, 0.2), (-0.4, -0.5), (1.2, 0.6)])
-def test_steering_numbers_are_those_of_angles_that_are_driven(left: float, right: float) -> None:
-    """Up is the line of the hinges, about which forward turns to the left."""
-    names = ["left.steer_angle", "right.steer_angle", "turning_radius", "ackermann", "ackermann_error"]
-    found = solved(swing_axle(upright=True), names, **turns(left, right))
-    # To the left the left wheel is the inner one.
-    track, (inner, outer) = 1510.0, (left, right) if left > 0.0 else (-right, -left)
-    radius = WHEELBASE * (1 / np.tan(inner) + 1 / np.tan(outer)) / 2
-    ideal = np.arctan(WHEELBASE / (radius - track / 2)) - np.arctan(WHEELBASE / (radius + track / 2))
-    error = outer - (np.pi / 2 - np.arctan(1 / np.tan(inner) + track / WHEELBASE))
-    wanted = [left, right, radius, 100 * (inner - outer) / ideal, error]
-    for name, value in zip(names, wanted, strict=True):
-        # Radii of 20 m of angles of 0.2.
-        assert abs(found[name] - value) <= 64 * EPS * 20e3, name
-
-
-def test_wheels_on_circles_about_one_point_have_an_ackermann_of_a_hundred() -> None:
-    # The middle of the turn is 5 m to the left of the middle of the rear axle.
-    inner, outer = np.arctan(WHEELBASE / (5000.0 - 755.0)), np.arctan(WHEELBASE / (5000.0 + 755.0))
-    names = ["turning_radius", "ackermann", "ackermann_error"]
-    for one, other in ((inner, outer), (-outer, -inner)):
-        found = solved(swing_axle(upright=True), names, **turns(one, other))
-        assert found["turning_radius"] == pytest.approx(5000.0, abs=1e-9)
-        assert found["ackermann"] == pytest.approx(100.0, abs=1e-9)
-        assert found["ackermann_error"] == pytest.approx(0.0, abs=1e-13)
-    for one, other in ((0.1, -0.1), (0.0, 0.2), (0.0, 0.0)):
-        assert np.isnan(list(solved(swing_axle(upright=True), names, **turns(one, other)).values())).all()
 
 
 def test_names_are_those_of_the_parts_and_others_are_refused() -> None:

@@ -1,4 +1,4 @@
-"""The parts of an axle have the numbers of their wheels alone, and make further ones together."""
+"""The parts of an axle have the numbers of their wheels alone; what both make of a printed car."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-import mpmath
 import numpy as np
 import pytest
 from lotus_front import POINTS as LOTUS
@@ -72,41 +71,6 @@ def along_the_car(y: int, z: int) -> dict[str, Any]:
     return {"front": (900, y, z), "rear": (1100, y, z)}
 
 
-@pytest.mark.parametrize("turn", [0, Fraction(1, 10)])
-def test_the_roll_centre_is_where_the_lines_of_both_wheels_to_their_hinges_meet(turn: Fraction) -> None:
-    # Seen from the front an arm turns about its hinge, and the normal of each path leads there.
-    hinges = ((-200, 200), (250, 180))
-    plain = axle_on(*(along_the_car(*hinge) for hinge in hinges))
-    still = {"left.swing": (turn, 0, 0), "right.swing": (turn / 2, 0, 0)}
-    found = solve_reference(plain, still, effects=TOGETHER)
-    contacts = []
-    for part in ("left", "right"):
-        (_, y, z), (_, y2, z2) = (found.position[f"{part}.{name}"] for name in ("inner", "centre"))
-        span = mpmath.hypot(y2 - y, z2 - z)  # the disc's lowest point is 300 square to the axis
-        out = 1 if part == "right" else -1
-        contacts.append((y2 + out * 300 * (z2 - z) / span, z2 - out * 300 * (y2 - y) / span))
-    (y, z), (y2, z2) = contacts
-    one, two = ((v - q) / (h - p) for (p, q), (h, v) in zip(contacts, hinges, strict=True))
-    offset = (z2 - z + one * y - two * y2) / (one - two)
-    height = z + one * (offset - y) - (z + (z2 - z) * (offset - y) / (y2 - y))
-    assert abs(found.effects["axle_roll_centre_offset"] - offset) < WITHIN
-    assert abs(found.effects["axle_roll_centre_height"] - height) < WITHIN
-    assert abs(found.effects["track"] - (y2 - y)) < WITHIN
-    if turn == 0:
-        # Both lines rise by two fifths: 200 over 500, 180 over 450.
-        assert abs(height - 280) < WITHIN
-        assert abs(found.effects["track"] - 1400) < WITHIN
-
-
-def test_parallel_lines_and_a_contact_point_at_rest_have_no_roll_centre() -> None:
-    level = axle_on(along_the_car(-200, 0), along_the_car(250, 0))
-    at_rest = axle_on(along_the_car(-700, 0), along_the_car(250, 180))
-    for plain in (level, at_rest):
-        found = closed_drawing(Design.from_plain(plain), effects=TOGETHER).instant
-        assert "axle_roll_centre_height" not in found.effects
-        assert "axle_roll_centre_offset" in found.left_out
-
-
 # Wheels that are turned about upright lines through their contact points, to the left by their inputs.
 STEERED = axle_on(*({"low": (1000, y, 0), "high": (1000, y, 100)} for y in (-700, 700)))
 
@@ -117,37 +81,6 @@ def steered(left: object, right: object) -> Instant:
         {"left.swing": (left, 0, 0), "right.swing": (right, 0, 0)},
         effects=(*TOGETHER, "steer_angle"),
     )
-
-
-@pytest.mark.parametrize("inner", [mpf("0.2"), mpf("1.1"), mpf("1.7")])
-@pytest.mark.parametrize("way", [1, -1])
-def test_wheels_that_roll_about_one_point_have_no_error_and_all_of_ackermann(inner: mpf, way: int) -> None:
-    # The left wheel is the inner one to the left.
-    outer = mpmath.acot(mpmath.cot(inner) + mpf(1400) / 2600)
-    angles = (inner, outer) if way > 0 else (-outer, -inner)
-    found = steered(*angles).effects
-    assert abs(found["left.steer_angle"] - angles[0]) < WITHIN
-    assert abs(found["right.steer_angle"] - angles[1]) < WITHIN
-    assert abs(found["turning_radius"] - (2600 * mpmath.cot(inner) + 700)) < WITHIN * 10
-    assert abs(found["ackermann"] - 100) < WITHIN * 10
-    assert abs(found["ackermann_error"]) < WITHIN
-
-
-@pytest.mark.parametrize("angle", [mpf("0.3"), mpf("-0.3")])
-def test_parallel_wheels_have_nothing_of_ackermann_and_steer_the_outer_one_too_much(angle: mpf) -> None:
-    found = steered(angle, angle).effects
-    assert abs(found["ackermann"]) < WITHIN
-    assert abs(found["turning_radius"] - abs(2600 * mpmath.cot(angle))) < WITHIN * 10
-    too_much = abs(angle) - mpmath.acot(mpmath.cot(abs(angle)) + mpf(1400) / 2600)
-    assert abs(found["ackermann_error"] - too_much) < WITHIN
-
-
-@pytest.mark.parametrize("angle", [mpf("1.8"), mpf("-1.8")])
-def test_wheels_beyond_a_right_angle_turn_on_a_radius_too(angle: mpf) -> None:
-    """Of the definition's magnitude; acot is between 0 and pi where the wheels are beyond pi / 2."""
-    found = steered(angle, angle).effects
-    assert abs(found["turning_radius"] - abs(2600 * mpmath.cot(angle))) < WITHIN * 10
-    assert found["turning_radius"] > 0
 
 
 def test_the_axle_of_lotus_turns_on_its_printed_radius_and_with_nearly_its_ackermann() -> None:

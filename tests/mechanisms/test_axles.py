@@ -1,0 +1,191 @@
+"""What two wheels make, by all three mechanics: closed forms in many digits, and where there is no number."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from mpmath import acot, atan, cos, cot, mpf, pi, sin, workdps
+from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
+
+from pointcoord import Scene
+
+RADIUS, WHEELBASE, HALF_TRACK = 300.0, 2500.0, 760.0
+SIDES = {"left": -1, "right": 1}
+TIMES = (mpf(0), mpf(1) / 2, mpf(1))
+# A wheel on a hinge that is fixed in the car: upright it steers, lengthwise it travels.
+CORNER = {
+    "bodies": {"chassis": ["a", "b"], "knuckle": ["a", "b", "inner", "centre"]},
+    "inputs": {"turn": {"angle": "knuckle", "from": "drawing"}},
+    "roles": {"knuckle": "knuckle", "wheel_axis": ["inner", "centre"]},
+}
+UPRIGHT = {"a": (0.0, HALF_TRACK, 100.0), "b": (0.0, HALF_TRACK, 500.0)}
+WHEEL = {"inner": (0.0, 660.0, 300.0), "centre": (0.0, HALF_TRACK, 300.0)}
+STEERING = ("turning_radius", "ackermann", "ackermann_error")
+ROLL_CENTRE = ("axle_roll_centre_offset", "axle_roll_centre_height")
+
+
+def lengthwise(y: float, z: float) -> dict[str, Any]:
+    return {"a": (-100.0, y, z), "b": (100.0, y, z)}
+
+
+def axle(
+    right: Mapping[str, Any],
+    effects: list[str],
+    turns: Mapping[str, Any],
+    left: Mapping[str, Any] | None = None,
+    **inputs: Any,
+) -> Scene:
+    """Two such wheels by the hinge of the right one; the left one's is mirrored unless given."""
+    parts = {side: {"mechanism": CORNER, "side": side, "mirrored": side == "left"} for side in SIDES}
+    own = {f"left.{name}": place for name, place in (left or {}).items()}
+    mechanism = {
+        "parts": parts,
+        "points": {**right, **WHEEL, **own},
+        "wheel_radius": RADIUS,
+        "car": {"wheelbase": WHEELBASE},
+    }
+    if inputs:
+        roll = {"turns": "chassis", "about": "right.a", "along": "forward"}
+        mechanism["inputs"] = {"roll": roll}
+    return scene_of(mechanism, effects, **{f"{side}.turn": turns[side] for side in SIDES}, **inputs)
+
+
+def at(turn: list[float], time: mpf) -> mpf:
+    return mpf(turn[0]) + mpf(turn[1]) * time
+
+
+@by_each
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("inner", "outer"),
+    [
+        # The outer wheel by more or less than it has to, as much as the inner one, beyond a right angle; in
+        # binary, so that no angle is rounded.
+        ([0.1875, 0.3125], [0.171875, 0.34375]),
+        ([0.25, 0.0], [0.25, 0.0]),
+        ([1.25, 0.125], [0.625, 0.125]),
+        ([1.75, 0.0], [1.75, 0.0]),
+    ],
+)
+def test_steered_wheels_are_what_the_formulas_make_of_their_angles(
+    who: str, sign: float, inner: list[float], outer: list[float]
+) -> None:
+    """Wheels that turn about upright hinges by their inputs; a turn to the left about up is positive."""
+    turned = {"left": inner, "right": outer} if sign > 0 else {"left": outer, "right": inner}
+    turns = {side: [sign * c for c in turn] for side, turn in turned.items()}
+    solution = solved_by(who, axle(UPRIGHT, ["steer_angle", "ackermann", "toe"], turns))
+    exact: dict[str, list[mpf]] = {}
+    with workdps(DIGITS):
+        track, base = 2 * mpf(HALF_TRACK), mpf(WHEELBASE)
+        for time in TIMES:
+            left, right = (at(turns[side], time) for side in SIDES)
+            one, other = (left, right) if sign > 0 else (-right, -left)
+            radius = base * (cot(one) + cot(other)) / 2
+            ideal = atan(base / (radius - track / 2)) - atan(base / (radius + track / 2))
+            # The line of a wheel that is turned by more than a right angle meets the rear axle's behind it.
+            goal = acot(cot(one) + track / base)
+            numbers = {
+                "left.steer_angle": left,
+                "right.steer_angle": right,
+                "left.toe": -left,
+                "right.toe": right,
+                "turning_radius": abs(radius),
+                "ackermann_error": other - (goal if goal >= 0 else goal + pi),
+            }
+            if radius > track / 2:
+                numbers["ackermann"] = 100 * (one - other) / ideal
+            for name, value in numbers.items():
+                exact.setdefault(name, []).append(value)
+    assert_exact(solution, exact)
+
+
+@by_each
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_wheels_on_circles_about_one_point_have_an_ackermann_of_a_hundred(who: str, sign: float) -> None:
+    """The middle of the turn is 5 m to the side of the middle of the rear axle."""
+    with workdps(DIGITS):
+        inner, outer = (float(atan(WHEELBASE / mpf(5000 + s * HALF_TRACK))) for s in (-1, 1))
+    turns = {"left": inner, "right": outer} if sign > 0 else {"left": -outer, "right": -inner}
+    numbers = solved_by(who, axle(UPRIGHT, ["ackermann"], turns)).numbers
+    assert numbers["dimension"]["turning_radius"] == pytest.approx(5000.0, abs=1e-9)
+    assert numbers["ackermann"]["ackermann"] == pytest.approx(100.0, abs=1e-9)
+    assert numbers["steer_error"]["ackermann_error"] == pytest.approx(0.0, abs=1e-13)
+
+
+@by_each
+@pytest.mark.parametrize(("left", "right"), [(0.0, 0.0), (0.1, -0.05), (0.0, 0.1)])
+def test_wheels_that_are_not_steered_to_the_same_side_turn_about_nothing(
+    who: str, left: float, right: float
+) -> None:
+    solution = solved_by(who, axle(UPRIGHT, ["ackermann", "axle"], {"left": left, "right": right}))
+    assert_none(solution, STEERING)
+    assert "track" in solution.numbers["dimension"]
+
+
+# Different on both sides, and with a car that rolls about the right hinge.
+@by_each
+@pytest.mark.parametrize("roll", [0.0, 0.0625])
+@pytest.mark.parametrize("left", [(-150.0, 420.0), (-200.0, 200.0)])
+def test_swing_axles_roll_about_where_the_lines_through_their_hinges_meet(
+    who: str, left: tuple[float, float], roll: float
+) -> None:
+    turns = {"left": [0.0625, 0.125], "right": [0.015625, 0.03125]}
+    scene = axle(
+        lengthwise(150.0, 420.0),
+        ["axle"],
+        turns,
+        lengthwise(*left),
+        **({"roll": roll} if roll else {}),
+    )
+    hinges = {"left": left, "right": (150.0, 420.0)}
+    exact: dict[str, list[mpf]] = {}
+    with workdps(DIGITS):
+        c, s = cos(mpf(roll)), sin(mpf(roll))
+
+        def rolled(y: mpf, z: mpf) -> tuple[mpf, mpf]:
+            """About forward, which is -x: z goes to y."""
+            y, z = y - 150, z - 420
+            return 150 + y * c + z * s, 420 + z * c - y * s
+
+        for time in TIMES:
+            contacts, pivots = {}, {}
+            for side, sign in SIDES.items():
+                turn, (p, q) = at(turns[side], time), hinges[side]
+                # About rearward, as the hinge leads: y to z.
+                y, z = sign * mpf(HALF_TRACK) - p, mpf(300) - q
+                wheel = rolled(p + y * cos(turn) - z * sin(turn), q + y * sin(turn) + z * cos(turn))
+                # The spin axis turns along, and the disc's lowest point lies square to it.
+                tilt = turn - mpf(roll)
+                down = (sin(tilt), -cos(tilt))
+                contacts[side] = tuple(w + RADIUS * d for w, d in zip(wheel, down, strict=True))
+                pivots[side] = rolled(mpf(p), mpf(q))
+            (y1, z1), (y2, z2) = contacts["left"], contacts["right"]
+            slope = {n: (pivots[n][1] - contacts[n][1]) / (pivots[n][0] - contacts[n][0]) for n in SIDES}
+            across = (z2 - z1 + slope["left"] * y1 - slope["right"] * y2) / (slope["left"] - slope["right"])
+            ground = z1 + (z2 - z1) * (across - y1) / (y2 - y1)
+            for name, value in {
+                "track": y2 - y1,
+                "axle_roll_centre_offset": across,
+                "axle_roll_centre_height": z1 + slope["left"] * (across - y1) - ground,
+            }.items():
+                exact.setdefault(name, []).append(value)
+    solution = solved_by(who, scene)
+    assert_exact(solution, exact)
+    # What is a nanometre off is seen.
+    with pytest.raises(AssertionError):
+        assert_exact(solution, {"track": [value + mpf("1e-6") for value in exact["track"]]})
+
+
+@by_each
+@pytest.mark.parametrize("left", [(-200.0, 0.0), (-HALF_TRACK, 0.0)])
+def test_parallel_lines_and_a_wheel_that_stands_have_no_roll_centre(
+    who: str, left: tuple[float, float]
+) -> None:
+    """A hinge as high as the contact point makes its line level; one in the contact point makes none."""
+    right = lengthwise(250.0, 0.0 if left[0] > -HALF_TRACK else 180.0)
+    scene = axle(right, ["axle"], {"left": 0.0, "right": 0.0}, lengthwise(*left))
+    solution = solved_by(who, scene)
+    assert_none(solution, ROLL_CENTRE)
+    assert solution.numbers["dimension"]["track"] == pytest.approx(2.0 * HALF_TRACK, abs=1e-12)

@@ -1,0 +1,62 @@
+"""What all three mechanics must say of a scene: each number what it exactly is, within its own claim."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from mpmath import mpf, workdps
+
+from pointcoord import Scene
+from validate.adjudication.reference_solution import reference_solution
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+
+DIGITS = 40
+MECHANICS = ("pointcoord", "absolute", "reference")
+by_each = pytest.mark.parametrize("who", MECHANICS)
+
+
+def solved_by(who: str, scene: Scene) -> Solution:
+    """A scene by a formulation, or by the reference."""
+    return reference_solution(scene) if who == "reference" else formulation(who).solve(scene)
+
+
+def scene_of(mechanism: Mapping[str, Any], effects: Sequence[str], **laws: Any) -> Scene:
+    """A mechanism whose inputs have constant values, or the coefficients of polynomials, in a second."""
+    inputs = {
+        name: {"polynomial": law} if isinstance(law, list) else {"constant": law}
+        for name, law in laws.items()
+    }
+    time = {"start": 0.0, "stop": 1.0, "samples": 3}
+    return Scene.from_mapping(
+        {"effects": list(effects), "mechanism": dict(mechanism), "inputs": inputs, "time": time}
+    )
+
+
+def assert_exact(solution: Solution, exact: Mapping[str, Sequence[Any]], within: float = 1e-10) -> None:
+    """Numbers of the car are within their claims of what they exactly are, and these claims are narrow.
+
+    Args:
+        exact: by name, what it is at each instant; vectors have three components.
+        within: the claims' limit, of a number's size where that is above 1.
+    """
+    for name, values in exact.items():
+        (quantity,) = (q for q, numbers in solution.numbers.items() if q != "position" and name in numbers)
+        found, claims = solution.numbers[quantity][name], solution.accuracy.claims[quantity][name]
+        with workdps(DIGITS):
+            off = [
+                [abs(mpf(float(a)) - b) for a, b in zip(np.ravel(one), np.ravel(value), strict=True)]
+                for one, value in zip(found, values, strict=True)
+            ]
+        assert (np.array(off, float).reshape(found.shape) <= claims).all(), (name, found, values, claims)
+        assert (claims <= within * np.maximum(1.0, np.abs(found).max())).all(), (name, claims)
+
+
+def assert_none(solution: Solution, names: Sequence[str]) -> None:
+    """There are no such numbers: they are left out, or no numbers."""
+    for name in names:
+        for numbers in solution.numbers.values():
+            assert name not in numbers or np.isnan(numbers[name]).all(), (name, numbers[name])
