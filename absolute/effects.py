@@ -39,8 +39,9 @@ OUTBOARD, REARWARD, UP = 0, 1, 2
 TIME = "time"
 # As much of a velocity may be rounding at the largest condition number that is not refused.
 ROUNDING = EPS / SMALLEST_RCOND
-# Of the knuckle, rad for a travel of the rack by the wheel's radius, that rounding does not tell from none.
-LEAST_TURN = 1e-9
+# What rounding does not tell from none: of a velocity a part of it, and of the knuckle a turn, rad, for a
+# travel of the rack by the wheel's radius.
+LEAST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -136,8 +137,8 @@ def roll_centre_height(motion: Motion) -> Array:
     The normal is at a right angle to the velocity of the contact point as one of the knuckle; the plane goes
     through the origin. Not a number where that velocity is level.
     """
-    outboard, _, up = _contact_velocity(motion)
-    return _contact_place(motion)[OUTBOARD].value * _ratio(outboard, up)
+    velocity = _contact_velocity(motion)
+    return _contact_place(motion)[OUTBOARD].value * _ratio(velocity[OUTBOARD], _rising(velocity))
 
 
 def instant_centre(h: int, component: int, sense: float = 1.0) -> Callable[[Motion], Array]:
@@ -183,14 +184,13 @@ def arm_roll_centre_height(motion: Motion) -> Array:
     u, w = _slope(motion, _from_centre(motion, lower), "travel"), _spin(motion, "travel")
     turn = w - k * _ratio((w * u).sum(axis=0), (k * u).sum(axis=0))
     arm = motion.line(lower, _centre(motion)).value + contact(motion).value
-    outboard, _, up = motion.corner.axes @ (u + np.cross(turn, arm, axis=0))
-    return _contact_place(motion)[OUTBOARD].value * _ratio(outboard, up)
+    velocity = motion.corner.axes @ (u + np.cross(turn, arm, axis=0))
+    return _contact_place(motion)[OUTBOARD].value * _ratio(velocity[OUTBOARD], _rising(velocity))
 
 
 def damper_per_wheel(motion: Motion) -> Array:
     """What the damper is shortened by for each mm of travel; not a number where the wheel does not travel."""
-    shortened, risen = (_slope(motion, of(motion), "travel") for of in (LENGTHS["damper_length"], travel))
-    return -_ratio(shortened, risen)
+    return -_ratio(_slope(motion, LENGTHS["damper_length"](motion), "travel"), _travelled(motion))
 
 
 def spring_force(motion: Motion) -> Array:
@@ -291,7 +291,7 @@ def _value(number: Number) -> Callable[[Motion], Array]:
 
 def _by_travel(number: Number) -> Callable[[Motion], Array]:
     """Its change for each mm of travel, all other inputs and the chassis held."""
-    return lambda motion: _ratio(*(_slope(motion, of(motion), "travel") for of in (number, travel)))
+    return lambda motion: _ratio(_slope(motion, number(motion), "travel"), _travelled(motion))
 
 
 def _by(number: Number, by: str) -> Callable[[Motion], Array]:
@@ -409,6 +409,18 @@ def _ratio(rise: Array | float, run: Array) -> Array:
     return np.where(run == 0.0, np.nan, rise / run)
 
 
+def _rising(velocity: Array) -> Array:
+    """The upward part of a velocity by its components, (3, N); zero where rounding may have made it."""
+    up = velocity[UP]
+    return np.where(np.abs(up) <= LEAST * np.linalg.norm(velocity, axis=0), 0.0, up)
+
+
+def _travelled(motion: Motion) -> Array:
+    """How fast the wheel centre goes up in the chassis' frame with the input that moves the wheel, (N,)."""
+    still = replace(motion, turns=())
+    return _rising(_slope(motion, still.components(still.moved(_centre(still))), "travel"))
+
+
 def _along(motion: Motion, role: str) -> Dual:
     """The line of a role by its components, (3, N)."""
     return motion.components(motion.line(*motion.corner.ends(role)))
@@ -455,7 +467,7 @@ def _screw(motion: Motion) -> tuple[Array, Array]:
     """Spin of the knuckle and velocity of the wheel centre with the rack, (3, N); not numbers where it does
     not turn as the rack moves, or about no line that leads up."""
     w, v = _spin(motion, "rack"), _slope(motion, motion.moved(_centre(motion)), "rack")
-    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST_TURN
+    turns = np.abs(motion.corner.axes[UP] @ w) * motion.corner.radius > LEAST
     return np.where(turns, w, np.nan), v
 
 
@@ -476,7 +488,7 @@ def _anti(motion: Motion, velocity: Array, share: str) -> Array:
     names = ("axle", "wheelbase", "centre_of_gravity_height", share)
     sign, wheelbase, drawn_height, part = needed(motion.corner.car, *names)
     height = drawn_height - LENGTHS["contact_travel"](motion).value
-    return 100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, velocity[UP] * height)
+    return 100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
 
 
 def _off_axis(motion: Motion, beside: Dual | None = None) -> Dual:

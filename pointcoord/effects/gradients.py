@@ -18,6 +18,7 @@ from pointcoord.effects.arithmetic import Dual, ratio
 from pointcoord.effects.car_number import BY_RACK, BY_TRAVEL, CarNumber, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
+from pointcoord.effects.knuckle import rising
 from pointcoord.effects.wheel_travel import TRAVEL
 
 BY_TIME = "by_time"
@@ -61,4 +62,4 @@ def _slope(number: CarNumber, corner: Corner[Dual[Any]]) -> Any:
 
 
 def _by_travel(number: CarNumber, corner: Corner[Dual[Any]]) -> Any:
-    return ratio(number.formula(corner).slope, TRAVEL.formula(corner).slope)
+    return ratio(number.formula(corner).slope, rising(corner))

@@ -12,9 +12,15 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, reciprocal, times
 from pointcoord.effects.corner import Corner, View
 from pointcoord.linkage.car_axes import Direction
+
+# Of a velocity: rates of solved points are off by some 1e-14 of themselves, and by far more near a singular
+# pose, so that a part as small as this may be none.
+LEAST_PART = 1e-9
 
 
 def contact_place(corner: Corner[Dual[Any]]) -> Any:
@@ -37,6 +43,19 @@ def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
     b = ratio(dot(cross(e1.value, vector), n), square)
     c = ratio(dot(vector, n), square)
     return times(a, e1.slope) + times(b, e2.slope) + times(c, normal.slope)
+
+
+def told_from_none(part: Any, velocity: Any) -> Any:
+    """A part of a velocity; no number where rounding does not tell it from none."""
+    if not isinstance(part, np.ndarray):
+        return part
+    return np.where(np.abs(part) > LEAST_PART * np.linalg.norm(velocity, axis=-1), part, np.nan)
+
+
+def rising(corner: Corner[Dual[Any]]) -> Any:
+    """The derivative of the travel of the wheel centre; no number where the wheel does not travel."""
+    view = corner.chassis
+    return told_from_none(corner.risen().slope, view.points[view.of.centre].slope)
 
 
 def angular_velocity(corner: Corner[Dual[Any]]) -> Any:

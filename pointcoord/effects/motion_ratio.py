@@ -9,17 +9,18 @@ from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.damper import damper_length
 from pointcoord.effects.gradients import QUANTITIES
-from pointcoord.effects.wheel_travel import TRAVEL
+from pointcoord.effects.knuckle import rising, told_from_none
 
 
 def damper_per_wheel(corner: Corner[Dual[Any]]) -> Any:
     """By how much the damper is shortened per travel of the wheel centre (Simscape)."""
-    return -ratio(damper_length(corner).slope, TRAVEL.formula(corner).slope)
+    return -ratio(damper_length(corner).slope, rising(corner))
 
 
 def wheel_per_damper(corner: Corner[Dual[Any]]) -> Any:
     """Its inverse (Lotus, OptimumK)."""
-    return -ratio(TRAVEL.formula(corner).slope, damper_length(corner).slope)
+    slope = damper_length(corner).slope
+    return -ratio(corner.risen().slope, told_from_none(slope, corner.seen.role("damper").slope))
 
 
 def _number(name: str, words: str, formula: Any) -> Number:

@@ -15,7 +15,7 @@ from typing import Any
 from pointcoord.effects.arithmetic import Dual, ratio
 from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
-from pointcoord.effects.knuckle import component, contact_place, velocity_at
+from pointcoord.effects.knuckle import component, contact_place, told_from_none, velocity_at
 
 
 def roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
@@ -27,7 +27,8 @@ def middle_plane_height(corner: Corner[Dual[Any]], velocity: Any) -> Any:
     """The same of any velocity of the contact point."""
     view = corner.seen
     far = component(view, corner.origin.value + contact_place(corner), "outboard")
-    return far * ratio(component(view, velocity, "outboard"), component(view, velocity, "up"))
+    up = told_from_none(component(view, velocity, "up"), velocity)
+    return far * ratio(component(view, velocity, "outboard"), up)
 
 
 ROLL_CENTRE = CarNumbers.of(

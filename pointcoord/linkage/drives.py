@@ -177,8 +177,13 @@ class Drive(ABC):
         return Function()
 
     @property
+    def of_slide(self) -> bool:
+        """Whether it is the travel of a slide, by which a car is steered."""
+        return False
+
+    @property
     def pushes(self) -> str:
-        """The point that it slides, inboard of what is linked to it; empty if it slides none."""
+        """The point that it slides along a direction, inboard of what is linked to it; empty if none."""
         return ""
 
     @property
@@ -345,6 +350,10 @@ class Travel(Drive):
         return SIDEWAYS.get(self.direction, self.direction)
 
     @property
+    def of_slide(self) -> bool:
+        return self.slides
+
+    @property
     def pushes(self) -> str:
         return self.point if self.slides else ""
 
@@ -369,6 +378,10 @@ class TravelAlong(Drive):
     line: OnLine
 
     exact = False
+
+    @property
+    def of_slide(self) -> bool:
+        return True
 
     @property
     def sign(self) -> str:
@@ -401,6 +414,10 @@ class Steered(Drive):
     @property
     def travel(self) -> Drive:
         return self.of
+
+    @property
+    def of_slide(self) -> bool:
+        return True
 
     @property
     def pushes(self) -> str:

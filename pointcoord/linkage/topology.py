@@ -129,7 +129,7 @@ class Topology:
         Args:
             part: whose wheel they move; those of another part are left out.
         """
-        steering = {drive.input for drive in self.drives if drive.pushes}
+        steering = {drive.input for drive in self.drives if drive.of_slide}
         others = tuple(f"{other}." for other in self.sides if other != part)
         return tuple(
             name

@@ -1,6 +1,5 @@
 """What is drawn is what moves: against a witness in many digits, closed forms, and other people's tables."""
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -8,13 +7,10 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from mechanism_checks import CLOSED, PRINTED, Check, closed_form_check
-from mechanism_equations import DIGITS
 from mechanism_equations import vector as to_many
 from mechanism_files import SCENES, mechanism_file, plain, plain_scene, scene_file
 from mechanism_poses import Stuck
-from mpmath import mp, mpf
 from shipped import EPS, Motion, error, exact, off, redrawn, shipped
-from written import numbers, vector
 
 import absolute
 
@@ -31,7 +27,6 @@ RANDOM = (
     "slider-crank",
     "spatial-four-bar",
 )
-CARS = [scene for scene in RANDOM if {"rack"} < set(shipped(scene).inputs)]
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -74,45 +69,6 @@ def compare(motion: Motion, wanted: Any = None) -> None:
                 assert error(found[point][k], wanted[k][order][point]) <= allowed, (order, point, k)
                 if not order:
                     assert error(found[point][k], wanted[k][0][point]) <= off(solution)[k], point
-
-
-@pytest.mark.parametrize("scene", CARS)
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_effects_of_a_car_are_those_of_the_exact_points_and_velocities(scene: str, side: str) -> None:
-    motion, radius = redrawn(shipped(scene, 2), np.random.default_rng(1), 5.0), 300.0
-    described = motion.plain | {"side": side, "wheel_radius": radius}
-    roles = described["roles"]
-    unit = {name: np.array([[law[0, 0], 0.0, 0.0]]) for name, law in motion.inputs.items()}
-    bounce = next(name for name in unit if name != "rack")
-    here, by = None, {}
-    for name, key in ((bounce, "travel"), ("rack", "rack")):
-        jet = unit | {name: unit[name] + [[0.0, 1.0, 0.0]]}
-        here, by[key], _ = exact(Motion(described, jet))[0]
-    with mp.workdps(DIGITS):
-
-        def at(shift: Any, way: Mapping[str, Any]) -> dict[str, Any]:
-            def place(point: str) -> Any:
-                return vector(here[point] + shift * way[point])
-
-            names = (place, place, lambda point: vector(described["points"][point]))
-            return numbers(*names, roles, radius, -1 if side == "left" else 1)
-
-        wanted, h = at(mpf(0), here), mpf("1e-15")
-        slopes = {}
-        for key, way in by.items():
-            ahead, behind = at(h, way), at(-h, way)
-            slopes[key] = {name: (ahead[name] - behind[name]) / (2 * h) for name in ahead}
-        rise = slopes["travel"]["travel"]
-        wanted |= {f"{name}_by_rack": slope for name, slope in slopes["rack"].items()}
-        wanted |= {f"{name}_by_travel": slope / rise for name, slope in slopes["travel"].items()}
-    found = Motion(described, unit).solve(rates=False, conditions=True, effects=tuple(wanted))
-    for name, value in wanted.items():
-        # Axes of more than 50 mm, of which both ends are off; axes and radii reach six times as far, and
-        # numbers change by less than 10 for each mm or by 1 for each 50 mm of their ends.
-        allowed = (
-            2 * 6 * off(found)[0] * (10.0 if absolute.EFFECTS[name].unit.startswith("mm") else 1.0 / 50.0)
-        )
-        assert error(found.effects[name], [value]) <= allowed, name
 
 
 def checked(check: Check) -> None:

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanism_equations import DIGITS
+from mechanism_equations import DIGITS, vector
 from mechanism_files import mechanism_file, plain, plain_scene
-from mpmath import cos, matrix, mp, mpf, sqrt
+from mpmath import cos, mp, mpf, sqrt
 from shipped import EPS, Array, Motion, error, off, shipped
 from test_branch import STRUT, short_lower_arm
-from written import cross, dot, vector
 
 import absolute
 from absolute.follow import BlockedError, follow
@@ -36,16 +35,16 @@ def ball_joint(points: Any, angle: float) -> Any:
         front, rear, ball = (
             vector(points[n]) for n in ("lower_arm_front", "lower_arm_rear", "lower_ball_joint")
         )
-        u, d, up = rear - front, ball - front, matrix([0, 0, 1])
-        u = u / sqrt(dot(u, u))
-        level = cross(u, up)
-        level = level / sqrt(dot(level, level))
-        w, along = cross(level, u), dot(u, d)
-        radius = sqrt(dot(d, d) - along**2)
-        rise = (sqrt(dot(d, d)) * cos(mpf(angle)) - u[2] * along) / (radius * w[2])
+        u, d, up = rear - front, ball - front, vector((0, 0, 1))
+        u = u / sqrt(u @ u)
+        level = np.cross(u, up)
+        level = level / sqrt(level @ level)
+        w, along = np.cross(level, u), u @ d
+        radius = sqrt(d @ d - along**2)
+        rise = (sqrt(d @ d) * cos(mpf(angle)) - u[2] * along) / (radius * w[2])
         if abs(rise) >= 1:
             return None
-        side = 1 if dot(d, level) > 0 else -1
+        side = 1 if d @ level > 0 else -1
         return front + u * along + (w * rise + level * side * sqrt(1 - rise**2)) * radius
 
 

@@ -389,5 +389,7 @@ BY_HAND |= {f"{name}_by_time": _by_time(name) for name in DIFFERENTIATED}
 
 def by_hand(effect: str, car: Car) -> Numbers:
     """The numbers of an effect, by quantity and name; each a list of its components."""
+    base, _, by = effect.rpartition("_by_")
+    differentiated = {"travel": _by_travel, "rack": _by_rack, "time": _by_time}
     with workdps(DIGITS):
-        return BY_HAND[effect](car)
+        return BY_HAND[effect](car) if effect in BY_HAND else differentiated[by](base)(car)

@@ -15,6 +15,8 @@ from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 
 DIGITS = 40
+DUST = 1e-28
+"""What is left of derivatives in many digits."""
 MECHANICS = ("pointcoord", "absolute", "reference")
 by_each = pytest.mark.parametrize("who", MECHANICS)
 
@@ -51,7 +53,8 @@ def assert_exact(solution: Solution, exact: Mapping[str, Sequence[Any]], within:
                 [abs(mpf(float(a)) - b) for a, b in zip(np.ravel(one), np.ravel(value), strict=True)]
                 for one, value in zip(found, values, strict=True)
             ]
-        assert (np.array(off, float).reshape(found.shape) <= claims).all(), (name, found, values, claims)
+        most = claims + DUST
+        assert (np.array(off, float).reshape(found.shape) <= most).all(), (name, found, values, claims)
         assert (claims <= within * np.maximum(1.0, np.abs(found).max())).all(), (name, claims)
 
 

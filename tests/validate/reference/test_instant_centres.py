@@ -7,12 +7,11 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from exact_vectors import number, unit
 from mechanism_drawings import described
 from mpmath import mpf
 
-from validate.reference import BadInputError, Design, closed_drawing, solve_reference
-from validate.reference.vectors import Vector, minus, plus, times
+from validate.reference import BadInputError, Design, closed_drawing
+from validate.reference.vectors import Vector
 
 WITHIN = mpf("1e-55")
 FRONT_VIEW = ("front_view_swing_arm", "front_view_centre_height")
@@ -29,7 +28,6 @@ CAR = {
     "drive_share": Fraction(1, 4),
 }
 UPRIGHT = {"inner": (1000, 650, 300), "centre": (1000, 700, 300)}
-LEANING = {"inner": (992, 652, 325), "centre": (1000, 700, 300)}
 
 
 def on_an_arm(hinge: tuple[Vector, Vector], wheel: Mapping[str, Vector], **others: Any) -> dict[str, Any]:
@@ -51,59 +49,6 @@ def on_an_arm(hinge: tuple[Vector, Vector], wheel: Mapping[str, Vector], **other
             **others,
         },
     )
-
-
-def pierced(start: Vector, end: Vector, axis: int, value: mpf) -> Vector:
-    """The point of a line with a coordinate of this value."""
-    along = minus(end, start)
-    return plus(start, times(along, (value - start[axis]) / along[axis]))
-
-
-@pytest.mark.parametrize("side", ["right", "left"])
-@pytest.mark.parametrize("axle", ["front", "rear"])
-@pytest.mark.parametrize("hinge", [((600, 400, 300), (800, 150, 340)), ((1100, 200, 400), (300, 260, 380))])
-def test_the_centres_of_an_arm_are_where_its_hinge_pierces_the_planes_of_the_views(
-    hinge: tuple[Vector, Vector], axle: str, side: str
-) -> None:
-    out, s = (1, -1)[side == "left"], (1, -1)[axle == "front"]
-    plain = on_an_arm(hinge, LEANING, side=side, car={**CAR, "axle": axle})
-    points = {name: (x, out * y, z) for name, (x, y, z) in plain["points"].items()}
-    inputs = {"swing": mpf("0.1"), "roll": mpf("0.05"), "pitch": mpf("-0.03"), "heave": 20}
-    still = {name: (value, 0, 0) for name, value in inputs.items()}
-    instant = solve_reference({**plain, "points": points}, still, effects=NAMES)
-    found, place = instant.effects, instant.position
-    centre, spin = place["centre"], unit(minus(place["centre"], place["inner"]))
-    contact = minus(centre, times(unit(minus((0, 0, 1), times(spin, spin[2]))), 300))
-
-    def seen(axis: int, point: Vector) -> Vector:
-        return minus(pierced(place["pivot"], place["end"], axis, point[axis]), point)
-
-    front, side_view, of_wheel = seen(0, contact), seen(1, contact), seen(1, centre)
-    assert abs(found["front_view_swing_arm"] + out * front[1]) < WITHIN
-    assert abs(found["front_view_centre_height"] - front[2]) < WITHIN
-    assert abs(found["side_view_swing_arm"] - side_view[0]) < WITHIN
-    assert abs(found["side_view_centre_height"] - side_view[2]) < WITHIN
-    # What is at a point moves at right angles to its line to the centre.
-    lever = 2600 / (520 - found["contact_travel"])
-    assert abs(found["contact_travel"]) > 10
-    for name, share, line in (("anti_brake", 3 / mpf(8), side_view), ("anti_drive", 1 / mpf(4), of_wheel)):
-        assert abs(found[name] + 100 * share * s * line[2] / line[0] * lever) < WITHIN, name
-
-
-def test_a_trailing_arm_turns_about_its_pivot_in_the_side_view_and_has_no_centre_in_the_front_view() -> None:
-    plain = on_an_arm(((600, 400, 350), (600, 500, 350)), UPRIGHT)
-    found = closed_drawing(Design.from_plain(plain), effects=NAMES).instant
-    # 400 ahead of the wheel, 350 above the ground and 50 above the wheel centre.
-    by_hand = {
-        "side_view_swing_arm": -400,
-        "side_view_centre_height": 350,
-        "anti_brake": 100 * Fraction(3, 8) * Fraction(350, 400) * 5,
-        "anti_drive": 100 * Fraction(1, 4) * Fraction(50, 400) * 5,
-    }
-    for name, value in by_hand.items():
-        assert abs(found.effects[name] - number(value)) < WITHIN, name
-    for name in FRONT_VIEW:
-        assert "at infinity" in found.left_out[name]
 
 
 def test_each_missing_number_of_the_car_is_said_by_name() -> None:

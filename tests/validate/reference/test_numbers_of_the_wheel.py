@@ -9,17 +9,15 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
-import mpmath
 import pytest
-from exact_vectors import number, numbers, size
+from exact_vectors import number
 from mechanism_drawings import described, five_link
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 from reference_cars import CARS
 
 from validate.reference import BadInputError, Design, Instant, closed_drawing, instants_of, solve_reference
-from validate.reference.effects.registry import ANGLES, EFFECTS, OF_POSITIONS
-from validate.reference.vectors import Vector, cross, dot, minus, plus, times
+from validate.reference.effects.registry import EFFECTS, OF_POSITIONS
 
 EVERY = tuple(EFFECTS)
 WITHIN = mpf("1e-55")
@@ -38,19 +36,6 @@ WHEEL = {
 }
 DAMPER_TOP = (1000, 400, 600)  # (14, 21, -42) = 7 (2, 3, -6)
 RADIUS = 260
-DRAWN = {
-    "travel": 0,
-    "contact_travel": 0,
-    "half_track_change": 0,
-    "recession": 0,
-    "kingpin_offset": 45,
-    "scrub_radius": 75,
-    "mechanical_trail": 21,  # 60 ahead and 45 inboard, along (48 forward, 36 outboard) / 60
-    "castor_offset": 60,
-    "kingpin_offset_at_wheel": 25,
-    "hub_trail": 30,
-    "damper_length": 49,
-}
 ROLES = {
     "knuckle": "arm",
     "wheel_axis": ["wheel_axis_inner", "wheel_centre"],
@@ -70,113 +55,6 @@ def on_an_arm(
         inputs,
         **{"roles": ROLES, "side": "right", "wheel_radius": RADIUS, **others},
     )
-
-
-def by_hand(
-    points: Mapping[str, Vector],
-    drawn: Mapping[str, Vector],
-    roles: Mapping[str, Any],
-    radius: object,
-    out: int,
-) -> dict[str, mpf]:
-    """The numbers of positions by their words, by components along outboard, rearward and up."""
-
-    def parts(vector: Vector) -> Vector:
-        return out * vector[1], vector[0], vector[2]
-
-    def contact(places: Mapping[str, Vector]) -> Vector:
-        inner, centre = (places[name] for name in roles["wheel_axis"])
-        o, r, u = parts(minus(centre, inner))
-        level, whole = mpmath.hypot(o, r), mpmath.sqrt(o * o + r * r + u * u)
-        beside, below = number(radius) * u / whole, number(radius) * level / whole
-        return plus(parts(centre), (beside * o / level, beside * r / level, -below))
-
-    inner, centre = (parts(points[name]) for name in roles["wheel_axis"])
-    lower, upper = (parts(points[name]) for name in roles["steering_axis"])
-    c, went = contact(points), minus(contact(points), contact(drawn))
-
-    def pierced(height: mpf) -> Vector:
-        return plus(lower, times(minus(upper, lower), (height - lower[2]) / (upper[2] - lower[2])))
-
-    ground, level = pierced(c[2]), pierced(centre[2])
-    o, r, _ = minus(centre, inner)
-    ahead = (r / mpmath.hypot(o, r), -o / mpmath.hypot(o, r), 0)  # level, at right angles to the spin axis
-    found = {
-        "travel": centre[2] - drawn[roles["wheel_axis"][1]][2],
-        "contact_travel": went[2],
-        "half_track_change": went[0],
-        "recession": went[1],
-        "kingpin_offset": c[0] - ground[0],
-        "scrub_radius": size(minus(c, ground)),
-        "mechanical_trail": dot(minus(ground, c), ahead),
-        "castor_offset": c[1] - ground[1],
-        "kingpin_offset_at_wheel": centre[0] - level[0],
-        "hub_trail": level[1] - centre[1],
-    }
-    if "damper" in roles:
-        found["damper_length"] = size(minus(*(points[name] for name in roles["damper"])))
-    return found
-
-
-def test_a_wheel_that_is_drawn_in_whole_numbers_has_its_offsets() -> None:
-    plain = on_an_arm((600, 400, 300), (600, 500, 300))
-    found = closed_drawing(Design.from_plain(plain), effects=EVERY).instant
-    for name, value in DRAWN.items():
-        assert abs(found.effects[name] - value) < WITHIN, name
-
-
-def test_a_wheel_on_a_trailing_arm_turns_with_it() -> None:
-    # About the line along y through (600, -, 300), 400 ahead of the centre; right-handed, so up is minus.
-    plain = on_an_arm((600, 400, 300), (600, 500, 300))
-    theta, still = -mpmath.asin(mpf(3) / 5), closed_drawing(Design.from_plain(plain)).instant
-    found = solve_reference(plain, {"swing": (theta, 0, 0)}, effects=EVERY)
-    assert abs(found.effects["travel"] - 240) < WITHIN
-    assert abs(found.effects["caster"] - (still.effects["caster"] + theta)) < WITHIN
-    # d travel / d theta = -400 cos(theta).
-    assert abs(found.effects["caster_by_travel"] + mpf(1) / 320) < WITHIN
-    assert abs(found.effects["travel_by_travel"] - 1) < WITHIN
-    # dL / d theta = (low - top) . d low / L, where low = (600 + x, y, 300 + z) turns with (z, 0, -x).
-    x, y, z = minus(found.position["damper_low"], (600, 0, 300))
-    low, top = (600 + x, y, 300 + z), DAMPER_TOP
-    slope = dot(minus(low, top), (z, 0, -x)) / size(minus(low, top))
-    assert abs(found.effects["damper_length_by_travel"] + slope / 320) < WITHIN
-    # All goes along the car, so the normal of the contact point's path meets the middle plane at its height.
-    assert abs(found.effects["roll_centre_height"]) < WITHIN
-    (same,) = instants_of(
-        Design.from_plain(on_an_arm((600, 400, 300), (600, 500, 300), {"rise": {"height": "wheel_centre"}})),
-        [{"rise": (240, 0, 0)}],
-        effects=EVERY,
-    )
-    assert set(same.effects) == set(found.effects)
-    assert all(abs(same.effects[name] - value) < WITHIN for name, value in found.effects.items())
-
-
-@pytest.mark.parametrize("end", [(100, 200, 400), (110, 203, 398)])
-def test_the_roll_centre_of_a_swing_axle_lies_on_the_line_through_its_hinge(end: tuple[int, ...]) -> None:
-    plain = on_an_arm((1100, 200, 400), end)
-    found = closed_drawing(Design.from_plain(plain), effects=EVERY).instant
-    # As a point of the arm the contact point moves at right angles to the hinge and to its arm.
-    along = minus(end, (1100, 200, 400))
-    _, y, z = numbers(cross(along, minus((1060, 780, 60), (1100, 200, 400))))
-    assert abs(found.effects["roll_centre_height"] - 780 * y / z) < WITHIN
-    if end[1:] == (200, 400):
-        # In the front view the hinge is a point: (200, 400) as seen from (780, 60).
-        assert abs(found.effects["roll_centre_height"] - mpf(340 * 780) / 580) < WITHIN
-    away = {**plain, "points": {name: (x + 50, y, z - 70) for name, (x, y, z) in plain["points"].items()}}
-    there = closed_drawing(Design.from_plain(away), effects=EVERY).instant
-    assert abs(there.effects["roll_centre_height"] - found.effects["roll_centre_height"]) < WITHIN
-
-
-@pytest.mark.parametrize(("x", "lost"), [(1000, "toe_by_travel"), (1060, "roll_centre_height")])
-def test_a_wheel_that_does_not_travel_has_no_gradients_by_it(x: int, lost: str) -> None:
-    # The centre is right below the pivot, and goes along the car; or the contact point is.
-    plain = on_an_arm((x, 400, 500), (x, 500, 500))
-    found = closed_drawing(Design.from_plain(plain), effects=EVERY).instant
-    gradients = {name for name in EVERY if name.endswith("_by_travel")}
-    assert {name for name in gradients if name in found.effects} == (gradients if x == 1060 else set())
-    assert lost not in found.effects
-    assert "the wheel does not travel" in found.left_out[lost]
-    assert set(OF_POSITIONS) <= set(found.effects)
 
 
 def moved_car(name: str) -> dict[str, Any]:
@@ -206,28 +84,6 @@ def poses_of(name: str, **more: Any) -> dict[str, tuple[Any, ...]]:
 def solved(name: str, inputs: Mapping[str, tuple[Any, ...]], digits: int = 60) -> Instant:
     (found,) = instants_of(Design.from_plain(moved_car(name)), [inputs], digits, effects=EVERY)
     return found
-
-
-@pytest.mark.parametrize("name", CARS)
-def test_numbers_of_positions_are_those_of_their_words_on_a_turned_chassis(name: str) -> None:
-    plain, inputs, car = moved_car(name), poses_of(name), CARS[name]
-    drawn = {point: numbers(place) for point, place in plain["points"].items()}
-    out = 1 if car.side == "right" else -1
-    found = solved(name, inputs)
-    shift = (0, inputs["sideways"][0], inputs["heave"][0])
-    there = {point: minus(place, numbers(shift)) for point, place in found.position.items()}
-    level = solved(name, {n: triple for n, triple in inputs.items() if n in ("arm_angle", "rack")})
-    wanted = by_hand(there, drawn, plain["roles"], car.wheel_radius, out)
-    upright = by_hand(level.position, drawn, plain["roles"], car.wheel_radius, out)
-    on_chassis = {"travel", "contact_travel"}
-    # Angles are in test_angles, and those by arcsine in tests of all three mechanics.
-    others = {"damper_length", "steer_angle", "camber_by_arcsine", "toe_by_arcsine"}
-    assert set(wanted) | others == set(OF_POSITIONS) - set(ANGLES)
-    for one, value in wanted.items():
-        assert abs(found.effects[one] - (upright if one in on_chassis else wanted)[one]) < WITHIN, one
-        assert abs(level.effects[one] - upright[one]) < WITHIN, one
-        # A check of the check: the turns of the chassis are seen, but by a length of the car.
-        assert one == "damper_length" or abs(value - upright[one]) > 1e-3, one
 
 
 @pytest.mark.parametrize("name", CARS)
