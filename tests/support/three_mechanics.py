@@ -38,15 +38,17 @@ def scene_of(mechanism: Mapping[str, Any], effects: Sequence[str], **laws: Any) 
     )
 
 
-def assert_exact(solution: Solution, exact: Mapping[str, Sequence[Any]], within: float = 1e-10) -> None:
+def assert_exact(
+    solution: Solution, exact: Mapping[str | tuple[str, str], Sequence[Any]], within: float = 1e-10
+) -> None:
     """Numbers of the car are within their claims of what they exactly are, and these claims are narrow.
 
     Args:
-        exact: by name, what it is at each instant; vectors have three components.
+        exact: by name, or quantity and name, what it is at each instant; vectors have three components.
         within: the claims' limit, of a number's size where that is above 1.
     """
-    for name, values in exact.items():
-        (quantity,) = (q for q, numbers in solution.numbers.items() if q != "position" and name in numbers)
+    for key, values in exact.items():
+        quantity, name = key if isinstance(key, tuple) else (_quantity_of(solution, key), key)
         found, claims = solution.numbers[quantity][name], solution.accuracy.claims[quantity][name]
         with workdps(DIGITS):
             off = [
@@ -56,6 +58,11 @@ def assert_exact(solution: Solution, exact: Mapping[str, Sequence[Any]], within:
         most = claims + DUST
         assert (np.array(off, float).reshape(found.shape) <= most).all(), (name, found, values, claims)
         assert (claims <= within * np.maximum(1.0, np.abs(found).max())).all(), (name, claims)
+
+
+def _quantity_of(solution: Solution, name: str) -> str:
+    (quantity,) = (q for q, numbers in solution.numbers.items() if q != "position" and name in numbers)
+    return quantity
 
 
 def assert_none(solution: Solution, names: Sequence[str]) -> None:

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from guided_knuckle import guided_knuckle
 from hinged_knuckle import hinged_knuckle
-from mpmath import cos, mpf, sin, sqrt, workdps
 from numpy.typing import NDArray
 
 from pointcoord import MapError, Motion, Scene, SceneError, kinematic_map, simulate
@@ -51,70 +50,6 @@ def assert_balanced(about: Array, *forces: tuple[Array, Array | str], moment: An
     # Places are right to some 1e-13 of 1 m, by which forces are off with a factor of tens.
     assert np.abs(total).max() < 1e-10 * scale
     assert np.abs(turn).max() < 1e-10 * scale * 1000.0
-
-
-SWING = {
-    "parts": {
-        "right": {
-            "side": "right",
-            "mechanism": {
-                "bodies": {"chassis": ["a", "b", "top"], "knuckle": ["a", "b", "inner", "centre", "low"]},
-                "inputs": {"turn": {"angle": "knuckle", "from": "drawing"}},
-                "roles": {
-                    "knuckle": "knuckle",
-                    "wheel_axis": ["inner", "centre"],
-                    "damper": ["low", "top"],
-                },
-            },
-        }
-    }
-}
-POINTS = {
-    "a": (-100.0, 150.0, 420.0),
-    "b": (100.0, 150.0, 420.0),
-    "inner": (0.0, 660.0, 300.0),
-    "centre": (0.0, 760.0, 300.0),
-    "low": (0.0, 600.0, 280.0),
-    "top": (0.0, 500.0, 700.0),
-}
-
-
-def test_a_damper_beside_a_hinge_carries_the_moment_about_it() -> None:
-    turn = [0.02, 0.1]
-    motion = simulate(
-        Scene.from_mapping(
-            {
-                "effects": ["loads"],
-                "mechanism": {**SWING, "points": POINTS, "wheel_radius": RADIUS, "loads": {"right": LOAD}},
-                "inputs": {"right.turn": {"polynomial": turn}},
-                "time": {"start": 0.0, "stop": 1.0, "samples": 5},
-            }
-        )
-    )
-    assert [*motion.rod_force] == ["right.damper"]
-    assert not motion.joint_force  # what holds beside it is a hinge
-    bound = motion.proof(rates=True).proven["rod_force"]["right.damper"]
-    with workdps(40):
-        for time, found, most in zip(
-            motion.times.tolist(), motion.rod_force["right.damper"], bound, strict=True
-        ):
-            angle = mpf(turn[0]) + mpf(turn[1]) * mpf(time)
-
-            def turned(name: str, angle: mpf = angle) -> tuple[mpf, mpf]:
-                y, z = mpf(POINTS[name][1]) - 150, mpf(POINTS[name][2]) - 420
-                return y * cos(angle) - z * sin(angle), y * sin(angle) + z * cos(angle)
-
-            y, z = turned("centre")
-            contact = (y + RADIUS * sin(angle), z - RADIUS * cos(angle))
-            low, top = turned("low"), (mpf(350), mpf(280))
-            line = (top[0] - low[0], top[1] - low[1])
-            # About the hinge: the load's moment, and the damper's arm, which pulls `low` towards `top`.
-            _, across, up = map(mpf, LOAD["force"])
-            moment = contact[0] * up - contact[1] * across + mpf(LOAD["moment"][0])
-            arm = (low[0] * line[1] - low[1] * line[0]) / sqrt(line[0] ** 2 + line[1] ** 2)
-            exact = -moment / arm
-            assert exact < 0  # a wheel that is pushed up presses it together
-            assert abs(mpf(float(found)) - exact) <= most <= 1e-11 * abs(exact)
 
 
 def test_every_body_of_a_pushrod_suspension_is_in_balance() -> None:
