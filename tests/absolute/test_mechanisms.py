@@ -86,34 +86,6 @@ def test_every_input_leads_to_the_pose_that_the_turn_leads_to(given: dict[str, A
             assert np.abs(of[name] - wanted[name]).max() <= 64 * off(motion)[0], name
 
 
-@pytest.mark.parametrize("scene", ["semi-trailing-arm", "double-wishbone"])
-def test_the_height_of_the_contact_point_is_that_of_the_lowest_of_a_disc(scene: str) -> None:
-    described = plain_scene(scene) | {"wheel_radius": 305.0}
-    described["inputs"]["bump"] = {"contact": ["wheel_axis_inner", "wheel_centre"]}
-    del described["inputs"]["wheel_travel" if scene == "semi-trailing-arm" else "arm_angle"]
-    h, v, a = 1e-3, 30.0, 20.0
-    t = np.array([-h, 0.0, h])
-    bump = np.stack([30.0 + v * t + a * t * t / 2, v + a * t, a + 0.0 * t], -1)
-    inputs = {name: bump if name == "bump" else np.zeros((3, 3)) for name in described["inputs"]}
-    motion = Motion(described, inputs).solve(effects=["contact_travel"])
-    axis = motion.position["wheel_centre"] - motion.position["wheel_axis_inner"]
-    lean = axis[:, 2] / np.linalg.norm(axis, axis=1)
-    height = motion.position["wheel_centre"][:, 2] - 305.0 * np.sqrt(1.0 - lean**2)
-    drawn = np.subtract(described["points"]["wheel_centre"], described["points"]["wheel_axis_inner"])
-    lowest = described["points"]["wheel_centre"][2] - 305.0 * np.sqrt(
-        1.0 - (drawn[2] / np.linalg.norm(drawn)) ** 2
-    )
-    assert height - lowest == pytest.approx(bump[:, 0], abs=1e-10)
-    assert motion.effects["contact_travel"] == pytest.approx(bump[:, 0], abs=1e-10)
-    # Differences: truncation h^2 times third and fourth derivatives below 1e3 and 1e4.
-    y = motion.position["wheel_centre"]
-    assert motion.velocity["wheel_centre"][1] == pytest.approx((y[2] - y[0]) / (2 * h), abs=1e3 * h * h)
-    second = (y[2] - 2 * y[1] + y[0]) / h**2
-    assert motion.acceleration["wheel_centre"][1] == pytest.approx(second, abs=1e4 * h * h)
-    assert set(motion.position) == set(described["points"])
-    assert set(motion.angular_velocity) == set(described["bodies"]) - {"chassis"}
-
-
 def four_bar(tilt: float = 0.0, **more: Any) -> dict[str, Any]:
     """Hinges along x at (0, 0), (40, 30), (160, 60), (150, 0) in y and z; the last one tilted."""
     places = [(0, 0), (40, 30), (160, 60), (150, 0)]
@@ -180,18 +152,6 @@ def test_a_slide_of_two_points_of_one_body_may_turn_or_not() -> None:
     closed = absolute.close_drawing(absolute.compile(askew)).position
     assert closed["c"][[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-12)
     assert closed["d"][0] == pytest.approx(30.0, abs=1e-12)
-
-
-def test_several_slides_take_one_value() -> None:
-    points = {"a": (0, 0, 0), "p": (0, 10, 0), "q": (0, -20, 0)}
-    slides = {
-        name: {"points": [end], "body": "chassis", "through": "a", "along": "right", "turns": True}
-        for name, end in (("one", "p"), ("two", "q"))
-    }
-    both = {"both": {"travel": ["one", "two"]}}
-    motion = Motion(plain({"chassis": ["a"]}, points, both, slides=slides), {"both": at([30.0], 4.0)}).solve()
-    assert [motion.position[end][0, 1] for end in "pq"] == pytest.approx([30.0, 30.0], abs=1e-12)
-    assert [motion.velocity[end][0, 1] for end in "pq"] == pytest.approx([4.0, 4.0], abs=1e-12)
 
 
 # Pairs of one body of the paper's strut.

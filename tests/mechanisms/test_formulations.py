@@ -14,10 +14,10 @@ from mpmath import mp
 from pointcoord import Scene
 from validate.adjudication.reference_solution import design_of
 from validate.formulations.protocol import FormulationError
-from validate.formulations.registry import formulation
+from validate.formulations.registry import OUTSIDE, formulation
 from validate.reference import instants_of
 
-FORMULATIONS = ("pointcoord", "pointcoord-newton", "pointcoord-map", "absolute", "relative")
+FORMULATIONS = ("pointcoord", "pointcoord-newton", "pointcoord-map", "absolute", "relative", *OUTSIDE)
 # Motions that meet a singular pose after some instants: the scene, and its input from the drawing on.
 BEYOND = {
     "branches cross": ("n-four-bar", "crank", [0.0, -1.7]),

@@ -134,7 +134,6 @@ CAR = {
     "drive_share": 0.25,
 }
 CENTRES = EFFECTS["instant_centres"].own_names
-ANTI = EFFECTS["anti_features"].own_names
 Place = tuple[float, float, float]
 
 

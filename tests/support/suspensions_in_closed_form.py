@@ -228,8 +228,6 @@ FORMS = [
     Suspension(GENERAL_STRUT, off_axis_struts(), ("lower_ball_joint", "tie_rod_outer", "strut_lower")),
     Suspension(WISHBONE, wishbones(), ("lower_ball_joint", "upper_ball_joint", "tie_rod_outer")),
 ]
-RANDOM = {"strut as drawn": FORMS[0].cars, "double wishbone": FORMS[1].cars}
-PLAIN = {"strut as drawn": OFF_AXIS, "double wishbone": LOTUS}
 
 
 def rounded(car: ExactCar) -> ExactCar:

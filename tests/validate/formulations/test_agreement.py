@@ -1,49 +1,13 @@
 """The paper's own verification: two formulations of one mechanism agree in everything they compute."""
 
 import numpy as np
-import pytest
 from built_in_cars import STEERED_CARS
 from hypothesis import assume, given, note, settings
 
 from pointcoord import AssemblyError, InputOutOfRange, MotionNotMapped, Scene
-from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
 from validate.strategies import scenes
-
-# Rows that an effect makes beside those of every point.
-WHAT_IT_GIVES = {
-    "knuckle_rates": (("angular_velocity", "knuckle"), ("angular_acceleration", "knuckle")),
-    "wheel_angles": (("wheel", "camber"), ("wheel", "kingpin")),
-    "toe": (("wheel", "toe"),),
-    "caster": (("wheel", "caster"),),
-}
-PAIRS = [
-    ("pointcoord", "absolute"),
-    ("pointcoord-newton", "absolute"),
-    ("pointcoord", "pointcoord-newton"),
-    ("pointcoord-map", "absolute"),
-    ("pointcoord-map", "relative"),
-    ("pointcoord", "relative"),
-    ("absolute", "relative"),
-]
-
-
-@pytest.mark.parametrize("pair", PAIRS)
-@pytest.mark.parametrize("name", STEERED_CARS)
-def test_formulations_agree_in_everything_that_the_built_in_scenes_ask_for(
-    name: str, pair: tuple[str, str]
-) -> None:
-    scene = Scene.load(name)
-    outcome = compare(scene, *pair, name)
-    assert outcome.agreed, outcome.disagreements
-    assert set(WHAT_IT_GIVES) - set(scene.effects) <= {"toe", "caster"}
-    vectors = ("position", *(effect for effect in scene.effects if effect in ("velocity", "acceleration")))
-    asked = {(quantity, point) for quantity in vectors for point in scene.mechanism.points}
-    asked |= {row for effect in scene.effects for row in WHAT_IT_GIVES.get(effect, ())}
-    numbers = [NUMBERS_OF_THE_CAR[n] for e in scene.effects for n in EFFECTS[e].own_names]
-    asked |= {(number.quantity.name, number.name) for number in numbers}
-    assert {(row.quantity, row.name) for row in outcome.rows} == asked
 
 
 def require_agreement(outcome: Outcome) -> None:

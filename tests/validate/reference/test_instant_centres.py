@@ -8,12 +8,10 @@ from typing import Any
 
 import pytest
 from mechanism_drawings import described
-from mpmath import mpf
 
 from validate.reference import BadInputError, Design, closed_drawing
 from validate.reference.vectors import Vector
 
-WITHIN = mpf("1e-55")
 FRONT_VIEW = ("front_view_swing_arm", "front_view_centre_height")
 SIDE_VIEW = ("side_view_swing_arm", "side_view_centre_height")
 ANTI = ("anti_brake", "anti_drive")

@@ -10,19 +10,14 @@ import mpmath
 import pytest
 from lotus_front import POINTS as LOTUS
 from lotus_front import ROLLING_RADIUS
-from lotus_poses import at_bump
 from mechanism_drawings import (
-    BLOCK,
     DOUBLE_ARM,
-    FOUR_BAR,
     SLIDER_CRANK,
     described,
     five_link,
-    trailing_arm,
 )
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
-from vdsim import FIVE_LINK_TABLE, TRAILING_ARM_TABLE, WHEEL_CENTRE
 
 from validate.reference import (
     BadInputError,
@@ -30,8 +25,6 @@ from validate.reference import (
     InfeasibleError,
     Instant,
     NoReferenceError,
-    closed_drawing,
-    instants_of,
     solve_reference,
 )
 from validate.reference.vectors import Vector, cross, minus, plus
@@ -42,24 +35,6 @@ WITHIN = mpf("1e-50")
 def apart(one: Mapping[str, Vector], other: Mapping[str, Vector]) -> mpf:
     """Greatest difference of a coordinate, mm."""
     return max(abs(x) for name in other for x in minus(one[name], other[name]))
-
-
-@pytest.mark.parametrize(
-    ("plain", "table", "off"),
-    [(five_link(), FIVE_LINK_TABLE, 5e-15), (trailing_arm(), TRAILING_ARM_TABLE, 5e-8)],
-    ids=["five links", "semi-trailing arm"],
-)
-def test_a_mechanism_of_others_moves_as_their_table_says(
-    plain: dict[str, Any], table: tuple[tuple[float, ...], ...], off: float
-) -> None:
-    inputs = [{"wheel_travel": (1000 * row[0], 0, 0)} for row in table]
-    for row, instant in zip(table, instants_of(Design.from_plain(plain), inputs), strict=True):
-        _, camber, toe, track = row
-        assert float(instant.effects["camber"]) == pytest.approx(camber, abs=off)
-        assert float(instant.effects["toe"]) == pytest.approx(toe, abs=off)
-        across = float(instant.position["wheel_centre"][1]) / 1000 - WHEEL_CENTRE[1]
-        assert across == pytest.approx(track, abs=off)
-        assert set(instant.effects) == {"camber", "toe"}  # they have no steering axis
 
 
 def crank_of(theta: mpf) -> Vector:
@@ -82,20 +57,6 @@ def test_a_slider_crank_is_where_its_closed_form_says_after_any_number_of_turns(
     assert abs(found.angular_velocity["crank"][2] - 2) < WITHIN
 
 
-@pytest.mark.parametrize("theta", ["0.3", "1.7", "-2.4", "3.3", "9.9"])
-def test_a_spatial_four_bar_keeps_to_its_branch(theta: str) -> None:
-    # b = (10 + 6 sin(p), 3, 6 cos(p)) about y, |b - a|^2 as drawn: one equation A cos(p) + B sin(p) = C.
-    t = mpf(theta)
-    a = (2 * mpmath.cos(t), 2 * mpmath.sin(t), mpf(0))
-    squared = 64 + 9 + 36
-    x, y = 10 - a[0], 3 - a[1]
-    reach, goal = 12 * x, (squared - x * x - y * y - 36)
-    p = mpmath.asin(goal / reach)  # of the two answers the one that is 0 as drawn
-    want = (10 + 6 * mpmath.sin(p), mpf(3), 6 * mpmath.cos(p))
-    found = solve_reference(FOUR_BAR, {"turn": (t, 0, 0)})
-    assert apart(found.position, {"a": a, "b": want}) < WITHIN
-
-
 def test_an_arm_on_an_arm_turns_against_it_and_both_rates_add() -> None:
     one, two = mpf("2.3"), mpf("-5.1")
     found = solve_reference(DOUBLE_ARM, {"shoulder": (one, 2, 0), "elbow": (two, 3, 0)})
@@ -104,13 +65,6 @@ def test_an_arm_on_an_arm_turns_against_it_and_both_rates_add() -> None:
     assert apart(found.position, {"e": elbow, "tip": tip}) < WITHIN
     for body, rate in (("upper", 2), ("fore", 5)):
         assert max(abs(x) for x in minus(found.angular_velocity[body], (0, 0, rate))) < WITHIN
-
-
-def test_a_sliding_joint_that_may_not_turn_shifts_its_body_by_the_travel() -> None:
-    found = solve_reference(BLOCK, {"push": (25, 10, 0)})
-    moved = {name: minus(found.position[name], BLOCK["points"][name]) for name in ("front", "rear", "side")}
-    assert apart(moved, dict.fromkeys(moved, (mpf(12), mpf(16), mpf(0)))) < WITHIN  # from 5 to 25 mm
-    assert max(abs(x) for x in minus(found.velocity["side"], (6, 8, 0))) < WITHIN
 
 
 def lotus(*driven: str, **others: Any) -> dict[str, Any]:
@@ -129,23 +83,6 @@ def lotus(*driven: str, **others: Any) -> dict[str, Any]:
         "wheel_radius": ROLLING_RADIUS,
         **others,
     }
-
-
-@pytest.mark.parametrize(("name", "value"), [("wheel_travel", 35), ("contact", -20), ("gap", 8)])
-def test_another_input_leads_to_a_pose_of_the_same_linkage(name: str, value: int) -> None:
-    value += closed_drawing(Design.from_plain(lotus(name, "rack"))).inputs[name]
-    there = solve_reference(lotus(name, "rack"), {name: (value, 0, 0), "rack": (5, 0, 0)})
-    by_arm = Design.from_plain(lotus("arm_angle", "rack"))
-    arm = minus(there.position["lower_ball_joint"], there.position["lower_arm_front"])
-    angle = mpmath.acos(arm[2] / mpmath.sqrt(arm[0] ** 2 + arm[1] ** 2 + arm[2] ** 2))
-    (same,) = instants_of(by_arm, [{"arm_angle": (angle, 0, 0), "rack": (5, 0, 0)}])
-    assert apart(same.position, there.position) < WITHIN
-
-
-@pytest.mark.parametrize("bump", [-40.0, 30.0])
-def test_the_contact_height_is_that_of_the_lowest_point_of_the_wheel(bump: float) -> None:
-    found = solve_reference(lotus("contact", "rack"), {"contact": (bump, 0, 0), "rack": (0, 0, 0)})
-    assert apart(found.position, at_bump(bump).position) < mpf("1e-15")
 
 
 def test_a_car_that_rolls_takes_its_pose_along_and_adds_its_turning() -> None:

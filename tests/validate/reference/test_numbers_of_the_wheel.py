@@ -20,7 +20,6 @@ from validate.reference import BadInputError, Design, Instant, closed_drawing, i
 from validate.reference.effects.registry import EFFECTS, OF_POSITIONS
 
 EVERY = tuple(EFFECTS)
-WITHIN = mpf("1e-55")
 UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
 
 # A right wheel that toes out and leans in at the top: its spin axis (36, 48, 25) is 65 long, 60 of it level.
