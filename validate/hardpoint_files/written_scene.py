@@ -132,8 +132,8 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
     drives = drawn.mechanism.topology.drives
     for drive in drives:
         name, unit, here = drive.input, drive.unit, stands.inputs[drive.input]
-        # What pushes a point steers; what pushes none carries the wheel up and down.
-        if drive.pushes and not all(other.pushes for other in drives):
+        # The travel of a slide steers; what is none carries the wheel up and down.
+        if drive.of_slide and not all(other.of_slide for other in drives):
             laws[name] = {"constant": here}, f"{unit}, as drawn"
             continue
         low, high = (end.value for end in stands.reach[name])
