@@ -177,13 +177,15 @@ def arm_roll_centre_height(motion: Motion) -> Array:
     much as leaves a pure rotation.
 
     With u the velocity of the axis' lower point and w the spin of the knuckle, (w + f k) . u = 0. Not a
-    number where u is square to the axis k.
+    number where u is square to the axis k, or none.
     """
     lower, _ = motion.corner.ends("steering_axis")
     k = motion.line(*motion.corner.ends("steering_axis")).value
     u, w = _slope(motion, _from_centre(motion, lower), "travel"), _spin(motion, "travel")
-    turn = w - k * _ratio((w * u).sum(axis=0), (k * u).sum(axis=0))
     arm = motion.line(lower, _centre(motion)).value + contact(motion).value
+    speed, turning, far = (np.linalg.norm(vector, axis=0) for vector in (u, w, arm))
+    along = np.where(speed <= LEAST * turning * far, 0.0, (k * u).sum(axis=0))
+    turn = w - k * _ratio((w * u).sum(axis=0), along)
     velocity = motion.corner.axes @ (u + np.cross(turn, arm, axis=0))
     return _contact_place(motion)[OUTBOARD].value * _ratio(velocity[OUTBOARD], _rising(velocity))
 

@@ -29,9 +29,9 @@ def arm_roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
     moved, arm = velocity_at(corner, lower), place - lower
     # All of it times k . v_P, which changes no direction.
     along = moved + cross(turn, arm)
-    return middle_plane_height(
-        corner, times(dot(axis, moved), along) - times(dot(turn, moved), cross(axis, arm))
-    )
+    velocity = times(dot(axis, moved), along) - times(dot(turn, moved), cross(axis, arm))
+    # Where v_P is none, all of it is.
+    return middle_plane_height(corner, velocity, times(dot(turn, turn) * dot(arm, arm), axis))
 
 
 ARM_ROLL_CENTRE = CarNumbers.of(
@@ -45,4 +45,5 @@ ARM_ROLL_CENTRE = CarNumbers.of(
         ("wheel_axis", "steering_axis", "knuckle"),
         way=BY_TRAVEL,
     ),
+    nowhere="the lower point of the steering axis stands still",
 )

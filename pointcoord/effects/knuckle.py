@@ -45,11 +45,16 @@ def turning_of(corner: Corner[Dual[Any]], vector: Any) -> Any:
     return times(a, e1.slope) + times(b, e2.slope) + times(c, normal.slope)
 
 
-def told_from_none(part: Any, velocity: Any) -> Any:
-    """A part of a velocity; no number where rounding does not tell it from none."""
+def told_from_none(part: Any, *of: Any) -> Any:
+    """A part of a velocity; no number where rounding does not tell it from none.
+
+    Args:
+        of: the velocity, and vectors as long as what it is made of.
+    """
     if not isinstance(part, np.ndarray):
         return part
-    return np.where(np.abs(part) > LEAST_PART * np.linalg.norm(velocity, axis=-1), part, np.nan)
+    whole = sum(np.linalg.norm(vector, axis=-1) for vector in of)
+    return np.where(np.abs(part) > LEAST_PART * whole, part, np.nan)
 
 
 def rising(corner: Corner[Dual[Any]]) -> Any:

@@ -23,11 +23,11 @@ def roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
     return middle_plane_height(corner, velocity_at(corner, contact_place(corner)))
 
 
-def middle_plane_height(corner: Corner[Dual[Any]], velocity: Any) -> Any:
-    """The same of any velocity of the contact point."""
+def middle_plane_height(corner: Corner[Dual[Any]], velocity: Any, *of: Any) -> Any:
+    """The same of any velocity of the contact point, or a vector along it; of: as `told_from_none`."""
     view = corner.seen
     far = component(view, corner.origin.value + contact_place(corner), "outboard")
-    up = told_from_none(component(view, velocity, "up"), velocity)
+    up = told_from_none(component(view, velocity, "up"), velocity, *of)
     return far * ratio(component(view, velocity, "outboard"), up)
 
 
