@@ -1,5 +1,6 @@
 """A test that hangs ends the run with a failure that names it."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -52,8 +53,7 @@ def test_without_workers_a_hanging_test_ends_the_run_with_its_place(tmp_path: Pa
     status, told = run(tmp_path, "0")
     assert status == 1
     assert "Timeout" in told
-    assert "in test_that_hangs" in told
-    assert "while x > 3:" in told
+    assert re.search(r"line \d+, in test_that_hangs", told)
 
 
 def test_every_test_has_a_time_limit(pytestconfig: pytest.Config) -> None:

@@ -17,7 +17,7 @@ class MissingPackage(ImportError):
 
     def __init__(self, part: str, error: ImportError, extra: str = "validate") -> None:
         self.part = part
-        self.package = error.name or "pin"
+        self.package = error.name or part
         if "the absolute model needs Pinocchio" in str(error):
             # The part says it itself.
             super().__init__(str(error), name=error.name)

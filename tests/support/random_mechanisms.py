@@ -16,7 +16,7 @@ LINES = {"up": (0.0, 0.0, 1.0), "left": (0.0, -1.0, 0.0), "forward": (1.0, 0.0, 
 JOINTS = {"none": 6, "point on a line": 4, "ball": 3, "sliding and turning": 2, "hinge": 1, "sliding": 1}
 # Of the size, how far the points of a slide are drawn off its line: by a rounding, or so that they show.
 OFF = (0.0, 0.0, 1e-3)
-EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "loads")
+CAR = {"axle": "front", "brake_share": 0.6, "drive_share": 0.4}
 LOAD = {"force": [100.0, 900.0, 3000.0], "moment": [1e4, -2e4, 3e3]}
 
 
@@ -55,9 +55,10 @@ class _Maker:
                 **{"bodies": self.bodies, "rods": self.rods, "slides": self.slides},
                 **{"inputs": inputs, "roles": roles, "loads": {"": LOAD}},
                 **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "right", "wheel_radius": 0.6 * self.size},
+                "car": {**CAR, "wheelbase": 2.5 * self.size, "centre_of_gravity_height": self.size},
             },
             "inputs": laws,
-            "effects": list(EFFECTS),
+            "effects": ["loads"],
             "time": {"start": 0.0, "stop": 1.0, "samples": 2},
         }
 

@@ -70,9 +70,11 @@ def slope_of(number: Scalar) -> Scalar:
 
 
 def angle(y: Scalar, x: Scalar) -> Scalar:
-    """atan2(y, x), rad, of balls, of arrays or of duals of these."""
+    """atan2(y, x), rad, of balls, of arrays or of duals of these; no number of two balls about 0."""
+    if isinstance(y, arb) and isinstance(x, arb):
+        return arb("nan") if y.contains(0) and x.contains(0) else arb.atan2(y, x)
     if not (isinstance(y, Dual) or isinstance(x, Dual)):
-        return arb.atan2(y, x) if isinstance(y, arb) else np.arctan2(y, x)
+        return np.arctan2(y, x)
     across, along = value_of(y), value_of(x)
     turning = along * slope_of(y) - across * slope_of(x)
     return Dual(angle(across, along), turning / (along * along + across * across))
