@@ -195,6 +195,14 @@ def damper_per_wheel(motion: Motion) -> Array:
     return -_ratio(_slope(motion, LENGTHS["damper_length"](motion), "travel"), _travelled(motion))
 
 
+def wheel_per_damper(motion: Motion) -> Array:
+    """Travel for each mm that the damper is shortened by; not a number where its length does not change."""
+    line = _slope(motion, motion.line(*motion.corner.ends("damper")), "travel")
+    grown = _slope(motion, LENGTHS["damper_length"](motion), "travel")
+    grown = np.where(np.abs(grown) <= LEAST * np.linalg.norm(line, axis=0), 0.0, grown)
+    return -_ratio(_slope(motion, travel(motion), "travel"), grown)
+
+
 def spring_force(motion: Motion) -> Array:
     """Rate times what the spring is shorter than free, N: it pushes its ends apart."""
     rate, free = needed(motion.corner.car, "spring_rate", "spring_free_length")
@@ -262,7 +270,7 @@ OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
     "roll_centre_height": ("mm", roll_centre_height),
     "arm_roll_centre_height": ("mm", arm_roll_centre_height),
     "damper_per_wheel": ("mm/mm", damper_per_wheel),
-    "wheel_per_damper": ("mm/mm", lambda motion: _ratio(1.0, damper_per_wheel(motion))),
+    "wheel_per_damper": ("mm/mm", wheel_per_damper),
     "spring_force": ("N", spring_force),
     "wheel_force": ("N", lambda motion: spring_force(motion) * damper_per_wheel(motion)),
     "wheel_rate": ("N/mm", wheel_rate),

@@ -267,3 +267,21 @@ def test_a_wheel_that_does_not_travel_has_no_numbers_by_it(who: str, x: float, l
     solution = on_an_arm(who, hinge, ("toe", "toe_by_travel", "roll_centre"))
     assert_none(solution, [lost])
     assert "toe" in solution.numbers["wheel"]
+
+
+@by_each
+def test_a_wheel_that_turns_about_its_steering_axis_has_no_roll_centre_of_its_arms(who: str) -> None:
+    """The lower point of the axis stands still."""
+    hinge = ((985.0, 765.0, -60.0), (1075.0, 585.0, 660.0))
+    solution = on_an_arm(who, hinge, ("arm_roll_centre", "roll_centre"))
+    assert_none(solution, ["arm_roll_centre_height"])
+    assert "roll_centre_height" in solution.numbers["dimension"]
+
+
+@by_each
+def test_a_damper_whose_length_does_not_change_has_no_travel_per_its_own(who: str) -> None:
+    """Its upper end stands on the hinge's line, which leads a little upwards, so that places are rounded."""
+    hinge = ((900.0, 370.0, 587.0), (1100.0, 430.0, 613.0))
+    solution = on_an_arm(who, hinge, ("motion_ratio", "toe"), turn=0.3)
+    assert_none(solution, ["wheel_per_damper"])
+    assert np.abs(solution.numbers["dimension_gradient"].get("damper_per_wheel", np.zeros(1))).max() < 1e-12

@@ -1,4 +1,4 @@
-"""Effects by their meaning, of axes turned by hand, and the laws that all of them obey."""
+"""Angles of axes turned by hand, and their slopes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from validate.reference.effects.car import STEERING, WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.vectors import Vector
 
-UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
+UP, FORWARD = (0, 0, 1), (-1, 0, 0)  # x rearward, y right, z up
 
 
 def car_with(wheel: tuple[float, ...], steering: tuple[float, ...], out: int) -> Car:
@@ -60,3 +60,9 @@ def test_an_angle_turns_with_both_of_its_components(y: Dual | arb, x: Dual | arb
     assert found.slope.overlaps(arb(slope.numerator) / slope.denominator)
     values = [float(part.value) if isinstance(part, Dual) else float(part) for part in (y, x)]
     assert float(found.value) == pytest.approx(np.arctan2(*values), abs=1e-15)
+
+
+def test_two_components_that_may_both_be_none_have_no_angle() -> None:
+    assert not angle(arb(0), arb(0)).is_finite()
+    assert not angle(arb(0, 1), arb(0, 1)).is_finite()
+    assert angle(arb(0), arb(1)) == 0

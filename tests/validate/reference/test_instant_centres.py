@@ -1,4 +1,4 @@
-"""Instant centres and anti-features, held to where hinges pierce planes and the lines of arms meet."""
+"""What instant centres and anti-features ask of the car. What they are is in tests/mechanisms."""
 
 from __future__ import annotations
 
@@ -33,12 +33,7 @@ def on_an_arm(hinge: tuple[Vector, Vector], wheel: Mapping[str, Vector], **other
     return described(
         {"pivot": hinge[0], "end": hinge[1], **wheel},
         {"chassis": ["pivot", "end"], "arm": ["pivot", "end", "inner", "centre"]},
-        {
-            "swing": {"angle": "arm", "from": "drawing"},
-            "roll": {"turns": "chassis", "about": "pivot", "along": "forward"},
-            "pitch": {"turns": "chassis", "about": "end", "along": "right"},
-            "heave": {"moves": "chassis", "along": "up"},
-        },
+        {"swing": {"angle": "arm", "from": "drawing"}},
         **{
             "roles": {"knuckle": "arm", "wheel_axis": ["inner", "centre"]},
             "side": "right",

@@ -1,6 +1,6 @@
-"""Lengths about the wheel and the steering axis, and gradients.
+"""Gradients and rates of numbers held to differences of proven poses, and what a car lacks.
 
-They are drawn as whole numbers, computed by their words from positions, and held to differences of poses.
+What the numbers are is in tests/mechanisms, for all mechanics.
 """
 
 from __future__ import annotations
@@ -20,12 +20,7 @@ from validate.reference import BadInputError, Design, Instant, closed_drawing, i
 from validate.reference.effects.registry import EFFECTS, OF_POSITIONS
 
 EVERY = tuple(EFFECTS)
-UP, RIGHT, FORWARD = (0, 0, 1), (0, 1, 0), (-1, 0, 0)  # x rearward, y right, z up
 
-# A right wheel that toes out and leans in at the top: its spin axis (36, 48, 25) is 65 long, 60 of it level.
-# So the lowest point of a disc of 260 lies 260 * 25 / 65 = 100 along (36, 48) / 60, and 260 * 60 / 65 = 240
-# below the centre: (1060, 780, 60). The steering axis (30, -60, 240) is at (1000, 735) there, and at
-# (1030, 675) as high as the centre.
 WHEEL = {
     "wheel_axis_inner": (964, 652, 275),
     "wheel_centre": (1000, 700, 300),
@@ -33,7 +28,7 @@ WHEEL = {
     "upper": (1045, 645, 420),
     "damper_low": (1014, 421, 558),
 }
-DAMPER_TOP = (1000, 400, 600)  # (14, 21, -42) = 7 (2, 3, -6)
+DAMPER_TOP = (1000, 400, 600)
 RADIUS = 260
 ROLES = {
     "knuckle": "arm",
