@@ -97,6 +97,18 @@ def test_a_misread_hardpoint_is_named_with_its_amount_on_every_car(
     assert words in said
 
 
+def test_a_constant_that_was_added_is_found_amid_what_the_digits_leave_open() -> None:
+    # The numbers' mean difference lies beside it: rounding the curve leaves it half a digit off in one row.
+    def added(table: Table) -> Table:
+        return table | {"camber": table["camber"] + np.degrees(0.044)}
+
+    scene = asked("pushrod", "rack")
+    left_open = [explained(scene, scene, "rack", digits, added) for digits in (2, 3, 4, 5)]
+    for (said,) in left_open:
+        assert said.startswith("camber: a constant offset of 0.04")
+        assert "does not explain" not in said
+
+
 @pytest.mark.parametrize(
     ("name", "coordinate", "amount", "words"),
     [

@@ -216,7 +216,7 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
     points = [row for row in placed if kind_of(row) == "point"]
     yield from _origin(evidence, points)
     for row in placed:
-        gap = np.mean(evidence.given[row] - evidence.held[row], axis=0)
+        gap = _constant_of(evidence, row)
         noise = float(evidence.rounded(row).max())
         if np.isfinite(gap).all() and np.abs(gap).max() > 8.0 * noise and len(evidence.times) > 2:
             _, unit = evidence.theirs.get(row, ("", 1.0))
@@ -226,6 +226,14 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
                 continue
             words, count = f"a constant offset of {evidence.in_words(row, gap)}", max(np.size(gap), 1)
             yield Hypothesis((row, "constant"), words, {row: _less(evidence, row, -gap)}, count, 1.0 + count)
+
+
+def _constant_of(evidence: Evidence, row: Row) -> Array:
+    """By what a row differs from ours: amid what its digits leave open, else the mean, which may lie beside."""
+    apart = evidence.given[row] - evidence.held[row]
+    off = evidence.rounded(row) + evidence.own.get(row, 0.0)
+    amid = np.asarray(0.5 * ((apart - off).max(axis=0) + (apart + off).min(axis=0)))
+    return amid if _is_less(evidence, row, amid) else np.asarray(apart.mean(axis=0))
 
 
 def _as_drawn(evidence: Evidence, rows: Iterable[Row]) -> dict[Row, float]:
