@@ -229,7 +229,7 @@ def offsets(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def _constant_of(evidence: Evidence, row: Row) -> Array:
-    """By what a row differs from ours: amid what its digits leave open, else the mean, which may lie beside."""
+    """By what a row differs from ours: amid what its digits leave open, where the mean may lie beside."""
     apart = evidence.given[row] - evidence.held[row]
     off = evidence.rounded(row) + evidence.own.get(row, 0.0)
     amid = np.asarray(0.5 * ((apart - off).max(axis=0) + (apart + off).min(axis=0)))
