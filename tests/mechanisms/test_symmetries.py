@@ -1,82 +1,247 @@
-"""A mechanism has no place, attitude, size or side: moved, scaled and mirrored drawings move alike."""
+"""A mechanism has no place, attitude, size, side or sense of time: its numbers change with these alone.
+
+Every shipped mechanism is tried by all three mechanics, with every number that it has. Coordinates and laws
+are multiples of 1/1024, so that no change of them rounds one.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_checks import EXACT, farthest, scene_inputs
-from mechanism_equations import DIGITS, Equations, vector
-from mechanism_files import SCENES, Plain, plain_scene, scene_file
-from mechanism_poses import placed
-from mpmath import mp, mpf
+from mechanism_files import plain_scene
+from numpy.typing import NDArray
+from three_mechanics import by_each, solved_by
 
-# A rotation of rational entries, and a place.
-TURNED = np.array([[2, -1, 2], [2, 2, -1], [-1, 2, 2]], dtype=object) * mpf(1)
-MOVED = vector([300, -1700, 40])
-LENGTHS = ("travel", "height", "contact", "distance", "moves")
-ONE_EACH = {scene_file(scene)["mechanism"]["type"]: scene for scene in reversed(SCENES)}
+from pointcoord import Scene
+from pointcoord.drawing_stands import drawn_inputs
+from pointcoord.effects.car_number import LENGTHS
+from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from validate.formulations.asked_numbers import per_second
+from validate.formulations.protocol import Solution
 
+Array = NDArray[np.float64]
+Content = dict[str, Any]
 
-def same(place: Any) -> Any:
-    return place
-
-
-def carried(mechanism: Plain, place: Callable[[Any], Any], direction: Callable[[Any], Any] = same) -> Plain:
-    with mp.workdps(DIGITS):
-        points = {name: list(place(vector(point))) for name, point in mechanism["points"].items()}
-        axes = {axis: list(direction(vector(mechanism[axis]))) for axis in ("up", "right")}
-    return {**mechanism, **axes, "points": points}
-
-
-def compared(scene: str, other: Plain, place: Callable[[Any], Any], way: Mapping[str, Any]) -> float:
-    """How far the poses of a changed drawing are from the changed poses of the drawing, mm."""
-    path = scene_inputs(scene, [0, scene_file(scene)["time"]["samples"] // 6])
-    with mp.workdps(DIGITS):
-        changed = [{name: way.get(name, 1) * number for name, number in inputs.items()} for inputs in path]
-    before = placed(Equations(plain_scene(scene)), path)
-    with mp.workdps(DIGITS):
-        here = [{name: place(point) for name, point in points.items()} for points in before]
-    return farthest(placed(Equations(other), changed), here)
-
-
-@pytest.mark.parametrize("scene", ONE_EACH.values())
-def test_a_drawing_that_is_moved_and_turned_moves_alike(scene: str) -> None:
-    with mp.workdps(DIGITS):
-        rotation = TURNED / 3
-
-        def place(point: Any) -> Any:
-            return rotation @ point + MOVED
-
-        other = carried(plain_scene(scene), place, lambda axis: rotation @ axis)
-    assert compared(scene, other, place, {}) <= EXACT
+# One of each mechanism and closure; Bricard's depends on exact lengths that only its own drawing has.
+SCENES = (
+    "bounce",
+    "off-axis-strut",
+    "pushrod-by-damper",
+    "five-link",
+    "semi-trailing-arm",
+    "axle-steer",
+    "axle-roll",
+    "spatial-four-bar",
+    "slider-crank",
+    "n-four-bar",
+    "andrews-squeezer",
+)
+CAR = {
+    "axle": "front",
+    "wheelbase": 2618.5,
+    "centre_of_gravity_height": 511.75,
+    "brake_share": 0.375,
+    "drive_share": 0.625,
+    "spring_rate": 31.5,
+    "spring_free_length": 823.25,
+}
+LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}
+SIDES = {"left": "right", "right": "left"}
+# The power of a length in a number of such a unit, where loads grow with the square of the size.
+POWERS = {"mm": 1, "rad": 0, "rad/mm": -1, "mm/mm": 0, "mm/rad": 1, "N": 1, "N/mm": 0, "%": 0}
+# What counts to the left or the right, or as a screw, is the other way round in a mirror.
+ODD = ("steer_angle", "screw_pitch", "axle_roll_centre_offset")
 
 
-@pytest.mark.parametrize("scene", ONE_EACH.values())
-def test_a_drawing_of_another_size_moves_alike(scene: str) -> None:
-    mechanism = plain_scene(scene)
-    lengths = {name: 3 for name, drive in mechanism["inputs"].items() if set(LENGTHS) & set(drive)}
-    radius = {"wheel_radius": 3.0 * (mechanism["wheel_radius"] or 0.0)}
-    other = {**carried(mechanism, lambda point: 3 * point), **radius}
-    assert compared(scene, other, lambda point: 3 * point, lengths) <= 3 * EXACT
+@dataclass(frozen=True)
+class Change:
+    """What is done to a car.
+
+    Attributes:
+        turn, shift: places p become scale (turn p + shift), with the car's own axes turned too.
+        mirrored: left and right are exchanged as well, and the car's axes stay.
+        backwards: its inputs run from their end to their start.
+    """
+
+    turn: tuple[tuple[int, ...], ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    scale: float = 1.0
+    mirrored: bool = False
+    backwards: bool = False
+
+    @property
+    def matrix(self) -> Array:
+        """Of vectors, without the scale."""
+        return np.array(self.turn, float)
+
+    @property
+    def sense(self) -> float:
+        """Of vectors that are turns."""
+        return float(round(np.linalg.det(self.matrix)))
+
+    def name(self, name: str) -> str:
+        """That of the other side, in a mirror."""
+        side, dot, own = name.partition(".")
+        return f"{SIDES[side]}.{own}" if self.mirrored and dot and side in SIDES else name
+
+    def number(self, quantity: str, name: str, value: Array) -> Array:
+        """What a number of the car becomes, at the same place of the path."""
+        of, unit = QUANTITIES[quantity].of, QUANTITIES[quantity].unit
+        rates = per_second(quantity)
+        sign = (-1.0) ** rates if self.backwards else 1.0
+        if self.mirrored:
+            own = name.rpartition(".")[2]
+            sign *= -1.0 if own.startswith(ODD) else 1.0
+            sign *= -1.0 if own.endswith("_by_rack") else 1.0
+        factor = self.scale ** POWERS[unit.partition("/s")[0]]
+        moved = value[::-1] if self.backwards else value
+        if of == "car":
+            return np.asarray(sign * factor * moved)
+        moved = moved @ self.matrix.T * (self.sense if of == "body" else 1.0)
+        place = np.array(self.shift) if quantity == "position" else 0.0
+        return np.asarray(factor * (sign * moved + place))
+
+    def content(self, content: Content) -> Content:
+        """Of the scene of the changed car."""
+        part, matrix, scale = content["mechanism"], self.matrix, self.scale
+        changed = {
+            self.name(n): (scale * (matrix @ p + self.shift)).tolist() for n, p in part["points"].items()
+        }
+        mechanism = {**part, "points": changed}
+        if self.mirrored:
+            mechanism["side"] = SIDES[part["side"]]
+        else:
+            mechanism |= {axis: (matrix @ part[axis]).tolist() for axis in ("up", "right")}
+        if "wheel_radius" in part:
+            mechanism["wheel_radius"] = scale * part["wheel_radius"]
+        if "car" in part:
+            mechanism["car"] = {n: scale * v if n in LENGTHS else v for n, v in part["car"].items()}
+        if "rack_per_turn" in part:
+            mechanism["rack_per_turn"] = scale * part["rack_per_turn"]
+        mechanism["loads"] = {
+            SIDES.get(wheel, wheel) if self.mirrored else wheel: {
+                "force": (scale * (matrix @ load["force"])).tolist(),
+                "moment": (scale**2 * self.sense * (matrix @ load["moment"])).tolist(),
+            }
+            for wheel, load in part["loads"].items()
+        }
+        inputs = {
+            self.name(name): {"polynomial": self._law(content["kinds"][name], law["polynomial"])}
+            for name, law in content["inputs"].items()
+        }
+        return {**content, "mechanism": mechanism, "inputs": inputs}
+
+    def _law(self, kind: tuple[int, int], law: list[float]) -> list[float]:
+        """Coefficients of an input, of which the power of a length and the sign in a mirror are known."""
+        power, odd = kind
+        factor = self.scale**power * (odd if self.mirrored else 1)
+        start, speed, bend = law
+        there = [start + speed + bend, -speed - 2.0 * bend, bend] if self.backwards else law
+        return [factor * c for c in there]
 
 
-def mirrored_input(mechanism: Plain, drive: Plain) -> int:
-    """Whether an input counts the other way in a mirror image."""
-    if drive.get("from") == "drawing":
-        return -1
+# A third of a turn about the space diagonal, and a way along the car's middle plane, where the origin stays.
+ELSEWHERE = Change(((0, 1, 0), (0, 0, 1), (1, 0, 0)), shift=(0.0, 512.0, -256.0), scale=3.0)
+MIRRORED = Change(((1, 0, 0), (0, -1, 0), (0, 0, 1)), mirrored=True, backwards=True)
+
+
+def kind_of_input(plain: Content, name: str) -> tuple[int, int]:
+    """The power of a length in an input, and its sign in a mirror."""
+    drive = plain["inputs"][name]
+    if "angle" in drive or "turns" in drive or "steers" in drive:
+        sideways = drive.get("along") in ("left", "right")
+        turns_round = (
+            drive.get("from") == "drawing" or "steers" in drive or ("turns" in drive and not sideways)
+        )
+        return 0, -1 if turns_round else 1
     along = drive.get("along", "up")
     if "travel" in drive:
-        along = mechanism["slides"][drive["travel"][0]]["along"]
-    sideways = along in ("left", "right")
-    return -1 if sideways != ("turns" in drive) else 1
+        along = plain["slides"][drive["travel"][0]]["along"]
+    return 1, -1 if along in ("left", "right") else 1
 
 
-@pytest.mark.parametrize("scene", ONE_EACH.values())
-def test_a_mirror_image_moves_as_a_mirror_image(scene: str) -> None:
-    mechanism, mirror = plain_scene(scene), vector([1, -1, 1])
-    ways = {name: mirrored_input(mechanism, drive) for name, drive in mechanism["inputs"].items()}
-    other = carried(mechanism, lambda point: mirror * point)
-    assert compared(scene, other, lambda point: mirror * point, ways) <= EXACT
+def rounded(numbers: Any) -> list[float]:
+    return (np.round(np.array(numbers, float) * 1024.0) / 1024.0).tolist()
+
+
+@cache
+def content_of(name: str) -> Content:
+    """A shipped mechanism on the grid of 1/1024, with all that it can have, near its drawing."""
+    scene, plain = Scene.load(name), plain_scene(name)
+    content = scene.model_dump(exclude_none=True)
+    part = content["mechanism"]
+    part["points"] = {n: rounded(place) for n, place in scene.mechanism.points.items()}
+    part |= {"up": [0.0, 0.0, 1.0], "right": [0.0, 1.0, 0.0]}
+    topology = scene.mechanism.topology
+    wheels = topology.sides or ({"": ""} if topology.wheel_axis else {})
+    part["loads"] = dict.fromkeys(wheels, LOAD)
+    if wheels:
+        part |= {"wheel_radius": 281.5, "car": CAR}
+    kinds = {name: kind_of_input(plain, name) for name in scene.inputs}
+    drawn = {n: float(v) for n, v in drawn_inputs(Scene.from_mapping(content)).items()}
+    steps = {0: (0.0625, -0.03125), 1: (6.5, -2.25)}
+    inputs = {
+        name: {"polynomial": [*rounded([drawn[name]]), *(c * (1 + 0.25 * k) for c in steps[kinds[name][0]])]}
+        for k, name in enumerate(scene.inputs)
+    }
+    content |= {"inputs": inputs, "time": {"start": 0.0, "stop": 1.0, "samples": 3}, "effects": []}
+    # What loads make of one axle is enough: each rod of two wheels is a way of the car of its own.
+    effects = [
+        e for e in Scene.from_mapping(content).mechanism.effects if (name, e) != ("axle-roll", "loads")
+    ]
+    return {**content, "effects": effects, "kinds": kinds}
+
+
+def scene_of(content: Content) -> Scene:
+    return Scene.from_mapping({key: value for key, value in content.items() if key != "kinds"})
+
+
+def wrong_numbers(found: Solution, plain: Solution, change: Change) -> list[tuple[str, str]]:
+    """The numbers of a changed car that are not the changed numbers of the plain one, within both claims."""
+    wrong = []
+    for quantity, numbers in plain.numbers.items():
+        power = POWERS[QUANTITIES[quantity].unit.partition("/s")[0]]
+        for name, value in numbers.items():
+            there = change.name(name)
+            goal = change.number(quantity, name, value)
+            claims, own = found.accuracy.claims[quantity][there], plain.accuracy.claims[quantity][name]
+            own = own[::-1] if change.backwards else own
+            if np.ndim(own) > 1:
+                own = own @ np.abs(change.matrix).T
+            # Adding the shift rounds the goal, by half a unit in the last place, and the scale by another.
+            allowed = claims + change.scale**power * own + 2.0 * np.spacing(np.abs(goal))
+            off = np.abs(found.numbers[quantity][there] - goal)
+            if not ((off <= allowed) | (np.isnan(goal) & np.isnan(found.numbers[quantity][there]))).all():
+                wrong.append((quantity, name))
+    return wrong
+
+
+@by_each
+@pytest.mark.parametrize("name", SCENES)
+def test_a_changed_car_has_the_changed_numbers(name: str, who: str) -> None:
+    content = content_of(name)
+    plain = solved_by(who, scene_of(content))
+    for change in (ELSEWHERE, MIRRORED):
+        found = solved_by(who, scene_of(change.content(content)))
+        assert {q: {*map(change.name, of)} for q, of in plain.numbers.items()} == {
+            q: {*of} for q, of in found.numbers.items()
+        }
+        assert wrong_numbers(found, plain, change) == []
+
+
+def test_every_effect_is_among_them() -> None:
+    assert {effect for name in SCENES for effect in content_of(name)["effects"]} == {*EFFECTS}
+
+
+@pytest.mark.parametrize("name", ["off-axis-strut", "axle-steer"])
+def test_each_part_of_a_change_is_noticed(name: str) -> None:
+    content, whole = content_of(name), Change()
+    plain = solved_by("reference", scene_of(content))
+    for change, parts in ((ELSEWHERE, ("turn", "shift", "scale")), (MIRRORED, ("turn", "backwards"))):
+        found = solved_by("reference", scene_of(change.content(content)))
+        for part in parts:
+            assert wrong_numbers(found, plain, replace(change, **{part: getattr(whole, part)})), part

@@ -18,7 +18,7 @@ from pointcoord import Scene
 from pointcoord.bounds.enclosed_points import EnclosedPoses
 from pointcoord.bounds.proof import ROUNDINGS
 from pointcoord.effects.angle import WHEEL
-from pointcoord.effects.car_number import LENGTHS, CarNumbers
+from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.effect import Effect, Poses
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
 from pointcoord.effects.point_states import STATES
@@ -285,80 +285,6 @@ def test_its_proof_covers_points_that_may_be_anywhere_in_their_boxes(
             assert (proven <= 1e-11 * max(4096.0, np.abs(array).max())).all()
         most = max(most, proven.max())
     assert derivative != effect.derivative or most >= 1e-9
-
-
-def turned_by(vectors: Mapping[str, Array], turn: Array) -> dict[str, Array]:
-    return {name: vector @ turn.T for name, vector in vectors.items()}
-
-
-@each_effect
-@some
-@given(seed=seeds, scene=cars, mirrored=st.booleans())
-def test_a_turned_or_mirrored_car_has_the_turned_or_mirrored_effect(
-    name: str, seed: int, scene: str, mirrored: bool
-) -> None:
-    """Of points it turns along, of bodies as an axial vector does, and of the car it is the same."""
-    mechanism, rng = mechanism_of(scene), np.random.default_rng(seed)
-    effect, plain = EVERY[name], moving_car(rng, mechanism)
-    turn = Rotation.random(random_state=rng).as_matrix() @ np.diag([1.0, -1.0 if mirrored else 1.0, 1.0])
-    sense = np.sign(np.linalg.det(turn))
-    poses = poses_of(plain, mechanism)
-    axes = replace(
-        poses.axes,
-        up=turn @ poses.axes.up,
-        right=sense * (turn @ poses.axes.right),
-        outboard=turn @ poses.axes.outboard,
-    )
-    drawing = replace(mechanism.drawing, vectors=turned_by(mechanism.drawing.vectors, turn))
-    other = Poses(
-        replace(mechanism, drawing=drawing, origin=mechanism.origin @ turn.T),
-        axes,
-        [turned_by(states, turn) for states in poses.states],
-        [turned_by(states, turn) for states in poses.in_chassis],
-        [None if added is None else added @ turn.T for added in poses.added],
-        {way: tuple(turned_by(of, turn) for of in both) for way, both in poses.slopes.items()},
-    )
-    found = effect.evaluate(poses)
-    for quantity, part, array in parts(effect.evaluate(other)):
-        of, before = QUANTITIES[quantity].of, found[quantity][part]
-        expected = before if of == "car" else before @ turn.T * (sense if of == "body" else 1.0)
-        if mirrored and part.startswith(("steer_angle", "screw_pitch")):
-            # What is to the left is to the right in a mirror, and a right-handed screw is a left-handed one.
-            expected = -expected
-        # Turning rounds every coordinate a few times; bodies and lines are up to a thousand times shorter.
-        assert np.abs(array - expected).max() <= 1e5 * U * max(1.0, np.abs(before).max())
-
-
-@each_effect
-@some
-@given(seed=seeds, scene=cars, power=st.integers(-30, 30))
-def test_the_size_of_a_car_changes_no_bit_of_an_angle_or_a_turn(
-    name: str, seed: int, scene: str, power: int
-) -> None:
-    mechanism = mechanism_of(scene)
-    poses = poses_of(moving_car(np.random.default_rng(seed), mechanism), mechanism)
-    scale = 2.0**power
-    states = [{n: state * scale for n, state in states.items()} for states in poses.states]
-    added = [None if a is None else a * scale for a in poses.added]
-    larger = replace(
-        poses,
-        mechanism=replace(mechanism, unit=mechanism.unit * scale, origin=mechanism.origin * scale),
-        axes=replace(
-            poses.axes,
-            wheel_radius=RADIUS * scale,
-            car={n: v * (scale if n in LENGTHS else 1.0) for n, v in poses.axes.car.items()},
-        ),
-        states=states,
-        in_chassis=[{n: state * scale for n, state in of.items()} for of in poses.in_chassis],
-        added=added,
-    )
-    found = EVERY[name].evaluate(poses)
-    for quantity, part, array in parts(EVERY[name].evaluate(larger)):
-        # Slopes, per mm, are the same.
-        unit = QUANTITIES[quantity].unit
-        lengthwise = unit in ("mm", "mm/rad", "N") or unit.startswith("mm/s")
-        factor = scale if lengthwise else {"rad/mm": 1.0 / scale}.get(unit, 1.0)
-        assert np.array_equal(array, factor * found[quantity][part])
 
 
 @each_effect

@@ -99,25 +99,6 @@ def test_the_arm_angle_is_the_angle_at_the_front_pivot_between_the_vertical_and_
 
 @models
 @cars
-def test_a_right_wheel_is_a_left_wheel_in_a_mirror(name: str, car: str) -> None:
-    flip = np.array([1.0, -1.0, 1.0])
-    here = solved(name, car)
-    other = {"left": "right", "right": "left"}[SCENES[car].mechanism.side]
-    # In the mirror the rack that moves to the left moves to the right.
-    back = {"polynomial": [-c for c in LAWS[car]["rack"]["polynomial"]]}
-    mirrored = {point: place * flip for point, place in CARS[car].items()}
-    there = solved(name, car, mirrored, other, rack=back)
-    for point, path in here.numbers["position"].items():
-        assert np.abs(there.numbers["position"][point] - path * flip).max() <= CLOSE
-    # Velocities turn with the mirror, turns against it; the wheel's angles say the same of both wheels.
-    omega, turned = (s.numbers["angular_velocity"]["knuckle"] for s in (here, there))
-    assert np.abs(turned + omega * flip).max() <= CLOSE
-    for angle, values in here.numbers["wheel"].items():
-        assert np.abs(there.numbers["wheel"][angle] - values).max() <= CLOSE / 100.0, angle
-
-
-@models
-@cars
 def test_a_heave_moves_every_point_alike_and_turns_nothing(name: str, car: str) -> None:
     still, heaved = solved(name, car), solved(name, car, heave={"polynomial": [5.0, 100.0, 50.0]})
     t = heaved.times
