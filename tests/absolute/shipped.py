@@ -1,16 +1,16 @@
-"""The shipped scenes as the model is given them, drawings near theirs, and where a witness has their points.
+"""The shipped scenes as the model is given them, drawings near theirs, and where their points exactly are.
 
-The witness (`mechanism_equations`) is held to closed forms and printed tables in tests/mechanisms.
+The reference, which says so, is held to closed forms and printed tables in tests/mechanisms.
 """
 
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from mechanism_checks import instants, on_the_ground, scene_inputs
-from mechanism_equations import DIGITS, Equations
+from exact_states import exact_states
+from many_digits import DIGITS
+from mechanism_checks import instants, scene_inputs
 from mechanism_files import plain_scene
-from mechanism_poses import follow, rates, refined
 from mpmath import mp, mpf
 from numpy.typing import NDArray
 
@@ -40,29 +40,17 @@ def shipped(scene: str, count: int = 5) -> Motion:
         name: np.array([[float(order[k][name]) for order in orders] for k in range(len(places))])
         for name in orders[0][0]
     }
-    axes = Equations(plain).axes
-    moves = {name: drive["along"] for name, drive in plain["inputs"].items() if "moves" in drive}
-    shifts = [laws.pop(name)[..., None] * axes[along].astype(float) for name, along in moves.items()]
+    moves = [name for name, drive in plain["inputs"].items() if "moves" in drive]
+    shifts = [laws.pop(name)[..., None] * np.array(plain["up"], float) for name in moves]
     return Motion(plain, laws, sum(shifts) if shifts else None)
 
 
 def exact(motion: Motion) -> list[tuple[dict[str, Any], ...]]:
-    """Points and their first and second rates at every instant by the witness, the chassis not displaced."""
-    equations, found = Equations(motion.plain), []
-    turns = {name: drive for name, drive in motion.plain["inputs"].items() if "turns" in drive}
-    jets = [
-        {name: [mpf(x) for x in law[k].tolist()] for name, law in motion.inputs.items()}
-        for k in range(len(next(iter(motion.inputs.values()))))
-    ]
-    jets = [jet | {name: [mpf(0)] * 3 for name in equations.at_drawing if name not in jet} for jet in jets]
-    path = [{name: states[0] for name, states in jet.items()} for jet in jets]
-    for y, goal, jet in zip(follow(equations, path), path, jets, strict=True):
-        y = refined(equations, y, goal)
-        with mp.workdps(DIGITS):
-            states = equations.points(y), *rates(equations, y, jet)
-            orders = [{name: jet[name][k] for name in turns} for k in range(3)]
-            found.append(on_the_ground(equations, motion.plain | {"inputs": turns}, orders, states))
-    return found
+    """Points and their first and second rates at every instant, the chassis not displaced."""
+    count = len(next(iter(motion.inputs.values())))
+    still = dict.fromkeys(motion.plain["inputs"], np.zeros((count, 3)))
+    laws = {name: law.tolist() for name, law in (still | motion.inputs).items()}
+    return exact_states(motion.plain, [{name: law[k] for name, law in laws.items()} for k in range(count)])
 
 
 def error(found: Array, wanted: Any) -> float:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_equations import DIGITS
+from many_digits import DIGITS
 from mechanism_files import plain_scene
 from mpmath import mp
 from shipped import EPS, Array, Motion, error, exact, off, shipped

@@ -1,4 +1,4 @@
-"""What is drawn is what moves, however it is drawn: against a witness in many digits."""
+"""What is drawn is what moves, however it is drawn: against the reference."""
 
 from typing import Any
 
@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
-from mechanism_poses import Stuck
 from shipped import EPS, Motion, error, exact, off, redrawn, shipped
 
 import absolute
+from validate.reference import NoReferenceError
 
 # One scene of each mechanism and input; where hinges are parallel, or a ring closes, other drawings lock.
 RANDOM = (
@@ -28,7 +28,7 @@ RANDOM = (
 
 @settings(max_examples=40, deadline=None, phases=[Phase.generate])
 @given(scene=st.sampled_from(RANDOM), seed=st.integers(0, 10**6), spread=st.sampled_from([0.0, 3.0, 10.0]))
-def test_any_drawing_near_it_moves_as_the_witness_says_or_is_refused(
+def test_any_drawing_near_it_moves_as_the_reference_says_or_is_refused(
     scene: str, seed: int, spread: float
 ) -> None:
     """Points, ends of slides among them, are drawn elsewhere, so that the drawing does not close."""
@@ -40,12 +40,12 @@ def test_any_drawing_near_it_moves_as_the_witness_says_or_is_refused(
     try:
         compare(motion)
     except absolute.PoseError:
-        with pytest.raises(Stuck):
+        with pytest.raises(NoReferenceError):
             exact(motion)
 
 
 def compare(motion: Motion, wanted: Any = None) -> None:
-    """Points and their rates against the witness; each rate passes through the inverse once more."""
+    """Points and their rates against the reference; each rate passes through the inverse once more."""
     solution = motion.solve(conditions=True)
     wanted = exact(motion) if wanted is None else wanted
     assert solution.condition is not None

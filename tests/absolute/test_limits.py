@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mechanism_equations import DIGITS, vector
+from many_digits import DIGITS, vector
 from mechanism_files import mechanism_file, plain, plain_scene
 from mpmath import cos, mp, mpf, sqrt
 from shipped import EPS, Array, Motion, error, off, shipped

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_equations import DIGITS, Equations
+from many_digits import DIGITS, unit, vector
 from mechanism_files import plain_scene
-from mpmath import mp
+from mpmath import acos, mp
 from shipped import EPS, Array, Motion, error, exact, off
 
 import absolute
@@ -184,7 +184,7 @@ def test_points_drawn_near_each_other_keep_the_digits_of_the_coordinates_given(
             line = np.linalg.norm(drawing.arm(number, moved) - drawing.arm(number, fixed)) * drawing.size
             assert abs(line / np.linalg.norm(car[moved] - car[fixed]) - 1) <= 4 * EPS
     with mp.workdps(DIGITS):
-        angle = Equations(scene | {"points": car}).at_drawing["arm_angle"]
+        angle = acos(unit(vector(car["lower_ball_joint"]) - vector(car["lower_arm_front"]))[2])
     # The arc cosine of a ratio with three roundings, at an angle whose sine is above a half.
     assert abs(drawn["arm_angle"] - float(angle)) <= 4 * EPS
     goal = {"arm_angle": at([drawn["arm_angle"] + 0.05]), "rack": at([drawn["rack"] + 5.0])}

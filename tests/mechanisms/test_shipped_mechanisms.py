@@ -1,4 +1,4 @@
-"""Every shipped mechanism is what closed forms and other people's printed tables say."""
+"""Every shipped mechanism is what closed forms and other people's printed tables say, by the reference."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_checks import CLOSED, PRINTED, closed_form_check, right_form, scene_inputs, table
-from mechanism_equations import DIGITS, Array, Equations, vector
+from exact_states import exact_states
+from many_digits import DIGITS, Array, vector
+from mechanism_checks import CLOSED, EXACT, PRINTED, closed_form_check, farthest, right_form, table
 from mechanism_files import MECHANISMS, SCENES, mechanism_file, plain, plain_scene, scene_file
-from mechanism_poses import Stuck, follow, rates, refined
-from mpmath import mp, mpf, pi
+from mpmath import mp, mpf
+
+from pointcoord import Scene
 
 
 def test_every_mechanism_has_a_scene_and_a_closed_form_or_a_printed_table() -> None:
@@ -20,35 +22,39 @@ def test_every_mechanism_has_a_scene_and_a_closed_form_or_a_printed_table() -> N
     assert shown == held == set(MECHANISMS)
 
 
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_packages_read_a_scene_as_it_is_read_apart_from_them(scene: str) -> None:
+    tables = scene_file(scene)
+    apart = plain(mechanism_file(tables["mechanism"]["type"]), tables["mechanism"], tables["inputs"])
+    read = Scene.load(scene).mechanism.plain(list(tables["inputs"]))
+    assert {key: value for key, value in apart.items() if key not in ("name", "points")} == {
+        key: value for key, value in read.items() if key not in ("name", "points")
+    }
+    assert {name: [float(c) for c in place] for name, place in apart["points"].items()} == {
+        name: [float(c) for c in place] for name, place in read["points"].items()
+    }
+
+
 @pytest.mark.parametrize("scene", CLOSED)
 def test_the_poses_of_a_scene_are_those_of_the_closed_form(scene: str) -> None:
     check = closed_form_check(scene)
-    found = check.deviations(check.poses(check.equations()))
+    found = check.deviations_of(check.plain())
     assert all(found[name] <= limit for name, limit in check.limits.items()), found
 
 
 @pytest.mark.parametrize("mechanism", PRINTED)
 def test_the_numbers_are_those_of_the_printed_table(mechanism: str) -> None:
     check = PRINTED[mechanism]()
-    found = check.deviations(check.poses(check.equations()))
+    found = check.deviations_of(check.plain())
     assert set(found) == set(check.limits)
     assert all(found[name] <= limit for name, limit in check.limits.items()), found
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_a_scene_drives_as_many_inputs_as_there_are_freedoms(scene: str) -> None:
-    mechanism = plain_scene(scene)
-    drives = [drive for drive in mechanism["inputs"].values() if "moves" not in drive]
-    assert Equations(mechanism).freedoms() == sum(len(drive.get("travel", [1])) for drive in drives)
-
-
 def andrews_rates(inputs: Sequence[Any], order: int) -> Array:
     """First or second derivatives of the benchmark's seven angles; a second one of a mechanism at rest."""
-    equations = Equations(plain_scene("andrews-squeezer"))
+    (states,) = exact_states(plain_scene("andrews-squeezer"), [{"crank": inputs}])
     with mp.workdps(DIGITS):
-        (y,) = follow(equations, [{"crank": inputs[0]}])
-        y = refined(equations, y, {"crank": inputs[0]})
-        p, moved = equations.points(y), rates(equations, y, {"crank": inputs})[order - 1]
+        p, moved = states[0], states[order]
 
         def turning(first: str, second: str) -> Any:
             arm, pull = p[second] - p[first], moved[second] - moved[first]
@@ -73,56 +79,7 @@ def test_andrews_angles_end_as_fast_as_printed() -> None:
     assert andrews_rates((end - start, printed[0], 0), 1) == pytest.approx(printed, abs=2e-8 * printed[0])
 
 
-def with_hinged_couplers() -> dict[str, object]:
-    """The coupled four-bars with bodies for couplers, hinged to the cranks: six rows depend on others."""
-    scene, tables = scene_file("n-four-bar"), mechanism_file("n_four_bar")
-    pins = {f"B{k}_pin": [1000 * k, 1000, 1000] for k in range(3)}
-    for k in range(3):
-        tables["bodies"][f"crank_{k}"].append(f"B{k}_pin")
-    for k in (1, 2):
-        tables["bodies"][f"coupler_{k}"] = [f"B{k - 1}", f"B{k - 1}_pin", f"B{k}", f"B{k}_pin"]
-    part = {**scene["mechanism"], "points": scene["mechanism"]["points"] | pins}
-    return plain({**tables, "rods": {}}, part, ["crank"])
-
-
-# rad from the drawing. Parallel and crossed assemblies meet at -pi/2; the closest is 1e-3 rad before.
-BEFORE, BEYOND = "-1.5697", "-1.7"
-
-
-@pytest.mark.parametrize("hinged", [False, True])
-def test_parallel_cranks_stay_parallel_up_to_the_singular_pose_and_are_refused_there(hinged: bool) -> None:
-    equations = Equations(with_hinged_couplers() if hinged else plain_scene("n-four-bar"))
-    path = [{"crank": mpf(angle)} for angle in ("-0.8", BEFORE, BEYOND)]
-    for y, inputs, right in zip(
-        follow(equations, path[:2]), path, right_form("n-four-bar", path), strict=False
-    ):
-        found = equations.points(y)
-        # mm: doubles, amplified by the 1e3 of a pose that is 1e-3 rad from a singular one.
-        assert max(abs(found[name] - right[name]).max() for name in right) < 1e-8, inputs
-    with pytest.raises(Stuck, match="singular"):
-        follow(equations, path)
-
-
-def test_bricards_ring_is_refused_beyond_the_end_of_its_input() -> None:
-    equations = Equations(plain_scene("bricard"))
-    with pytest.raises(Stuck, match="singular"):
-        follow(equations, [{"turn": -31 * pi / 180}])
-
-
-def test_a_piston_that_is_driven_stops_at_the_dead_centre() -> None:
-    equations = Equations(plain_scene("slider-crank", ["stroke"]))
-    reach = scene_inputs("slider-crank", range(101))
-    top = max(p["piston"][2] - p["bore"][2] for p in right_form("slider-crank", reach))
-    assert follow(equations, [{"stroke": top - 1}]).shape == (1, len(equations.start))
-    with pytest.raises(Stuck):
-        follow(equations, [{"stroke": top + 1}])
-
-
-@pytest.mark.parametrize("scene", ["spatial-four-bar", "slider-crank", "andrews-squeezer"])
-def test_a_crank_that_turned_once_is_where_it_was(scene: str) -> None:
-    equations = Equations(plain_scene(scene))
-    drawn = {name: vector(place) for name, place in plain_scene(scene)["points"].items()}
-    for y in follow(equations, [{"crank": 2 * pi}, {"crank": 4 * pi}]):
-        turned = equations.points(y)
-        # mm: 1e-14 of 200 mm, a few times amplified.
-        assert max(abs(turned[name] - drawn[name]).max() for name in drawn) < 1e-10
+def test_parallel_cranks_stay_parallel_a_thousandth_of_a_radian_before_they_lie_in_line() -> None:
+    path = [{"crank": mpf(angle)} for angle in ("-0.8", "-1.5697")]
+    states = exact_states(plain_scene("n-four-bar"), [{"crank": (one["crank"], 0, 0)} for one in path])
+    assert farthest([position for position, *_ in states], right_form("n-four-bar", path)) <= EXACT

@@ -1,7 +1,7 @@
 """What the shipped mechanisms are held to: closed forms, and tables that other people's programs printed.
 
-A check asks for poses at some inputs, and says how far their points are from where they should be. It knows
-nothing of the tables of a mechanism file, so it notices what is wrong in them.
+A check asks the reference for poses at some inputs, and says how far their points are from where they should
+be. It knows nothing of the tables of a mechanism file, so it notices what is wrong in them.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from typing import Any
 import lotus_front
 import mpmath
 import numpy as np
-from mechanism_closed_forms import Points, closed_form
-from mechanism_equations import DIGITS, Array, Equations, unit, vector
-from mechanism_files import SCENES, Tables, mechanism_file, plain, plain_scene, scene_file
-from mechanism_poses import follow, placed, rates, refined
+from exact_states import exact_states
+from many_digits import DIGITS, Array, Points, unit, vector
+from mechanism_closed_forms import closed_form
+from mechanism_files import SCENES, Plain, Tables, mechanism_file, plain, scene_file
 from mpmath import atan2, mp, mpf, sin
 
 from pointcoord import Scene
@@ -56,17 +56,18 @@ class Check:
         """The mechanism."""
         return str(scene_file(self.scene)["mechanism"]["type"])
 
-    def equations(self, change: Callable[[Tables, Tables], object] | None = None) -> Equations:
-        """The witness's equations; `change` may plant a fault in the mechanism's tables or in the drawing."""
+    def plain(self, change: Callable[[Tables, Tables], object] | None = None) -> Plain:
+        """The mechanism; `change` may plant a fault in its tables or in the drawing."""
         part = {**scene_file(self.scene)["mechanism"], "wheel_radius": self.wheel_radius}
         tables = mechanism_file(part["type"])
         if change:
             change(tables, part)
-        return Equations(plain(tables, part, self.path[0]))
+        return plain(tables, part, self.path[0])
 
-    def poses(self, equations: Equations) -> list[Points]:
-        """The witness's poses, in many digits."""
-        return placed(equations, self.path)
+    def deviations_of(self, mechanism: Plain) -> Mapping[str, float]:
+        """Of the poses that the reference says it has."""
+        states = exact_states(mechanism, [{n: (v, 0, 0) for n, v in one.items()} for one in self.path])
+        return self.deviations([position for position, *_ in states])
 
 
 def value(law: Tables, time: Any, derivative: int = 0) -> Any:
@@ -93,81 +94,29 @@ def scene_inputs(scene: str, indices: Sequence[int], derivative: int = 0) -> lis
         return [{name: value(law, times[k], derivative) for name, law in laws.items()} for k in indices]
 
 
-def exact_states(scene: str, indices: Sequence[int]) -> list[tuple[Points, Points, Points]]:
-    """Positions, velocities and accelerations at some samples of a scene by the witness, in many digits.
-
-    Formulations are given inputs, rates and accelerations as doubles: the poses of these are asked for.
-    """
-    mechanism = plain_scene(scene)
-    equations = Equations(mechanism)
-    path, speeds, bends = (
-        [
-            {name: mpf(float(number)) for name, number in one.items()}
-            for one in scene_inputs(scene, indices, d)
-        ]
-        for d in range(3)
-    )
-    found = []
-    for y, *jets in zip(follow(equations, path), path, speeds, bends, strict=True):
-        exact = refined(equations, y, jets[0])
-        states = {name: [jet[name] for jet in jets] for name in path[0]}
-        with mp.workdps(DIGITS):
-            three = (equations.points(exact), *rates(equations, exact, states))
-            found.append(on_the_ground(equations, mechanism, jets, three))
-    return found
-
-
-def on_the_ground(
-    equations: Equations, mechanism: Tables, jets: Sequence[Inputs], states: Sequence[Points]
-) -> tuple[Points, Points, Points]:
-    """Places, velocities and accelerations in the chassis' frame, as the ground sees them.
-
-    Args:
-        jets: values, rates and accelerations of the inputs.
-    """
-    here: dict[str, list[Array]] = {
-        name: _of_a_point(equations, mechanism, jets, [one[name] for one in states]) for name in states[0]
-    }
-    position, velocity, acceleration = ({name: three[k] for name, three in here.items()} for k in range(3))
-    return position, velocity, acceleration
-
-
-def _of_a_point(
-    equations: Equations, mechanism: Tables, jets: Sequence[Inputs], states: Sequence[Array]
-) -> list[Array]:
-    """Place, velocity and acceleration of one point.
-
-    A turn by w about an axis with the cross product K is R = 1 + sin w K + (1 - cos w) K K, and its
-    derivative by w is K R.
-    """
-    place, velocity, acceleration = states
-    for name, drive in mechanism["inputs"].items():
-        if "turns" in drive:
-            w, w1, w2 = (mpf(jet[name]) for jet in jets)
-            k = np.cross(equations.axes[drive["along"]], np.eye(3, dtype=object)).T
-            turned = np.eye(3, dtype=object) + mpmath.sin(w) * k + (1 - mpmath.cos(w)) * k @ k
-            first = w1 * k @ turned
-            second = w2 * k @ turned + w1**2 * k @ k @ turned
-            about = vector(mechanism["points"][drive["about"]])
-            acceleration = second @ (place - about) + 2 * first @ velocity + turned @ acceleration
-            velocity = first @ (place - about) + turned @ velocity
-            place = about + turned @ (place - about)
-    for name, drive in mechanism["inputs"].items():
-        if "moves" in drive:
-            shifts = [equations.axes[drive["along"]] * mpf(jet[name]) for jet in jets]
-            place, velocity, acceleration = (
-                state + shift for state, shift in zip((place, velocity, acceleration), shifts, strict=True)
-            )
-    return [place, velocity, acceleration]
-
-
 def right_form(scene: str, path: Sequence[Inputs]) -> list[Points]:
-    """The poses of a scene's mechanism by its closed form, in the chassis' axes."""
+    """The poses of a scene's mechanism by its closed form, as the ground sees them."""
     part = scene_file(scene)["mechanism"]
     type = f"{part['type']} collinear" if part.get("closure") == "collinear" else part["type"]
     if any("." in name for name in path[0]):
-        return _axle(part, path)
-    return closed_form(type, part["points"], path, part.get("wheel_radius"))
+        found = _axle(part, path)
+    else:
+        found = closed_form(type, part["points"], path, part.get("wheel_radius"))
+    with mp.workdps(DIGITS):
+        return [
+            {name: _on_the_ground(part, place, inputs) for name, place in points.items()}
+            for points, inputs in zip(found, path, strict=True)
+        ]
+
+
+def _on_the_ground(part: Tables, place: Array, inputs: Inputs) -> Array:
+    """A place in the chassis where the shipped cars' chassis is rolled about forward, -x, and then lifted."""
+    if "roll" in inputs:
+        axis = vector(part["points"]["roll_axis"])
+        c, s = mpmath.cos(inputs["roll"]), mpmath.sin(inputs["roll"])
+        x, y, z = place - axis
+        place = axis + np.array([x, c * y + s * z, c * z - s * y])
+    return place + vector([0, 0, inputs.get("heave", 0)])
 
 
 def _axle(part: Tables, path: Sequence[Inputs]) -> list[Points]:

@@ -16,10 +16,9 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from mechanism_equations import DIGITS, Array, beside, unit, vector
+from many_digits import DIGITS, Array, Points, beside, unit, vector
 from mpmath import acos, asin, atan2, cos, hypot, mp, mpf, sign, sin, sqrt
 
-Points = dict[str, Array]
 Inputs = Mapping[str, Any]
 Move = Callable[[Array], Array]
 

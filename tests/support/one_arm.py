@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from effects_by_hand import Car, by_hand
-from mechanism_equations import vector
+from many_digits import vector
 from mpmath import cos, diff, mp, mpf, sin, sqrt
 
 DIGITS = 50
