@@ -1,71 +1,128 @@
-"""Every formulation, and the reference, on every shipped mechanism: right within what they claim."""
+"""Every formulation on every shipped scene is right within what it claims, by the reference."""
 
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_checks import EXACT, Points, exact_states, instants, scene_inputs
-from mechanism_equations import DIGITS, vector
 from mechanism_files import SCENES, scene_file
-from mpmath import mp
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import design_of
-from validate.formulations.protocol import FormulationError
+from pointcoord.effects.point_states import STATES
+from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
+from validate.adjudication.reference_solution import reference_solution, told_by
+from validate.comparison.compare import Outcome, compare_solutions
+from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import OUTSIDE, formulation
-from validate.reference import instants_of
 
-FORMULATIONS = ("pointcoord", "pointcoord-newton", "pointcoord-map", "absolute", "relative", *OUTSIDE)
+OF_EVERY_NUMBER = ("pointcoord", "absolute")
+OTHERS = ("pointcoord-newton", "pointcoord-map", "relative", *OUTSIDE)
+SAMPLES = 4
+CAR = {
+    "axle": "rear",
+    "wheelbase": 2618.3,
+    "centre_of_gravity_height": 511.7,
+    "brake_share": 0.37,
+    "drive_share": 0.91,
+    "spring_rate": 31.7,
+    "spring_free_length": 823.9,
+}
+LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}
+# What an axle has only where both wheels are steered to the same side.
+OF_A_TURN = {"ackermann", "ackermann_error", "turning_radius"}
+# Redundant everywhere: claims of its numbers hold, and are too wide to test the reference.
+REDUNDANT = "bricard"
 # Motions that meet a singular pose after some instants: the scene, and its input from the drawing on.
 BEYOND = {
     "branches cross": ("n-four-bar", "crank", [0.0, -1.7]),
     "the input has an end": ("bricard", "turn", [0.0, -0.6]),
     "the piston has a dead centre": ("slider-crank", "stroke", [15.0, 100.0]),
 }
-STATES = ("position", "velocity", "acceleration")
 
 
 @cache
-def right(scene: str) -> list[tuple[Points, Points, Points]]:
-    return exact_states(scene, instants(scene, 3))
+def asked(name: str, every: bool) -> Scene:
+    """A shipped scene at few instants; or with every effect that its car has, given what they need."""
+    content: dict[str, Any] = Scene.load(name).model_dump(exclude_none=True, exclude={"points"})
+    # At the start of a scene an axle goes straight ahead, where it has no turning radius.
+    time = content["time"]
+    start = time["start"] + 0.05 * (time["stop"] - time["start"])
+    content["time"] = {**time, "start": start, "samples": SAMPLES}
+    if not every:
+        return Scene.from_mapping(content, name)
+    content["mechanism"].setdefault("wheel_radius", 300.0)
+    content["mechanism"]["car"] = CAR
+    topology = Scene.load(name).mechanism.topology
+    wheels = [role.removesuffix("wheel_axis") for role in topology.roles if role.endswith("wheel_axis")]
+    content["mechanism"]["loads"] = {wheel.removesuffix("."): LOAD for wheel in wheels}
+    plain = Scene.from_mapping(content | {"effects": ()}, name)
+    return Scene.from_mapping(content | {"effects": plain.mechanism.effects}, name)
 
 
-@pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("name", FORMULATIONS)
-def test_a_formulation_is_right_within_what_it_claims(name: str, scene: str) -> None:
-    solution = formulation(name).solve(Scene.load(scene))
-    for k, states in zip(instants(scene, 3), right(scene), strict=True):
-        for quantity, exact in zip(STATES, states, strict=True):
-            for point, found in solution.numbers[quantity].items():
-                with mp.workdps(DIGITS):
-                    off = np.abs(vector(found[k]) - exact[point]).astype(float)
-                claim = solution.accuracy.claims[quantity][point][k]
-                assert (off <= claim + EXACT).all(), (quantity, point, k, off, claim)
+@cache
+def exact(name: str, every: bool) -> Solution:
+    return reference_solution(asked(name, every))
 
 
-@pytest.mark.parametrize("scene", SCENES)
-def test_the_reference_is_right_within_what_it_has_proven(scene: str) -> None:
-    asked = (scene_inputs(scene, instants(scene, 3), derivative) for derivative in range(3))
-    inputs = [
-        {name: tuple(float(one[name]) for one in states) for name in states[0]}
-        for states in zip(*asked, strict=True)
-    ]
-    found = list(instants_of(design_of(Scene.load(scene)), inputs))
-    for instant, states in zip(found, right(scene), strict=True):
-        for quantity, exact in zip(STATES, states, strict=True):
-            for point, place in getattr(instant, quantity).items():
-                with mp.workdps(DIGITS):
-                    off = np.abs(vector(place) - exact[point])
-                    assert (off <= instant.error_bound[quantity] + EXACT).all(), (quantity, point, off)
+def compared(name: str, who: str, every: bool) -> Outcome:
+    scene, reference = asked(name, every), exact(name, every)
+    found = formulation(who).solve(scene)
+    outcome = compare_solutions(scene, found, reference, name, told_by(reference, scene))
+    assert not outcome.disagreements, outcome.disagreements
+    return outcome
+
+
+def of_the_car(scene: Scene) -> set[str]:
+    """The numbers of its car that a scene asks for."""
+    topology = scene.mechanism.topology
+    return {name for effect in scene.effects for name in EFFECTS[effect].names(topology)}
+
+
+def test_every_number_is_one_of_some_car() -> None:
+    found = set().union(*(of_the_car(asked(name, True)) for name in SCENES))
+    assert {name.rpartition(".")[2] for name in found} >= NUMBERS_OF_THE_CAR.keys()
+    assert any("loads" in asked(name, True).effects for name in SCENES)
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("who", OF_EVERY_NUMBER)
+def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: str) -> None:
+    outcome = compared(name, who, True)
+    # What is off by no more than is claimed: the reference's own part of that is nothing.
+    within = [row for row in outcome.rows if row.verdict != "not given" and row.share <= 1.0]
+    assert set(STATES) <= {row.quantity for row in within}
+    lacking = of_the_car(asked(name, True)) - {row.name for row in within}
+    assert lacking <= OF_A_TURN
+    assert not lacking or name != "axle-steer"
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("who", OTHERS)
+def test_what_a_scene_asks_for_is_right_within_what_is_claimed(name: str, who: str) -> None:
+    outcome = compared(name, who, False)
+    found = outcome.solutions[0]
+    assert not outcome.missing
+    if name == REDUNDANT:
+        return
+    # A model that claims much tests little. These cars raise 32 u by some ten in a place, by another ten in
+    # what is twice differentiated, and by as much as their coordinates are larger than the car is. An angle is
+    # as far off as a radian's share, however small it is.
+    places = np.concatenate([*found.numbers["position"].values()])
+    far = max(1.0, float(np.abs(places).max() / np.ptp(places, axis=0).max()))
+    for row in outcome.rows:
+        assert row.share <= 1.0, row
+        if row.name not in OF_A_TURN:  # quotients by a steer angle
+            size = max(float(np.abs(array).max()) for array in found.numbers[row.quantity].values())
+            assert row.tolerance < 1e-12 * far * (max(size, 1.0) if row.unit == "rad" else size), row
 
 
 @pytest.mark.parametrize("beyond", BEYOND)
-@pytest.mark.parametrize("name", FORMULATIONS)
-def test_a_formulation_refuses_to_pass_a_singular_pose(name: str, beyond: str) -> None:
+@pytest.mark.parametrize("who", [*OF_EVERY_NUMBER, *OTHERS])
+def test_a_formulation_refuses_to_pass_a_singular_pose(who: str, beyond: str) -> None:
     scene, driven, polynomial = BEYOND[beyond]
     inputs = {driven: {"polynomial": polynomial}}
     time = {"start": 0.0, "stop": 1.0, "samples": 31}
     with pytest.raises(FormulationError, match=driven):
-        formulation(name).solve(Scene.from_mapping({**scene_file(scene), "inputs": inputs, "time": time}))
+        formulation(who).solve(Scene.from_mapping({**scene_file(scene), "inputs": inputs, "time": time}))

@@ -1,6 +1,6 @@
 """Mechanisms are where other people's tables and closed forms have them.
 
-What the witness says of every shipped one is in tests/mechanisms/test_formulations.py.
+What the reference says of every shipped one is in tests/mechanisms/test_formulations.py.
 """
 
 import json
