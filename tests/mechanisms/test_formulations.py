@@ -107,7 +107,7 @@ def test_what_a_scene_asks_for_is_right_within_what_is_claimed(name: str, who: s
     if name == REDUNDANT:
         return
     # A model that claims much tests little. These cars raise 32 u by some ten in a place, by another ten in
-    # what is twice differentiated, and by as much as their coordinates are larger than the car is. An angle is
+    # what is twice differentiated, and by as much as coordinates are larger than the car is. An angle is
     # as far off as a radian's share, however small it is.
     places = np.concatenate([*found.numbers["position"].values()])
     far = max(1.0, float(np.abs(places).max() / np.ptp(places, axis=0).max()))
