@@ -1,13 +1,14 @@
-"""Where a drawing stands and how far its inputs go, against closed forms."""
+"""Where a drawing stands and how far its inputs go, against closed forms and the reference."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 from sample_cars import SampleCar, by_drawn_car
-from suspensions_in_closed_form import FORMS, Suspension
 
 from pointcoord import Scene, simulate, standing
+from validate.adjudication.reference_solution import design_of
+from validate.reference import pose_exists
 
 
 def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
@@ -20,19 +21,22 @@ def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
         assert "rise of lower_ball_joint over lower_arm_front" in end.limits
 
 
-@pytest.mark.parametrize("form", FORMS, ids=lambda form: form.type)
+@by_drawn_car
 @pytest.mark.parametrize("name", ["arm_angle", "rack"])
-def test_an_input_reaches_as_far_as_the_closed_form_has_an_assembly(
-    make_scene: Callable[..., Scene], form: Suspension, name: str
+def test_an_input_reaches_as_far_as_the_reference_has_an_assembly(
+    make_scene: Callable[..., Scene], car: SampleCar, name: str
 ) -> None:
-    car, inputs = form.sample_car, form.sample.drawn_inputs
-    low, high = standing(make_scene(car=form.sample)).reach[name]
+    scene, inputs = make_scene(car=car), car.drawn_inputs
+    low, high = standing(scene).reach[name]
     for end, outwards in ((low, -1.0), (high, 1.0)):
         # Both are right to 1e-12 of the way; doubles round the drawn inputs and the car's numbers.
         near = 1e-9 * (high.value - low.value)
-        inside, outside = (inputs | {name: end.value + side * outwards * near} for side in (-1.0, 1.0))
-        assert car.drawn_pose(inside["arm_angle"], inside["rack"]) is not None
-        assert car.drawn_pose(outside["arm_angle"], outside["rack"]) is None
+        inside, outside = (
+            {n: (v, 0.0, 0.0) for n, v in (inputs | {name: end.value + side * outwards * near}).items()}
+            for side in (-1.0, 1.0)
+        )
+        assert pose_exists(design_of(scene), inside)
+        assert not pose_exists(design_of(scene), outside)
         assert end.limits
 
 

@@ -9,7 +9,6 @@ from typing import Any
 
 from lotus_front import POINTS as LOTUS
 from plain_mechanisms import close_car, count_car, design_of, solve_car
-from suspensions_in_closed_form import OFF_AXIS as STRUT
 
 from validate.reference import Instant
 from validate.reference.design import Design, Known, values_only
@@ -40,7 +39,20 @@ FRONT_AXLE = {
     "spring_rate": Fraction(63, 2),
     "spring_free_length": 720,
 }
-OFF_AXIS = STRUT.points
+# A strut of a real car's size, mm, which closes; the ball joint is a few centimetres beside the strut's axis.
+OFF_AXIS = {
+    "lower_arm_front": (1200, -350, 200),
+    "lower_arm_rear": (1500, -340, 210),
+    "rack_centre": (1450, -100, 250),
+    "strut_top": (1330, -560, 820),
+    "lower_ball_joint": (1310, -720, 190),
+    "tie_rod_outer": (1440, -690, 230),
+    "strut_lower": (1318, -640, 330),
+    "strut_rod_end": (1324, -600, 575),
+    "tie_rod_inner": (1450, -330, 250),
+    "wheel_centre": (1312, -770, 300),
+    "wheel_axis_inner": (1312, -660, 302),
+}
 
 
 @dataclass(frozen=True)

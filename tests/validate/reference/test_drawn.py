@@ -1,17 +1,14 @@
-"""A strut whose axis is fixed in the knuckle, held to a closed form that was written apart from it."""
+"""A strut whose axis is fixed in the knuckle, as its drawing says."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 from exact_vectors import Points, numbers, size
 from mpmath import mpf
-from plain_mechanisms import close_car, solve_car
-from suspensions_in_closed_form import OFF_AXIS as CAR
-from suspensions_in_closed_form import ExactCar
+from plain_mechanisms import close_car
+from reference_cars import OFF_AXIS as CAR
 
-from validate.reference import Instant
 from validate.reference.vectors import cross, dot, minus, plus, times
 
 
@@ -20,25 +17,16 @@ def apart(one: Points, other: Points) -> mpf:
     return max(abs(x) for name in one for x in minus(one[name], numbers(other[name])))
 
 
-def solve(car: ExactCar, inputs: dict[str, tuple[object, ...]], **settings: object) -> Instant:
-    return solve_car(car.points, inputs, **{**car.kind, "closure": "drawn", **settings})
-
-
 def test_what_is_drawn_comes_back_with_strut_lower_above_the_strut_top_or_below_the_ball_joint() -> None:
-    top, along = CAR.points["strut_top"], minus(CAR.points["strut_lower"], CAR.points["strut_top"])
+    top, along = CAR["strut_top"], minus(CAR["strut_lower"], CAR["strut_top"])
     for share in (Fraction(-1, 4), Fraction(3, 2)):
-        car = replace(CAR, points={**CAR.points, "strut_lower": plus(top, times(along, share))})
-        closed = close_car(car.points, closure="drawn")
-        assert apart(closed.instant.position, car.points) < mpf("1e-70")
-        pose = car.drawn_pose(car.drawn[0] + mpf("0.1"), car.drawn[1] + 5)
-        assert pose is not None
-        inputs = {"arm_angle": (car.drawn[0] + mpf("0.1"), 0, 0), "rack": (car.drawn[1] + 5, 0, 0)}
-        assert apart(solve(car, inputs).position, pose) < mpf("1e-70")
+        points = {**CAR, "strut_lower": plus(top, times(along, share))}
+        assert apart(close_car(points, closure="drawn").instant.position, points) < mpf("1e-70")
 
 
 def test_a_rod_end_drawn_beside_the_axis_moves_onto_it_and_nothing_else_moves() -> None:
-    x, y, z = CAR.points["strut_rod_end"]
-    beside = {**CAR.points, "strut_rod_end": (x + 7, y - 4, z)}
+    x, y, z = CAR["strut_rod_end"]
+    beside = {**CAR, "strut_rod_end": (x + 7, y - 4, z)}
     closed = close_car(beside, closure="drawn")
     moved = {name: size(minus(place, beside[name])) for name, place in closed.instant.position.items()}
     assert 8 < moved.pop("strut_rod_end") < 9
@@ -52,12 +40,12 @@ def test_a_rod_end_drawn_beside_the_axis_moves_onto_it_and_nothing_else_moves() 
 
 
 def test_a_tie_rod_drawn_off_the_rack_line_turns_the_knuckle_about_its_steering_axis() -> None:
-    x, y, z = CAR.points["tie_rod_inner"]
-    off = {**CAR.points, "tie_rod_inner": (x + 9, y, z - 6)}
+    x, y, z = CAR["tie_rod_inner"]
+    off = {**CAR, "tie_rod_inner": (x + 9, y, z - 6)}
     closed = close_car(off, closure="drawn")
     p = closed.instant.position
     assert abs(closed.inputs["rack"] - 230) < mpf("1e-70")
-    assert apart({"tie_rod_inner": p["tie_rod_inner"]}, CAR.points) < mpf("1e-75")
+    assert apart({"tie_rod_inner": p["tie_rod_inner"]}, CAR) < mpf("1e-75")
     tie = minus(p["tie_rod_outer"], p["tie_rod_inner"])
     drawn = size(numbers(minus(off["tie_rod_outer"], off["tie_rod_inner"])))
     assert abs(size(tie) - drawn) < mpf("1e-75")
