@@ -78,29 +78,6 @@ def alone(described: dict[str, Any], part: str) -> dict[str, Any]:
     return {**described, **of, "sides": {}, "side": described["sides"][part]}
 
 
-@pytest.mark.parametrize("part", ["left", "right"])
-def test_every_number_of_a_wheel_is_that_of_its_part_alone(part: str) -> None:
-    car = {
-        "axle": "front",
-        "wheelbase": WHEELBASE,
-        "centre_of_gravity_height": 500.0,
-        "brake_share": 0.6,
-        "drive_share": 0.4,
-    }
-    described = plain_scene("axle-steer") | {"sides": {"left": "left", "right": "right"}, "car": car}
-    described["wheel_radius"] = RADIUS
-    values = {"left.wheel_travel": 20.0, "right.wheel_travel": -10.0, "rack": 12.0}
-    single = alone(described, part)
-    of_springs = ("spring_force", "wheel_force", "wheel_rate")
-    names = [name for name in absolute.EFFECTS if "damper" not in name and name not in of_springs]
-    here = solved(described, [f"{part}.{name}" for name in names], **values)
-    there = solved(single, names, wheel_travel=values[f"{part}.wheel_travel"], rack=values["rack"])
-    for name in names:
-        # Instant centres are up to 10 m away, and their distances as far off as its square.
-        times = 1e4 if "_view_" in name or "anti" in name else 1.0
-        assert abs(here[f"{part}.{name}"] - there[name]) <= times * OFF, name
-
-
 def test_names_are_those_of_the_parts_and_others_are_refused() -> None:
     names = absolute.effect_names(absolute.compile(swing_axle()))
     parts = {f"{part}.{name}" for part in CENTRES for name in absolute.EFFECTS}

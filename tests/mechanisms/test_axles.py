@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import pytest
 from mpmath import acot, atan, cos, cot, mpf, pi, sin, workdps
 from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
@@ -189,3 +190,33 @@ def test_parallel_lines_and_a_wheel_that_stands_have_no_roll_centre(
     solution = solved_by(who, scene)
     assert_none(solution, ROLL_CENTRE)
     assert solution.numbers["dimension"]["track"] == pytest.approx(2.0 * HALF_TRACK, abs=1e-12)
+
+
+LAWS = {"left.wheel_travel": [-15.0, 40.0], "right.wheel_travel": [25.0, -10.0], "rack": [6.0, 15.0]}
+CAR = {
+    "axle": "front",
+    "wheelbase": 1600.0,
+    "centre_of_gravity_height": 510.0,
+    "brake_share": 0.375,
+    "drive_share": 0.25,
+}
+
+
+@by_each
+@pytest.mark.parametrize("side", SIDES)
+def test_each_wheel_of_an_axle_has_the_numbers_of_the_wheel_alone(who: str, side: str) -> None:
+    shipped = Scene.load("axle-steer").mechanism
+    own = {n.partition(".")[2]: p for n, p in shipped.points.items() if n.startswith(f"{side}.")}
+    given = {"wheel_radius": RADIUS, "car": CAR}
+    alone = {"type": "double_wishbone", "side": side, "points": own, **given}
+    laws = {name.removeprefix(f"{side}."): law for name, law in LAWS.items()}
+    laws = {name: law for name, law in laws.items() if "." not in name}
+    effects = scene_of(alone, [], **laws).mechanism.effects
+    single = solved_by(who, scene_of(alone, effects, **laws))
+    both = solved_by(who, scene_of({"type": "axle", "points": shipped.points, **given}, effects, **LAWS))
+    for quantity, numbers in single.numbers.items():
+        claims = [one.accuracy.claims[quantity] for one in (single, both)]
+        for name, number in numbers.items():
+            there = f"{side}.{name}"
+            off = np.abs(both.numbers[quantity][there] - number)
+            assert (off <= claims[0][name] + claims[1][there]).all(), (quantity, name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -13,41 +12,17 @@ from lotus_front import POINTS as LOTUS
 from mechanism_drawings import described, joined
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
-from reference_cars import CARS
 
 from validate.published.tables import FOLDER
 from validate.reference import BadInputError, Design, Instant, closed_drawing, instants_of, solve_reference
 from validate.reference.dual import Dual
-from validate.reference.effects.car import DAMPER, WHEEL, Car, DrawnCar, Line
+from validate.reference.effects.car import WHEEL, Car, DrawnCar, Line
 from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import EFFECTS
 
 WITHIN = mpf("1e-55")
 LOTUS_STEERING = FOLDER / "lotus-steering.csv"
-OF_A_WHEEL = tuple(n for n, one in EFFECTS.items() if {DAMPER, PAIR}.isdisjoint(one.needs))
 TOGETHER = tuple(name for name, one in EFFECTS.items() if PAIR in one.needs)
-
-
-def test_each_wheel_of_an_axle_has_the_numbers_of_the_wheel_alone() -> None:
-    car = CARS["double wishbone"]
-    points = {name: (x, -y, z) for name, (x, y, z) in car.points.items()}
-    alone = {"left": replace(car, points=points, side="left"), "right": car}
-    driven = {"left": ["arm_angle"], "right": ["arm_angle"]}
-    parts = {
-        part: plain_mechanism(
-            one.suspension, one.points, driven[part], side=part, wheel_radius=one.wheel_radius, car=one.car
-        )
-        for part, one in alone.items()
-    }
-    axle = joined(parts, rack={"travel": ["left.rack", "right.rack"]})
-    angles = {"left": Fraction(8, 5), "right": Fraction(7, 5)}
-    inputs = {f"{part}.arm_angle": (angle, 0, 0) for part, angle in angles.items()}
-    found = solve_reference(axle, {**inputs, "rack": (5, 0, 0)}, effects=OF_A_WHEEL)
-    assert set(found.effects) == {f"{part}.{name}" for part in alone for name in OF_A_WHEEL}
-    for part, one in alone.items():
-        want = one.solve({"arm_angle": (angles[part], 0, 0), "rack": (5, 0, 0)}, effects=OF_A_WHEEL)
-        for name in OF_A_WHEEL:
-            assert abs(found.effects[f"{part}.{name}"] - want.effects[name]) < WITHIN, name
 
 
 def wheel(side: int, pivots: Mapping[str, Any]) -> dict[str, Any]:
