@@ -7,7 +7,7 @@ from typing import Any
 
 from mechanism_files import mechanism_file, plain
 
-from validate.reference import Design, Instant, closed_drawing, count_assemblies, instants_of
+from validate.reference import Design, Instant, closed_drawing, instants_of
 from validate.reference.effects.registry import ANGLES
 from validate.reference.route import CLEAR
 
@@ -42,10 +42,3 @@ def solve_car(
 def close_car(points: Points, digits: int = 60, clearness: float = CLEAR, **settings: Any) -> Any:
     """Its closed drawing."""
     return closed_drawing(design_of(points, **settings), digits, clearness)
-
-
-def count_car(
-    points: Points, inputs: Mapping[str, Any], starts: int = 1000, seed: int = 0, **settings: Any
-) -> Any:
-    """What a search finds of its assemblies."""
-    return count_assemblies(design_of(points, **settings), inputs, starts, seed)

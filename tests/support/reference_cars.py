@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from lotus_front import POINTS as LOTUS
-from plain_mechanisms import close_car, count_car, design_of, solve_car
+from plain_mechanisms import close_car, design_of, solve_car
 
 from validate.reference import Instant
 from validate.reference.design import Design, Known, values_only
@@ -113,9 +113,6 @@ class ReferenceCar:
 
     def solve(self, inputs: Inputs, **settings: Any) -> Instant:
         return solve_car(self.points, inputs, **{**self.kind, **settings})
-
-    def count(self, inputs: Inputs, **settings: Any) -> Any:
-        return count_car(self.points, inputs, **self.kind, **settings)
 
     def close(self, **settings: Any) -> Any:
         return close_car(self.points, **self.kind, **settings)

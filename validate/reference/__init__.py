@@ -7,8 +7,6 @@ Third and independent: it shares no code with the formulations it judges. Where 
 from validate.extras import MissingPackage
 
 try:
-    from validate.reference.assemblies import Assemblies as Assemblies
-    from validate.reference.assemblies import count_assemblies as count_assemblies
     from validate.reference.design import Design as Design
     from validate.reference.errors import AmbiguousAssemblyError as AmbiguousAssemblyError
     from validate.reference.errors import BadInputError as BadInputError

@@ -2,9 +2,8 @@
 
 Of the assemblies of a pose the one that is meant has the four signs of the drawing (see `Choices`). The
 reference is that assembly, so a solution that has jumped to another one is wrong however well its links
-close. What is measured besides is how many assemblies there are: a search from a thousand starts lists those
-that it finds, each with its proof, and the literature reduces this strut to a polynomial of degree 64, which
-bounds them from above.
+close. How many assemblies
+there are is counted by `pointcoord hard --assemblies`.
 
 Some mechanisms are hard by nature. With cranks and couplers in one line, the parallelograms of a coupled
 four-bar meet the assemblies with crossed cranks: beyond that pose there are poses of both, and none that is
@@ -16,20 +15,17 @@ is to be had of it nothing is judged here, and the tests of mechanisms hold it t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 
-from validate.adjudication.reference_solution import design_of, inputs_at
 from validate.cars.scene_content import Law, content_of
-from validate.hard.cars import SQUARE, drawn_angle, scene_content
-from validate.hard.case import REFUSED, RIGHT, Expected, Values, case, coarse, decades, expected_of
+from validate.hard.cars import drawn_angle, scene_content
+from validate.hard.case import REFUSED, Expected, Values, case, coarse, decades, expected_of
 from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
-from validate.hard.trial import Trial
-from validate.reference import count_assemblies
 
 # Arm angle, rad, and rack travel, mm, at which the two sides of the tie rod just meet, by car: at less rack
 # travel the arm cannot pass this angle, at more it can.
@@ -105,63 +101,6 @@ def whole_range(driven: str, subject: Subject, share: float) -> Content:
     """Two instants, and between them the whole range of an input: one step could leap over it."""
     low, high = (last_value(subject, driven, ahead).beyond(-0.5 * share) for ahead in (False, True))
     return subject.absolute({**subject.home, driven: (high, low - high)}, stop=1.0, samples=2)
-
-
-# Poses near a singular one, or at the drawing, of which the assemblies are counted.
-STARTS = 1000
-DEGREE = 64  # of the polynomial of the collinear strut in the literature
-Pose = Callable[[Subject, float], tuple[float, float]]
-"""Arm angle, rad, and rack travel, mm, at a value of the parameter."""
-
-
-def _beside_meeting(subject: Subject, share: float) -> tuple[float, float]:
-    angle, rack = MEETINGS[subject.name]
-    return angle, rack + 10.0 * share
-
-
-def _beside_drawing(subject: Subject, share: float) -> tuple[float, float]:
-    return subject.drawn["arm_angle"] - 0.2 * share, subject.drawn["rack"] + 30.0 * share
-
-
-MERGING = "Closed forms say how many assemblies a pose may have, and near a singular pose two of them merge."
-ORDINARY = "Of all assemblies of an ordinary pose, up to sixteen by closed forms, one is meant."
-NEAR = decades(-12, -1)[::3]
-FEWER = (1e-1, 1e-10)  # each value is a search from a thousand starts
-# Name, why, parameter, pose, values of the strut and of the wishbone.
-POSES: tuple[tuple[str, str, str, Pose, Values, Values], ...] = (
-    (
-        *("drawing", ORDINARY, "arm and rack from the drawing, in parts of 0.2 rad and 30 mm; then at it"),
-        *(_beside_drawing, (1.0, 0.1, 0.0), (1.0, 0.0)),
-    ),
-    (
-        *("rack", MERGING, "distance from the greatest rack travel, in parts of its range"),
-        lambda subject, share: (SQUARE, last_value(subject, "rack", True).beyond(-share)),
-        *(NEAR, FEWER),
-    ),
-    (
-        *("arm", MERGING, "distance from the greatest arm angle, in parts of its range"),
-        lambda subject, share: (last_value(subject, "arm_angle", True).beyond(-share), 0.0),
-        *(NEAR, FEWER),
-    ),
-    (
-        *("meeting", MERGING, "rack travel beyond the meeting of two branches, in parts of 10 mm"),
-        *(_beside_meeting, NEAR, ()),
-    ),
-)
-
-
-def posed(pose: Pose, subject: Subject, share: float) -> Content:
-    """The mechanism at rest at a pose."""
-    return subject.absolute(dict(zip(subject.kinds, pose(subject, share), strict=True)))
-
-
-def counted(_: Subject, share: float, trial: Trial) -> Trial:
-    """How many assemblies there are."""
-    if trial.tried is None:
-        return trial
-    scene = trial.tried.scene
-    listed = count_assemblies(design_of(scene), inputs_at(scene, 0.0), starts=STARTS)
-    return trial.noting({"assemblies found, proven": len(listed.found), "starts": listed.starts})
 
 
 # Turn of the drawing, rad, at which branches cross, or beyond which there is none.
@@ -265,21 +204,6 @@ CASES = (
         )
         for subject, plane, parameter, values in FLAT
         for label, side in (("", 1.0), ("-mirrored", -1.0))
-    ),
-    *(
-        _branch(
-            partial(posed, pose),
-            parameter,
-            values,
-            RIGHT if where == "drawing" else CLEAR,
-            subject,
-            name=f"assemblies-counted-{where}",
-            why=why,
-            judged=counted,
-        )
-        for where, why, parameter, pose, *both in POSES
-        for subject, values in zip((PAPER, WISHBONE), both, strict=True)
-        if values
     ),
     *(
         case(
