@@ -1,9 +1,8 @@
 """Two assemblies close together, starts far from the drawing, large steps: the branch must be the drawing's.
 
-Of the assemblies of a pose the one that is meant has the four signs of the drawing (see `Choices`). The
-reference is that assembly, so a solution that has jumped to another one is wrong however well its links
-close. How many assemblies
-there are is counted by `pointcoord hard --assemblies`.
+Of the assemblies of a pose the one that is meant is reached from the drawing without a singular pose on the
+way. The reference is that assembly, so a solution that has jumped to another one is wrong however well its
+links close. How many assemblies there are is counted by `pointcoord hard --assemblies`.
 
 Some mechanisms are hard by nature. With cranks and couplers in one line, the parallelograms of a coupled
 four-bar meet the assemblies with crossed cranks: beyond that pose there are poses of both, and none that is
