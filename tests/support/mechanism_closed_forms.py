@@ -4,8 +4,9 @@ A point q that turns about an axis and is the end of a rod whose other end x is 
 
     A cos(phi) + B sin(phi) = C,      phi = atan2(B, A) -+ acos(C / |(A, B)|).
 
-The side is the drawing's: along a motion without a singular pose it cannot change. Where the input is no
-turn, the turn that gives its value is found first, along the motion from the drawing.
+The side is the drawing's: along a motion without a singular pose it cannot change. So does an arm's end that
+is at a given height. Where the input is another one, the turn that gives its value is found first, along the
+motion from the drawing.
 """
 
 from __future__ import annotations
@@ -21,6 +22,11 @@ from mpmath import acos, asin, atan2, cos, hypot, mp, mpf, sign, sin, sqrt
 
 Inputs = Mapping[str, Any]
 Move = Callable[[Array], Array]
+
+
+class NoPoseError(Exception):
+    """Circles and spheres that do not meet."""
+
 
 UP, LEFT, FORWARD = vector([0, 0, 1]), vector([0, -1, 0]), vector([-1, 0, 0])
 # Steps in which the first instant's input is reached from the drawing.
@@ -43,6 +49,29 @@ def turn(axis: tuple[Array, Array], angle: Any) -> Move:
     return move
 
 
+def turned_to(a: Any, b: Any, c: Any, side: Any) -> Any:
+    """The angle phi of one side with a cos(phi) + b sin(phi) = c."""
+    if abs(c) > hypot(a, b):
+        raise NoPoseError
+    return atan2(b, a) - side * acos(c / hypot(a, b))
+
+
+def root(square: Any) -> Any:
+    """A length from its square."""
+    if square < 0:
+        raise NoPoseError
+    return sqrt(square)
+
+
+def raised(point: Array, axis: tuple[Array, Array], height: Any) -> Any:
+    """The angle by which a point turns about an axis until it is so high over the axis' start, as drawn."""
+    along = unit(axis[1] - axis[0])
+    middle = along * (along @ (point - axis[0]))
+    radius = point - axis[0] - middle
+    a, b = radius @ UP, np.cross(along, radius) @ UP
+    return turned_to(a, b, height - middle @ UP, sign(b))
+
+
 def swing(point: Array, axis: tuple[Array, Array], end: Array, square: Any, side: Any) -> Any:
     """The angle by which a point turns about an axis until it is at a distance from `end`."""
     along = unit(axis[1] - axis[0])
@@ -50,7 +79,7 @@ def swing(point: Array, axis: tuple[Array, Array], end: Array, square: Any, side
     middle = point - radius - end
     a, b = middle @ radius, middle @ np.cross(along, radius)
     c = (square - middle @ middle - radius @ radius) / 2
-    return atan2(b, a) - side * acos(c / hypot(a, b))
+    return turned_to(a, b, c, side)
 
 
 def side(point: Array, axis: tuple[Array, Array], end: Array) -> Any:
@@ -108,7 +137,7 @@ def macpherson(p: Points, angle: Any, inputs: Inputs, through: str, towards: str
     # Where on the knuckle's line the strut's top is now: as far from the ball joint as that has gone from it.
     now = arm(joint)
     apart, foot = top - now, (joint - p[through]) @ line
-    beyond = sqrt(apart @ apart - (joint - p[through]) @ (joint - p[through]) + foot**2)
+    beyond = root(apart @ apart - (joint - p[through]) @ (joint - p[through]) + foot**2)
     on_line = p[through] + line * (foot + beyond * sign((top - p[through]) @ line - foot))
     wheel = knuckle(p, (joint, on_line), (now, top), inner)
     rod, end = p["strut_rod_end"] - top, p["strut_rod_end"] - p[through]
@@ -181,8 +210,6 @@ def contact(p: Points, radius: Any) -> Array:
 
 def measured(name: str, p: Points, drawn: Points, radius: Any, inputs: Inputs) -> Any:
     """What an input that is no turn reads at a pose."""
-    if name == "arm_angle":
-        return acos(unit(p["lower_ball_joint"] - p["lower_arm_front"]) @ UP)
     if name == "damper_length":
         return sqrt(sum((p["damper_top"] - p["damper_rocker"]) ** 2))
     if name == "ground_height":
@@ -209,6 +236,10 @@ def closed_form(
             turns = [next(mpf(inputs[k]) for k in inputs if k not in ("rack", "heave")) for inputs in path]
             return [form(p, angle, inputs) for angle, inputs in zip(turns, path, strict=True)]
         (name,) = sought
+        if name == "arm_angle":
+            ball, axis = p["lower_ball_joint"], (p["lower_arm_front"], p["lower_arm_rear"])
+            arm = sqrt(sum((ball - axis[0]) ** 2))
+            return [form(p, raised(ball, axis, arm * cos(one[name])), one) for one in path]
         start = measured(name, form(p, angle, {"rack": 0}), p, radius, {"roll": 0})
         ways = [{**path[0], name: start + (path[0][name] - start) * k / STEPS} for k in range(1, STEPS)]
         for inputs in [*ways, *path]:

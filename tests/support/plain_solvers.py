@@ -3,15 +3,14 @@
 from collections.abc import Mapping
 from typing import Any
 
-import mpmath
 import numpy as np
-from cars_in_closed_form import FORMS
-from mpmath import mpf
+from cars_in_closed_form import STEERED, pose_of
+from many_digits import DIGITS
+from mpmath import mp, mpf
 
 from validate.cars.car import Car
 
-DIGITS = 50
-STEP = mpf(10) ** -16  # of differences: they leave out its square, and lose as many of the digits
+STEP = mpf(10) ** -12  # of differences: they leave out its square, and lose as many of the digits
 
 
 def closed_form(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -32,7 +31,7 @@ def less_exact(off: float, seed: int = 1) -> Any:
 
 def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any]:
     """All that is asked, of a car with these hardpoints."""
-    with mpmath.workdps(DIGITS):
+    with mp.workdps(DIGITS):
         car = Car(
             {name: tuple(float(x) for x in place) for name, place in points.items()},
             given["side"],
@@ -41,8 +40,7 @@ def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any
             given["closure"],
             given["suspension"],
         )
-        form = FORMS[car.suspension].of(car, mpf)
-        before, now, after = (_poses(form, given["inputs"], step) for step in (-STEP, mpf(0), STEP))
+        before, now, after = (_poses(car, given["inputs"], step) for step in (-STEP, mpf(0), STEP))
         states = [
             {n: place.astype(float) for n, place in now.items()},
             {n: ((after[n] - before[n]) / (2 * STEP)).astype(float) for n in now},
@@ -53,7 +51,7 @@ def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any
         q: {n: state[n] for n in given["asked"].get(q, ())}
         for q, state in zip(quantities, states, strict=True)
     }
-    axis = FORMS[car.suspension].steering
+    axis = STEERED[car.suspension]
     turning = _turning([_sides(state, (axis[0], "tie_rod_outer", "wheel_centre")) for state in states])
     found["angular_velocity"], found["angular_acceleration"] = ({"knuckle": turn} for turn in turning)
     inner = "wheel_axis_inner" if "wheel_axis_inner" in points else "strut_lower"
@@ -62,13 +60,15 @@ def solved(given: Mapping[str, Any], points: Mapping[str, Any]) -> dict[str, Any
     }
 
 
-def _poses(form: Any, inputs: Mapping[str, Any], step: mpf) -> dict[str, Any]:
-    """Where every point is a little before or after each instant."""
-    moved = []
+def _poses(car: Car, inputs: Mapping[str, Any], step: mpf) -> dict[str, Any]:
+    """Where every point is a little before or after each instant, (N, 3)."""
+    moved = {}
     for name in ("arm_angle", "rack", "heave"):
         value, rate, bend = (np.array([mpf(x) for x in inputs[name][o]]) for o in inputs[name])
-        moved.append(value + step * rate + step * step * bend / 2)
-    return dict(form.pose(*moved))
+        moved[name] = value + step * rate + step * step * bend / 2
+    count = len(moved["rack"])
+    poses = [pose_of(car, **{name: law[k] for name, law in moved.items()}) for k in range(count)]
+    return {name: np.stack([pose[name] for pose in poses]) for name in poses[0]}
 
 
 def _line(state: Mapping[str, Any], ends: tuple[str, str]) -> Any:

@@ -5,28 +5,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cars_in_closed_form import Linkage
 
 from pointcoord import Motion, MotionTooRough, Scene, SingularConfiguration, simulate
 from pointcoord.bounds.proof import Proof
 from pointcoord.method import Method
 from validate.cars.car import Car
+from validate.cars.input_ends import end
 from validate.cars.paper_car import PAPER
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
 from validate.formulations.registry import formulation
 
-STRUT = Linkage.of(Car(dict(PAPER), "left", (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), "collinear"))
+STRUT = Car(dict(PAPER), "left", closure="collinear")
 
 
 def rack_to_its_end(short: float, tolerance: float = 1e-9) -> Scene:
     """From the middle to a share `short` before the end, where the tie rod locks."""
-    end = STRUT.end({"arm_angle": math.pi / 2, "rack": 0.0}, "rack", ahead=True)
-    assert end is not None
+    last = end(STRUT, {"arm_angle": math.pi / 2, "rack": 0.0}, "rack", ahead=True)
+    assert last is not None
     content = Scene.load("steer").model_dump(mode="json", exclude_none=True)
     content["inputs"] = {
         "arm_angle": {"constant": math.pi / 2},
-        "rack": {"polynomial": [0.0, end[0] * (1.0 - short)]},
+        "rack": {"polynomial": [0.0, last.value * (1.0 - short)]},
     }
     content["time"] = {"start": 0.0, "stop": 1.0, "samples": 2}
     return Scene.from_mapping({**content, "tolerance": tolerance})

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cars_in_closed_form import VARIANTS, Linkage
+from cars_in_closed_form import VARIANTS
 from mechanism_files import scene_file
 from plain_solvers import closed_form, less_exact
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate import check
+from validate.cars.input_ends import drawn_inputs, end
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
 from validate.formulations.protocol import NOTHING, Solution
@@ -69,11 +70,10 @@ def test_a_solver_is_held_to_what_it_states(car) -> None:
 
 def near_the_end(car, distance: float) -> Scene:
     """Instants at a distance from the last reachable rack travel, in parts of the way there; at rest."""
-    linkage = Linkage.of(car)
-    home = linkage.home
-    end = linkage.end(home, "rack", True)
-    assert end is not None
-    rack = end[0] + distance * (home["rack"] - end[0])
+    home = drawn_inputs(car)
+    last = end(car, home, "rack", True)
+    assert last is not None
+    rack = last.value + distance * (home["rack"] - last.value)
     return Scene.from_mapping(scene_content(car, home["arm_angle"], (rack, 1.0)), "near")
 
 

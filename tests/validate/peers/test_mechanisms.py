@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cars_in_closed_form import Linkage as ClosedForm
 from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
 from relative_cars import plain_car, sine, swing
 from sample_cars import PAPER_STRUT, SampleCar, by_car
 
 from validate.cars.car import Car
+from validate.cars.input_ends import drawn_inputs, end
 from validate.peers.errors import HardpointsError, InputError, PoseError
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
@@ -208,11 +208,12 @@ def test_every_scene_of_a_moved_chassis_is_moved_as_a_whole() -> None:
 @pytest.mark.parametrize("driven", ["arm_angle", "rack"])
 @pytest.mark.parametrize("ahead", [False, True])
 def test_an_input_beyond_its_end_is_refused_with_the_end(car: SampleCar, driven: str, ahead: bool) -> None:
-    form = ClosedForm.of(Car(car.points, car.side, closure=car.closure, suspension=car.type))
-    home, end = form.home, form.end(form.home, driven, ahead)
-    assert end is not None
+    drawn = Car(car.points, car.side, closure=car.closure, suspension=car.type)
+    home = drawn_inputs(drawn)
+    last = end(drawn, home, driven, ahead)
+    assert last is not None
     goal = {name: np.full(5, value) for name, value in home.items()}
-    goal[driven] = home[driven] + np.array([0.0, 0.5, 0.9, 1.1, 1.2]) * (end[0] - home[driven])
+    goal[driven] = home[driven] + np.array([0.0, 0.5, 0.9, 1.1, 1.2]) * (last.value - home[driven])
     if driven == "arm_angle" and not 0.0 < goal[driven][3] < np.pi:
         return
     with pytest.raises(PoseError) as caught:
@@ -222,7 +223,7 @@ def test_an_input_beyond_its_end_is_refused_with_the_end(car: SampleCar, driven:
     assert error.wanted[driven] == goal[driven][3]
     # A way is followed until its steps shrink below 2^-44 of it, or the fold's rounding, root of 1e-15, is
     # at 1e-9 of a range at the most.
-    assert error.reached[driven] == pytest.approx(end[0], abs=1e-9 * abs(end[0] - home[driven]))
+    assert error.reached[driven] == pytest.approx(last.value, abs=1e-9 * abs(last.value - home[driven]))
     assert f"{driven} = {error.reached[driven]:.10g}" in str(error)
     assert len(error.partial.coordinates) == 3
 
