@@ -9,12 +9,9 @@ import pytest
 from every_effect import every_effect
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
-from pointcoord.effects.corner import Wheel
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
-from pointcoord.effects.registry import ANGLES
 from pointcoord.effects.toe import TOE
-from pointcoord.linkage.carried_points import carried_series
 from pointcoord.results.ways import ByChain
 
 EPS = float(np.finfo(float).eps)
@@ -65,90 +62,18 @@ def most_of_what_is_claimed(motion: Motion, samples: Samples) -> float:
     return worst
 
 
-def plain_rates(r: np.ndarray, v: np.ndarray, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Least squares by numpy's own solver, with one row for each component of each point."""
-
-    def turning(edges: np.ndarray, rates: np.ndarray) -> np.ndarray:
-        x, y, z = np.moveaxis(edges, -1, 0)
-        o = np.zeros_like(x)
-        rows = np.stack([np.stack(c, -1) for c in ((o, z, -y), (-z, o, x), (y, -x, o))], axis=-2)
-        matrix = rows.reshape(len(edges), -1, 3)
-        return (np.linalg.pinv(matrix) @ rates.reshape(len(edges), -1, 1))[..., 0]
-
-    r, v, a = (each - each.mean(axis=1, keepdims=True) for each in (r, v, a))
-    omega = turning(r, v)
-    spin = omega[:, None]
-    return omega, turning(r, a - np.cross(spin, np.cross(spin, r)))
-
-
-def plain(motion: Motion, instants: np.ndarray) -> Numbers:
-    """Every number by the plain formulas: Horner's rule for each point, and everything for all instants."""
-    chain, readout = motion.solved.chain, motion.solved.readout
-    mechanism, plan = readout.mechanism, readout.plan
-    topology, layout = mechanism.topology, mechanism.layout
-    starts = np.array([segment.start for segment in chain.segments])
-    which = np.maximum(np.searchsorted(starts, instants) - 1, 0)
-    found: list[dict[str, np.ndarray]] = [
-        {point: np.zeros((len(instants), 3)) for point in topology.points} for _ in range(3)
-    ]
-    for point in topology.chassis:
-        found[0][point] += mechanism.drawing.vectors[point] * mechanism.unit
-    for i, segment in enumerate(chain.segments):
-        here = which == i
-        s = (instants[here] - segment.start) / segment.scale
-        series = {p: segment.coefficients[:, list(layout.vector(p))] for p in topology.moving}
-        for point, carriers in topology.carried.items():
-            weights = mechanism.carrier_weights[point]
-            series[point] = carried_series(weights, *(series[carrier] for carrier in carriers))
-        for point, coefficients in series.items():
-            for d in range(3):
-                law = np.polynomial.polynomial.polyder(coefficients, d)
-                value = np.polynomial.polynomial.polyval(s, law).T
-                found[d][point][here] = value * mechanism.unit / segment.scale**d
-    shifts = readout.chassis.states(instants, 2) or [np.zeros(3)] * 3
-    added = [mechanism.origin + shifts[0], *shifts[1:]]
-    numbers: dict[str, dict[str, np.ndarray]] = {}
-    for d, quantity in enumerate(("position", "velocity", "acceleration")):
-        if d == 0 or quantity in plan.effects:
-            numbers[quantity] = {point: found[d][point] + added[d] for point in topology.points}
-    for effect in plan.computed:
-        for angle in (ANGLES[name] for name in effect.own_names if name in ANGLES):
-            start, end = (found[0][point] for point in angle.ends(Wheel(topology)))
-            numbers.setdefault("wheel", {})[angle.name] = angle.value(start, end, readout.axes)
-    if "damper" in plan.effects:
-        lower, upper = (found[0][point] for point in topology.role("damper"))
-        numbers["dimension"] = {"damper_length": np.linalg.norm(upper - lower, axis=-1)}
-    if "knuckle_rates" in plan.effects:
-        body = [np.stack([each[p] for p in topology.bodies["knuckle"]], axis=1) for each in found]
-        omega, alpha = plain_rates(*body)
-        numbers |= {"angular_velocity": {"knuckle": omega}, "angular_acceleration": {"knuckle": alpha}}
-    return numbers
-
-
-def assert_plain(motion: Motion, samples: Samples, which: np.ndarray | slice = slice(None)) -> None:
-    """A sum of 21 terms is rounded some 21 times; terms of an acceleration are up to 50 times its sum, a turn
-    divides by edges that are a tenth of the car, and pinv squares no condition number."""
-    other = plain(motion, samples.times[which])
-    assert {q: set(part) for q, part in samples.numbers.items() if part} == {
-        q: set(p) for q, p in other.items()
-    }
-    for quantity, arrays in other.items():
-        size = max(1e-300, *(float(np.abs(array).max()) for array in arrays.values()))
-        for name, array in arrays.items():
-            off = np.abs(samples.numbers[quantity][name][which] - array).max()
-            assert off <= 21 * 50 * 10 * EPS * size, (quantity, name)
-
-
 @pytest.mark.parametrize("effects", [(), ("knuckle_rates",), ("acceleration", "toe"), EVERY], ids="+".join)
 @pytest.mark.parametrize("name", SCENES)
-def test_numbers_at_any_instants_are_those_of_the_plain_formulas(name: str, effects: tuple[str, ...]) -> None:
+def test_numbers_at_any_instants_are_as_near_the_exact_ones_as_they_claim(
+    name: str, effects: tuple[str, ...]
+) -> None:
     motion = solved(name, effects)
-    anywhere = np.random.default_rng(7).uniform(motion.times[0], motion.times[-1], 9000)
-    assert_plain(motion, motion.at(anywhere))
+    anywhere = np.random.default_rng(7).uniform(motion.times[0], motion.times[-1], 900)
+    assert most_of_what_is_claimed(motion, motion.at(anywhere)) <= 1.0
     close = np.linspace(motion.times[0], motion.times[-1], 60_000)
     assert share_in_cells(motion, close) > 0.3
-    assert_plain(motion, motion.at(close), np.arange(0, 60_000, 13))
-    assert_plain(motion, motion.at([motion.times[-1] / 3.0]))
+    assert most_of_what_is_claimed(motion, some(motion.at(close), np.arange(0, 60_000, 97))) <= 1.0
+    assert most_of_what_is_claimed(motion, motion.at([motion.times[-1] / 3.0])) <= 1.0
 
 
 @pytest.mark.parametrize("tolerance", [1e-9, 1e-3])

@@ -70,11 +70,17 @@ def rounding(exact: Motion) -> float:
 @by_method
 @few
 @given(scene=scenes(), tolerance=tolerances)
-def test_positions_are_within_the_tolerance_and_rates_within_as_much_of_themselves(
+def test_what_is_left_out_is_within_the_tolerance_what_is_proven_and_what_is_claimed(
     method: str, scene: Scene, tolerance: float
 ) -> None:
     exact = solved(asking(scene, FINEST), "newton")
     motion = solved(asking(scene, tolerance), method)
+    of_exact, proof = exact.proof(rates=True), motion.proof(rates=True)
+    for quantity, arrays in proof.proven.items():
+        for name, bound in arrays.items():
+            gap = np.abs(motion.numbers[quantity][name] - exact.numbers[quantity][name])
+            known = np.minimum(bound, proof.expected[quantity][name])
+            assert (gap <= known + of_exact.proven[quantity][name]).all()
     assert off(motion, exact, "position") <= tolerance + rounding(exact)
     # A rate is right to the part of the largest one of its kind that the tolerance is of the car's size.
     # Where a pose may be off by a tolerance its rates are off by omega times that of themselves (see
@@ -92,22 +98,6 @@ def test_positions_are_within_the_tolerance_and_rates_within_as_much_of_themselv
         rounded = sum(largest_bound(one, quantity) for one in (finest, exact))
         allowed = sum(sizes) * part * max(1.0, TRUNCATION_SHARE * condition) + 2.0 * rounded
         assert off(motion, exact, quantity) <= allowed
-
-
-@by_method
-@few
-@given(scene=scenes(), tolerance=tolerances)
-def test_what_is_left_out_is_within_what_is_proven_and_what_is_claimed(
-    method: str, scene: Scene, tolerance: float
-) -> None:
-    exact = solved(asking(scene, FINEST), "newton")
-    motion = solved(asking(scene, tolerance), method)
-    of_exact, proof = exact.proof(rates=True), motion.proof(rates=True)
-    for quantity, arrays in proof.proven.items():
-        for name, bound in arrays.items():
-            gap = np.abs(motion.numbers[quantity][name] - exact.numbers[quantity][name])
-            known = np.minimum(bound, proof.expected[quantity][name])
-            assert (gap <= known + of_exact.proven[quantity][name]).all()
 
 
 # -------------------------------------------------------------------------------- Newton's promise
