@@ -370,15 +370,26 @@ OWN_SCENES = {name: Scene.load(name) for name in PAPER_SCENES}
 OTHER_CARS = {name: heaving(Scene.load(name)) for name in STEERED_CARS if name not in PAPER_SCENES}
 
 
+def shown(name: str, car: str) -> Scene:
+    """A scene of a car that shows a fault."""
+    fault = FAULTS[name]
+    scene = OTHER_CARS[car] if car in OTHER_CARS else OWN_SCENES[fault.scene]
+    return scene if fault.second == "relative" else with_higher(scene)  # trees of joints give none
+
+
+@pytest.mark.parametrize("car", ["paper", *OTHER_CARS])
+def test_without_a_fault_these_comparisons_agree(car: str) -> None:
+    pairs = {(fault.scene, fault.first, fault.second): name for name, fault in FAULTS.items()}
+    for (_, first, second), name in pairs.items():
+        assert compare(shown(name, car), first, second).agreed
+
+
 @pytest.mark.parametrize("car", ["paper", *OTHER_CARS])
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_single_fault_makes_the_comparison_fail(
     name: str, car: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fault = FAULTS[name]
-    scene = OTHER_CARS[car] if car in OTHER_CARS else OWN_SCENES[fault.scene]
-    scene = scene if fault.second == "relative" else with_higher(scene)  # trees of joints give none
-    assert compare(scene, fault.first, fault.second).agreed
+    fault, scene = FAULTS[name], shown(name, car)
     fault.plant(monkeypatch)
     outcome = compare(scene, fault.first, fault.second)
     assert fault.spoils in {row.quantity for row in outcome.disagreements}
