@@ -108,8 +108,7 @@ def test_cranks_that_pass_the_line_are_refused_there(
 
 
 @by_method
-@pytest.mark.parametrize("count", [1, 2, 3])
-@pytest.mark.parametrize("ground", [1000.0, 1400.0])
+@pytest.mark.parametrize(("count", "ground"), [(1, 1000.0), (2, 1400.0), (3, 1000.0)])
 @pytest.mark.parametrize("turns", [1.0, 4.0, 16.0])
 def test_cranks_in_line_at_an_instant_are_refused(
     method: str, count: int, ground: float, turns: float
