@@ -1,17 +1,15 @@
-"""Mechanisms are where other people's tables and closed forms have them.
+"""Mechanisms in trees of joints: how they are driven, where they end and what none of them is.
 
 What the reference says of every shipped one is in tests/mechanisms/test_formulations.py.
 """
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
-from relative_cars import plain_car, sine, swing
+from relative_cars import plain_car, swing
 from sample_cars import PAPER_STRUT, SampleCar, by_car
 
 from validate.cars.car import Car
@@ -22,12 +20,8 @@ from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.linkage import Linkage, linkage_of
 from validate.peers.motion import Poses, numbers
-from validate.spanning_tree.chassis import ChassisMotion
-from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
-TABLES = json.loads((Path(__file__).parent / "vdsim_rear_axles.json").read_text("utf-8"))
-CAR = {"right": (0.0, -1.0, 0.0)}  # x forward, y left
 
 
 def held(values: Array) -> Array:
@@ -50,35 +44,6 @@ def everything(mechanism: Any, laws: dict[str, Array], program_of: Any = InPinoc
     return found, linkage.accuracy(poses.last_step)
 
 
-@pytest.mark.parametrize("name", TABLES["cars"])
-def test_a_rear_axle_moves_as_vdsim_says(name: str) -> None:
-    car = TABLES["cars"][name]
-    points = {point: 1000.0 * np.array(place) for point, place in car["points"].items()}
-    points["wheel_axis_inner"] = points["wheel_centre"] - (0.0, 100.0, 0.0)
-    table = np.array(car["table"])
-    mechanism = plain(mechanism_file(name), {"points": points, **CAR}, ["wheel_travel"])
-    there, _ = everything(mechanism, {"wheel_travel": held(1000.0 * table[:, 0])})
-    track = (there["position"]["wheel_centre"][:, 1] - points["wheel_centre"][1]) / 1000.0
-    found = np.stack([there[OF_CAR]["camber"], there[OF_CAR]["toe"], track], axis=-1)
-    assert np.abs(found - table[:, 1:]).max() < car["accuracy"]
-    # Any other angle would be seen.
-    assert np.abs(table[:, 1:]).max(axis=0).min() > 1e4 * car["accuracy"]
-
-
-def test_a_slider_crank_is_its_closed_form_over_three_turns() -> None:
-    mechanism = plain_scene("slider-crank")
-    p = {name: np.array(place, dtype=float) for name, place in mechanism["points"].items()}
-    turn = np.linspace(0.0, 6.0 * np.pi, 121)
-    x, z = p["crank_pin"][0], p["crank_pin"][2]
-    pin = np.stack([x * np.cos(turn) + z * np.sin(turn), z * np.cos(turn) - x * np.sin(turn)], axis=-1)
-    rod = np.linalg.norm(p["piston"] - p["crank_pin"])
-    height = pin[:, 1] + np.sqrt(rod**2 - (pin[:, 0] - p["piston"][0]) ** 2)
-    found, accuracy = everything(mechanism, {"crank": held(turn)})
-    error = np.abs(found["position"]["piston"][:, 2] - height)
-    # The closed form's own roundings, some ten of 145 mm.
-    assert (error <= 4.0 * accuracy + 3e-13).all()
-
-
 def test_a_dead_point_is_not_passed_where_the_stroke_is_driven() -> None:
     mechanism = plain_scene("slider-crank", ["stroke"])
     reach = 145.0 - 130.0
@@ -95,15 +60,14 @@ def test_a_dead_point_is_not_passed_where_the_stroke_is_driven() -> None:
 @pytest.mark.parametrize("program_of", [InPinocchio, InMujoco, InExudyn])
 @pytest.mark.parametrize("contact", [False, True])
 def test_a_wheel_is_lifted_by_its_contact_point_or_a_distance(contact: bool, program_of: Any) -> None:
-    car = TABLES["cars"]["five_link"]
-    points = {point: 1000.0 * np.array(place) for point, place in car["points"].items()}
-    points["wheel_axis_inner"] = points["wheel_centre"] - (0.0, 100.0, 8.0)
+    points = {point: np.array(place) for point, place in plain_scene("five-link")["points"].items()}
+    points["wheel_axis_inner"] = points["wheel_centre"] + (0.0, 100.0, -8.0)
     tables, radius = mechanism_file("five_link"), 305.0
     tables["inputs"] = {
         "lift": {"contact": ["wheel_axis_inner", "wheel_centre"]},
         "strut": {"distance": ["wheel_centre", "upper_front_inner"]},
     }
-    part = {"points": points, "wheel_radius": radius, **CAR}
+    part = {"points": points, "wheel_radius": radius}
     drawn = np.linalg.norm(points["wheel_centre"] - points["upper_front_inner"])
     law = np.linspace(-30.0, 30.0, 5) + (0.0 if contact else drawn)
     name = "lift" if contact else "strut"
@@ -161,49 +125,6 @@ def test_a_hinge_that_closes_a_loop_cannot_be_driven_by_its_turn() -> None:
     assert np.abs(places["C"][:, 1]).max() < 1e-11
 
 
-def test_a_car_turns_right_handed_about_a_direction() -> None:
-    mechanism = plain_scene("double-wishbone")
-    mechanism["inputs"] |= {"roll": {"turns": "chassis", "about": "lower_arm_front", "along": "forward"}}
-    quarter = np.array([[0.5 * np.pi, 0.0, 0.0]])
-    chassis = ChassisMotion.of(mechanism, {"roll": quarter})
-    assert chassis is not None
-    # About forward, which is -x of this car, y goes to -z and z to y.
-    for before, after in (([0.0, 1.0, 0.0], [0.0, 0.0, -1.0]), ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0])):
-        np.testing.assert_allclose(chassis.directions(np.array([before]))[0], after, atol=1e-15)
-
-
-def test_every_scene_of_a_moved_chassis_is_moved_as_a_whole() -> None:
-    mechanism = plain_scene("double-wishbone")
-    mechanism["inputs"] |= {
-        "roll": {"turns": "chassis", "about": "lower_arm_front", "along": "forward"},
-        "heave": {"moves": "chassis", "along": "up"},
-    }
-    linkage, step, times = linkage_of(mechanism), 1e-3, 0.4 + 1e-3 * np.arange(-2.0, 3.0)
-    laws = {
-        drive.input: sine(drive.drawn * (1.0 if drive.is_angle else linkage.unit), 0.1, 2.0, times)
-        for drive in linkage.driven
-    }
-    laws |= {"roll": sine(0.02, 0.1, 3.0, times), "heave": sine(0.0, 20.0, 1.0, times)}
-    program, inputs = InPinocchio(linkage), linkage.inputs(laws)
-    poses = program.poses(inputs.values, 1e-12, program.closed(1e-12))
-    moved = numbers(linkage, inputs, poses, program.rates(poses, inputs.series))
-    for name, place in moved["position"].items():
-        first = (place[0] - 8.0 * place[1] + 8.0 * place[3] - place[4]) / (12.0 * step)
-        second = (-place[0] + 16.0 * place[1] - 30.0 * place[2] + 16.0 * place[3] - place[4]) / (
-            12.0 * step**2
-        )
-        # step^4 of fifth derivatives, below 1e6 mm/s^5; rounding of 1e-13 mm over step and step^2.
-        np.testing.assert_allclose(moved["velocity"][name][2], first, atol=1e-6)
-        np.testing.assert_allclose(moved["acceleration"][name][2], second, atol=1e-5)
-    # The knuckle's turn is that of its points.
-    spin, rate = (moved[q]["knuckle"] for q in ("angular_velocity", "angular_acceleration"))
-    r, v, a = (
-        moved[q]["wheel_centre"] - moved[q]["tie_rod_outer"] for q in ("position", "velocity", "acceleration")
-    )
-    np.testing.assert_allclose(v, np.cross(spin, r), atol=1e-9)
-    np.testing.assert_allclose(a, np.cross(rate, r) + np.cross(spin, np.cross(spin, r)), atol=1e-9)
-
-
 @by_car
 @pytest.mark.parametrize("driven", ["arm_angle", "rack"])
 @pytest.mark.parametrize("ahead", [False, True])
@@ -242,20 +163,6 @@ def test_a_way_that_is_blocked_between_two_poses_is_refused_and_the_way_round_is
     assert "tie_rod" in caught.value.links
     # The arm ends at 35.27 degrees there.
     assert np.rad2deg(caught.value.reached["arm_angle"]) == pytest.approx(35.27, abs=0.005)
-
-
-@by_car
-def test_rates_are_difference_quotients_of_what_is_solved(car: SampleCar) -> None:
-    step, times = 1e-3, 0.4 + 1e-3 * np.arange(-2.0, 3.0)
-    there, _ = everything(plain_car(car), swing(car, times))
-    for name, place in there["position"].items():
-        first = (place[0] - 8.0 * place[1] + 8.0 * place[3] - place[4]) / (12.0 * step)
-        second = (-place[0] + 16.0 * place[1] - 30.0 * place[2] + 16.0 * place[3] - place[4]) / (
-            12.0 * step**2
-        )
-        # step^4 of fifth derivatives, below 1e6 mm/s^5; rounding of 1e-13 mm over step and step^2.
-        np.testing.assert_allclose(there["velocity"][name][2], first, atol=1e-6)
-        np.testing.assert_allclose(there["acceleration"][name][2], second, atol=1e-5)
 
 
 def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
