@@ -6,10 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
 
-from mechanism_files import full_input
-from plain_mechanisms import plain_mechanism
+from mechanism_files import full_input, plain_scene
 from reference_cars import CARS
-from vdsim import FIVE_LINK, TRAILING_ARM, WHEEL_CENTRE
 
 from validate.reference import Design
 
@@ -67,32 +65,6 @@ def joined(parts: Mapping[str, dict[str, Any]], **inputs: Mapping[str, Any]) -> 
     return {**whole, "sides": sides, "inputs": {**whole["inputs"], **inputs}}
 
 
-def millimetres(place: Sequence[float]) -> tuple[float, ...]:
-    """Metres as mm."""
-    return tuple(1000.0 * x for x in place)
-
-
-def five_link() -> dict[str, Any]:
-    """That of VDSim."""
-    ends = {
-        f"{n}_{end}": millimetres(p)
-        for n, both in FIVE_LINK.items()
-        for end, p in zip(("inner", "outer"), both, strict=True)
-    }
-    return plain_mechanism("five_link", {**ends, **wheel()}, ["wheel_travel"], right=(0, -1, 0))
-
-
-def trailing_arm(driven: str = "wheel_travel") -> dict[str, Any]:
-    """That of VDSim."""
-    pivots = {name: millimetres(place) for name, place in TRAILING_ARM.items()}
-    return plain_mechanism("semi_trailing_arm", {**pivots, **wheel()}, [driven], right=(0, -1, 0))
-
-
-def wheel() -> dict[str, tuple[float, ...]]:
-    x, y, z = millimetres(WHEEL_CENTRE)
-    return {"wheel_centre": (x, y, z), "wheel_axis_inner": (x, y - 100.0, z)}
-
-
 # A crank of 3 about z drives a slider 5 above its plane by a rod of 13: x = 3 cos + sqrt(144 - 9 sin^2).
 SLIDER_CRANK = described(
     {"o": (0, 0, 0), "above": (0, 0, 1), "a": (3, 0, 0), "b": (15, 0, 5), "rail": (0, 0, 5)},
@@ -133,8 +105,8 @@ BLOCK = described(
 )
 DRAWINGS: dict[str, Callable[[], Design]] = {
     **{name: cache(partial(getattr, car, "design")) for name, car in CARS.items()},
-    "five links": cache(lambda: Design.from_plain(five_link())),
-    "semi-trailing arm": cache(lambda: Design.from_plain(trailing_arm())),
+    "five links": cache(lambda: Design.from_plain(plain_scene("five-link"))),
+    "semi-trailing arm": cache(lambda: Design.from_plain(plain_scene("semi-trailing-arm"))),
     "slider crank": cache(lambda: Design.from_plain(SLIDER_CRANK)),
     "four-bar": cache(lambda: Design.from_plain(FOUR_BAR)),
     "double arm": cache(lambda: Design.from_plain(DOUBLE_ARM)),

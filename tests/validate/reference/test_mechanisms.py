@@ -14,8 +14,8 @@ from mechanism_drawings import (
     DOUBLE_ARM,
     SLIDER_CRANK,
     described,
-    five_link,
 )
+from mechanism_files import plain_scene
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 
@@ -110,7 +110,9 @@ def test_a_car_that_rolls_takes_its_pose_along_and_adds_its_turning() -> None:
 # What is wrong in a description, and what becomes of it.
 def test_a_rod_that_is_dropped_leaves_a_freedom_and_is_named_so() -> None:
     with pytest.raises(BadInputError, match="drive 1 more"):
-        Design.from_plain({**five_link(), "rods": dict(list(five_link()["rods"].items())[1:])})
+        Design.from_plain(
+            {**plain_scene("five-link"), "rods": dict(list(plain_scene("five-link")["rods"].items())[1:])}
+        )
 
 
 def test_an_input_too_many_locks_the_mechanism_and_is_noticed_off_the_drawing() -> None:

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 from exact_vectors import number
-from mechanism_drawings import described, five_link
+from mechanism_files import plain_scene
+from mechanism_drawings import described, 
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 from reference_cars import CARS
@@ -148,6 +149,6 @@ def test_two_inputs_that_move_the_wheel_leave_no_gradient_by_its_travel() -> Non
 
 @pytest.mark.parametrize("radius", [0, -260, float("nan")])
 def test_a_wheel_without_size_is_refused(radius: float) -> None:
-    plain = {**five_link(), "wheel_radius": radius}
+    plain = {**plain_scene("five-link"), "wheel_radius": radius}
     with pytest.raises(BadInputError, match="wheel_radius"):
         solve_reference(plain, {"wheel_travel": (0, 0, 0)}, effects=EVERY)
