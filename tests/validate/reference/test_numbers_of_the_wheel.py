@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 from exact_vectors import number
+from mechanism_drawings import described
 from mechanism_files import plain_scene
-from mechanism_drawings import described, 
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 from reference_cars import CARS
