@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from pointcoord import AssemblyError, Motion, Scene, SceneError, simulate
+from pointcoord import Scene, SceneError, simulate
 from pointcoord.results.closing import NOTICED
 
 Array = NDArray[np.float64]
@@ -65,53 +65,6 @@ def test_closing_says_what_moves_and_what_the_drawing_misses(make_scene: Callabl
     assert closing.misses == {"strut_rod_end on the strut axis": pytest.approx(0.5, rel=1e-3)}
     # No other point feels it.
     assert max(far for name, far in closing.movements.items() if name != "strut_rod_end") < 1e-9
-
-
-def test_a_slide_that_runs_out_is_refused_with_the_ball_joint_as_near_as_it_comes(
-    make_scene: Callable[..., Scene],
-) -> None:
-    # The ball joint lies h = 150 mm beside the axis and 160 mm below the strut top; nearer than h it
-    # cannot come.
-    h, far = 150.0, 160.0
-    ball = np.array(CAR["lower_ball_joint"])
-    foot = ball + h * np.array([np.sqrt(1.0 - (h / far) ** 2), 0.0, h / far])
-    top = ball + np.array([0.0, 0.0, far])
-    lower = foot + 0.5 * (foot - top)
-    car = {
-        **CAR,
-        "strut_top": tuple(top.tolist()),
-        "strut_lower": tuple(lower.tolist()),
-        "strut_rod_end": tuple((top + 0.3 * (lower - top)).tolist()),
-    }
-    with pytest.raises(AssemblyError) as caught:
-        simulate(make_scene([drawn_angle(car), -0.4], [0.0], points=car, stop=1.0, closure="drawn"))
-    assert caught.value.reduce == "arm_angle"
-    assert caught.value.limits[0] == "strut_top on the strut axis"
-    partial = caught.value.partial
-    assert isinstance(partial, Motion)
-    near = np.linalg.norm(partial.position["strut_top"] - partial.position["lower_ball_joint"], axis=-1)
-    assert (near > h).all()
-    front, rear = np.array(CAR["lower_arm_front"]), np.array(CAR["lower_arm_rear"])
-    stopped = _ball_joint(front, rear, ball, caught.value.reached["arm_angle"])
-    # The path ends within 1e-12 of its length of the fold.
-    assert np.linalg.norm(top - stopped) == pytest.approx(h, rel=1e-9)
-
-
-def _ball_joint(front: Array, rear: Array, drawn: Array, angle: float) -> Array:
-    """The ball joint at an arm angle: the arm turned about its axis until its height is right."""
-    axis = (rear - front) / np.linalg.norm(rear - front)
-    arm = drawn - front
-    rise = float(np.linalg.norm(arm)) * np.cos(angle)
-    level = axis * float(axis @ arm)
-
-    def turned(by: float) -> Array:
-        return np.asarray(level + (arm - level) * np.cos(by) + np.cross(axis, arm) * np.sin(by))
-
-    low, high = sorted((-1.0, 1.0), key=lambda by: float(turned(by)[2]))
-    for _ in range(100):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if turned(middle)[2] < rise else (low, middle)
-    return front + turned(0.5 * (low + high))
 
 
 @pytest.mark.parametrize(("share", "refused"), [(0.0099, False), (0.0101, True)])
