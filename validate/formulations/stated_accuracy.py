@@ -110,15 +110,6 @@ Way = tuple[str, str | None]
 """The prefix of a part, and what derivatives are taken by in it."""
 
 
-def claims_for(scene: Scene, accuracy: float) -> Numbers:
-    """How far off each number may be that the scene asks for: the claims of `accuracy_for`.
-
-    Raises:
-        FormulationError: the scene cannot be solved.
-    """
-    return accuracy_for(scene, accuracy).claims
-
-
 def accuracy_for(scene: Scene, accuracy: float) -> Accuracy:
     """What a solver of an accuracy, mm, may be off by in a scene, at pointcoord's poses of it.
 

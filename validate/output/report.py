@@ -11,7 +11,7 @@ from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.examined import Examined
 from validate.comparison.findings import Finding
-from validate.output.table import Cell, Part, Table, text_of
+from validate.output.table import Cell, Part, Table
 from validate.paper.tables import WHY_NOT_EQUAL, PaperRow, root_mean_square
 from validate.plain_text import shown
 from validate.tables.units import degrees_of
@@ -141,11 +141,6 @@ def verdict_of(row: Comparison) -> str:
     if row.verdict != "disagrees":
         return row.verdict
     return f"DISAGREES, {row.share:.1e} times" if math.isfinite(row.share) else "DISAGREES, not a number"
-
-
-def outcome_text(outcome: Outcome) -> str:
-    """The agreement table of one scene and pair, what its tolerances rest on, what would explain it."""
-    return text_of(outcome_parts(outcome))
 
 
 def outcome_parts(outcome: Outcome, over: str = "", absent: Sequence[str] = ()) -> tuple[Part, ...]:

@@ -57,7 +57,7 @@ class Compiler:
 
     def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool) -> None:
         self.plain, self.table, self.unit, self.hangs = plain, table, unit, hangs
-        self.lengths: list[bool] = []
+        self.size = 0
         self.rows: list[tuple[str, Polynomial]] = []
         self.readers: list[Reader] = []
         self.positive: list[Polynomial] = []
@@ -88,10 +88,10 @@ class Compiler:
             self.rods[name] = len(self.rows)
             self.row(name, dot(gap, gap) - dot(drawn, drawn))
 
-    def unknowns(self, count: int, read: Reader, length: bool = False) -> list[Polynomial]:
+    def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
         """New ones; `read` gives their values from points, the unknowns before them and the numbers w."""
-        first = len(self.lengths)
-        self.lengths += [length] * count
+        first = self.size
+        self.size += count
         self.readers.append(read)
         return [Polynomial.symbol(first + i) for i in range(count)]
 
@@ -116,7 +116,7 @@ class Compiler:
         if point not in self.free:
             if point not in self.table:
                 raise BadInputError("a point", point, f"one of {', '.join(self.table)}")
-            x, y, z = self.unknowns(3, lambda points, *_: points[point], length=True)
+            x, y, z = self.unknowns(3, lambda points, *_: points[point])
             self.free[point] = (x, y, z)
         return self.free[point]
 
@@ -227,7 +227,7 @@ class Compiler:
                 self.row(f"turn of {name}", dot(columns[p], columns[q]) - int(p == q))
         self.triples.append(columns)
         if origin is None:
-            px, py, pz = self.unknowns(3, lambda points, *_: points[base], length=True)
+            px, py, pz = self.unknowns(3, lambda points, *_: points[base])
             origin = (px, py, pz)
 
         def turned(v: Vector) -> Vector:

@@ -212,7 +212,7 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         lean = dot(minus(points[centre], points[inner]), each(exact, up))
         return [root(exact(r * r) - lean * lean * exact(share2))]
 
-    (drop,) = compiler.unknowns(1, read, length=True)
+    (drop,) = compiler.unknowns(1, read)
     compiler.positive.append(drop)
     lean = dot(minus(compiler.place(centre), compiler.place(inner)), up)
     if isinstance(lean, Polynomial):
@@ -243,7 +243,7 @@ def _over_ground(
         lean = dot(minus(points[centre], points[inner]), (a, b, c))
         return [lean, root(exact(square) - lean * lean * exact(share))]
 
-    lean, drop = compiler.unknowns(2, read, length=True)
+    lean, drop = compiler.unknowns(2, read)
     compiler.positive.append(drop)
     compiler.row(f"lean of {name}", lean - dot(minus(compiler.place(centre), compiler.place(inner)), seen))
     compiler.row(f"contact of {name}", drop * drop + lean * lean * share - square)

@@ -23,7 +23,6 @@ class Mechanism:
 
     Attributes:
         size: unknowns.
-        lengths: of every unknown, whether it is a length (else a turn or a share of a line).
         rows: C(y, w); symbols from `size` on are the numbers w.
         names: of every row, what it says.
         places: of every point, relative to the chassis.
@@ -43,7 +42,6 @@ class Mechanism:
     """
 
     size: int
-    lengths: tuple[bool, ...]
     rows: tuple[Polynomial, ...]
     names: tuple[str, ...]
     places: Mapping[str, Vector]
@@ -113,14 +111,13 @@ def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool
     for name in compiler.table:
         if name not in compiler.holder and name not in compiler.free:
             raise BadInputError(f"points.{name}", "in no body, rod or slide", "a point of one of them")
-    size = len(compiler.lengths)
+    size = compiler.size
 
     def final(vector: Vector) -> Vector:
         return each(lambda one: _final(one, size), vector)
 
     return Mechanism(
         size=size,
-        lengths=tuple(compiler.lengths),
         rows=tuple(_final(row, size) for _, row in compiler.rows),
         names=tuple(name for name, _ in compiler.rows),
         places={name: final(compiler.place(name)) for name in compiler.table},

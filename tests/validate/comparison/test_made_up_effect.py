@@ -30,7 +30,8 @@ from pointcoord.linkage.topology import Topology
 from validate.cli import main
 from validate.comparison.compare import Outcome, compare
 from validate.output.document import schema_text
-from validate.output.report import outcome_text
+from validate.output.report import outcome_parts
+from validate.output.table import text_of
 from validate.reference.dual import angle
 from validate.reference.effects import registry as reference_registry
 from validate.reference.effects.car import WHEEL
@@ -163,7 +164,7 @@ def test_a_model_that_does_not_know_it_is_told_and_there_is_no_verdict(
     assert set(outcome.missing) == {"absolute gives no stub length", "absolute gives no wheel angle"}
     assert not outcome.disagreements
     assert not outcome.agreed
-    (line,) = (line for line in outcome_text(outcome).splitlines() if line.startswith("stub_axle"))
+    (line,) = (line for line in text_of(outcome_parts(outcome)).splitlines() if line.startswith("stub_axle"))
     assert line.split() == ["stub_axle", "-", "-", "-", "-", "-", "not", "given"]
 
 

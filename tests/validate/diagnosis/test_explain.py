@@ -18,6 +18,7 @@ from validate.diagnosis import Explanation, explain, explain_outcome
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.output import report
+from validate.output.table import text_of
 from validate.solvers.check import check
 
 Array = NDArray[np.float64]
@@ -391,7 +392,7 @@ def test_the_program_prints_at_most_three_and_writes_all_of_them() -> None:
     given = held.with_numbers(camber(held, np.degrees))
     outcome = compare_solutions(scene, held, given, "degrees")
     found = explain_outcome(scene, outcome)
-    text = report.outcome_text(replace(outcome, explanations=found * 5))
+    text = text_of(report.outcome_parts(replace(outcome, explanations=found * 5)))
     assert text.count("what would explain it: ") == 3
     assert text.splitlines()[-1].endswith("camber: degrees for radians")
     (one,) = report.outcome_data(replace(outcome, explanations=found))["explanations"]

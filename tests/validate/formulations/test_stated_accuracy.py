@@ -15,7 +15,7 @@ from validate.cars.input_ends import drawn_inputs, end
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
 from validate.formulations.protocol import NOTHING, Solution
-from validate.formulations.stated_accuracy import _more, claims_for
+from validate.formulations.stated_accuracy import _more, accuracy_for
 from validate.formulations.trees import linkage_in
 from validate.hard.cars import scene_content
 from validate.peers.in_pinocchio import InPinocchio
@@ -82,7 +82,7 @@ def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
     wide = {}
     for distance in (1e-3, 1e-5, 1e-7):
         scene = near_the_end(car, distance)
-        claims = claims_for(scene, 1e-10)
+        claims = accuracy_for(scene, 1e-10).claims
         wide[distance] = [claims[q]["wheel_centre"].max() for q in ("position", "velocity", "acceleration")]
         assert check(closed_form, scene, 1e-10).passed, distance
     # At a distance d of a fold position, velocity and acceleration change with d^-1/2, d^-3/2 and d^-5/2.
@@ -108,7 +108,7 @@ def test_of_a_number_that_does_not_exist_at_an_instant_nothing_is_said_there() -
         "inputs": {"arm_turn": {"polynomial": [-0.125, 0.125]}},
         "time": {"start": 0.0, "stop": 2.0, "samples": 3},
     }
-    claims = claims_for(Scene.from_mapping(content, "arm"), 1e-9)
+    claims = accuracy_for(Scene.from_mapping(content, "arm"), 1e-9).claims
     assert claims["wheel"]["camber"].max() < 1e-10
     for claim in (claims["dimension"]["roll_centre_height"], claims["angle_gradient"]["toe_by_travel"]):
         assert claim[1] == NOTHING

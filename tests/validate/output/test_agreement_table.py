@@ -6,7 +6,8 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.output.report import heading, outcome_text
+from validate.output.report import heading, outcome_parts
+from validate.output.table import text_of
 from validate.tables.units import degrees_of
 
 
@@ -18,7 +19,7 @@ def heaving() -> Outcome:
 
 def lines_of(outcome: Outcome) -> dict[str, list[str]]:
     """The table's cells by quantity; its widths are those of the line of dashes."""
-    _, head, dashes, *lines = outcome_text(outcome).splitlines()
+    _, head, dashes, *lines = text_of(outcome_parts(outcome)).splitlines()
     starts = [0] + [at + 2 for at in range(len(dashes)) if dashes[at : at + 2] == "  "]
     ends = [*(start - 2 for start in starts[1:]), None]
     rows = {}
