@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from rate_sensitivity import rate_sensitivities
 
 from pointcoord import Scene, SceneError, simulate
 from pointcoord.linkage.hardpoints import build_mechanism
@@ -44,17 +43,13 @@ def test_printed_formulation_has_the_same_positions_and_velocities() -> None:
     scene = Scene.load("bounce-and-steer")
     newton, printed = simulate(scene, "newton"), simulate(scene, PRINTED)
     one, other = newton.proof(rates=True), printed.proof(rates=True)
-    for name in newton.position:
-        gap = np.abs(newton.position[name] - printed.position[name])
-        assert (gap <= one.proven["position"][name] + other.proven["position"][name]).all()
-        # The pose's error times its proven effect, and the rounding of one solve each. A carried point
-        # moves up to 30 times as fast as its carriers (its weights).
-        speed = np.abs(newton.velocity[name]).max()
-        rounding = 64 * EPS * (one.condition + other.condition) * speed
-        sensitive = rate_sensitivities(newton)[0] * one.bound + rate_sensitivities(printed)[0] * other.bound
-        assert (
-            np.abs(newton.velocity[name] - printed.velocity[name]).max(axis=-1) <= 30 * (sensitive + rounding)
-        ).all()
+    for quantity in ("position", "velocity"):
+        for name in newton.position:
+            gap = np.abs(getattr(newton, quantity)[name] - getattr(printed, quantity)[name])
+            assert (gap <= one.proven[quantity][name] + other.proven[quantity][name]).all(), (quantity, name)
+    # The accelerations are what the printed term gets wrong.
+    wheel = np.abs(newton.acceleration["wheel_centre"] - printed.acceleration["wheel_centre"])
+    assert (wheel > one.proven["acceleration"]["wheel_centre"]).any()
 
 
 def test_printed_rows_lose_rank_where_the_strut_lies_flat_and_the_slide_does_not() -> None:
