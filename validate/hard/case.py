@@ -1,7 +1,8 @@
 """A hard case is a row: why it is hard, a scene made from one number that leads into it, what has to come.
 
-A family is such a row for every mechanism. The first is tried at every value of the parameter, the second at
-every fourth, all others at one: what is hard about a value is the same in each.
+A family is such a row for every mechanism. The struts, on and beside their axis, are tried at every value of
+the parameter, the double wishbone at every fourth, all others at one: what is hard about a value is the same
+in each.
 """
 
 from __future__ import annotations
