@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from mechanism_files import SCENES
+from mechanism_files import SCENES, plain_scene
 from mpmath import diff, mp, mpf
 from one_arm import DIGITS, TURNS, place, plain
 from shipped import EPS, Array, Motion, error, off, shipped
@@ -172,6 +172,27 @@ def test_a_car_that_rolls_and_pitches_moves_as_written_out(order: tuple[str, ...
                     allowed = rounding(solution, number)[k, 0]
                     assert error(states(solution, number)[name][k], exact) <= allowed, (name, number)
                 assert found.shape == (len(TIMES), 3)
+
+
+def test_a_wheel_far_from_the_origin_is_driven_as_one_near_it() -> None:
+    """Drawn on a grid that both places hold exactly; far out a place is rounded by 2^-23 mm."""
+    contact = {"contact": ["wheel_axis_inner", "wheel_centre"]}
+    t = np.linspace(0.0, 1.0, 5)
+    laws = {
+        n: np.stack([a * t, a + 0.0 * t, 0.0 * t], axis=-1) for n, a in (("rack", 12.0), ("wheel", -40.0))
+    }
+    velocities = []
+    for far in (0.0, 2.0**30):
+        described = plain_scene("double-wishbone", ["rack"], wheel_radius=270.0)
+        described["inputs"] |= {"wheel": contact}
+        leaning = {"wheel_axis_inner": np.add(described["points"]["wheel_axis_inner"], (7.0, 0.0, 13.0))}
+        places = {n: np.round(np.array(p) * 2.0**10) for n, p in (described["points"] | leaning).items()}
+        points = {n: place / 2.0**10 + far for n, place in places.items()}
+        model = absolute.compile({**described, "points": points})
+        velocities.append(absolute.solve(model, laws).velocity)
+    for name, near in velocities[0].items():
+        # No point is faster than 100 mm/s, and no condition number above 100.
+        assert np.abs(near - velocities[1][name]).max() < 100.0 * EPS * 100.0, name
 
 
 def test_a_turn_that_is_not_given_is_none() -> None:

@@ -49,6 +49,13 @@ def refused(described: dict[str, Any], words: str, kind: type[Exception] = Descr
         ({"inputs": {"in": {"height": "a"}}}, "name a point of another body"),
         ({"inputs": {"in": {"contact": ["a", "end"]}}}, "wheel_radius"),
         ({"inputs": {"in": {"pull": "a"}}}, "kind of input 'in'"),
+        *(
+            (
+                {"inputs": TURN | {"in": {"steers": ["bore"]}}, "rack_per_turn": wrong},
+                "'in' needs rack_per_turn",
+            )
+            for wrong in (None, 0.0, np.nan, True)
+        ),
         (
             {"inputs": TURN | {"in": {"turns": "chassis", "about": "c", "along": "up"}}},
             "point of input 'in' is 'c'",
