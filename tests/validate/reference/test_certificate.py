@@ -73,7 +73,9 @@ def test_a_planted_error_in_any_unknown_is_rejected_or_if_it_places_no_point_men
             continue
         # It places no point, so that the box leaves it room: the proof finds it by itself.
         assert abs(mended - solution[place]) < arb("1e-75")
-        assert not known.mechanism.lengths[place]
+        moved, there = (known.equations.points_of(unknown) for unknown in (off, solution))
+        for name, point in moved.items():
+            assert all(abs(a - b) < arb("1e-60") for a, b in zip(point, there[name], strict=True)), name
 
 
 @pytest.mark.parametrize("name", DRAWINGS)
