@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from every_effect import NUMBERS_OF_A_CAR
 from mechanism_files import SCENES, scene_file
 
 from pointcoord import Scene
@@ -25,15 +26,7 @@ OF_EVERY_NUMBER = ("pointcoord", "absolute")
 OTHERS = ("pointcoord-newton", "pointcoord-map", "relative", *OUTSIDE)
 SAMPLES = 4
 TURNED = Path(__file__).with_name("roll-pitch-heave.toml")
-CAR = {
-    "axle": "rear",
-    "wheelbase": 2618.3,
-    "centre_of_gravity_height": 511.7,
-    "brake_share": 0.37,
-    "drive_share": 0.91,
-    "spring_rate": 31.7,
-    "spring_free_length": 823.9,
-}
+CAR = {"axle": "rear", **NUMBERS_OF_A_CAR}
 LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}
 # What an axle has only where both wheels are steered to the same side.
 OF_A_TURN = {"ackermann", "ackermann_error", "turning_radius"}

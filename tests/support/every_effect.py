@@ -3,6 +3,16 @@
 from pointcoord import Scene
 from pointcoord.effects.registry import EFFECTS
 
+NUMBERS_OF_A_CAR = {
+    "wheelbase": 2618.3,
+    "centre_of_gravity_height": 511.7,
+    "brake_share": 0.37,
+    "drive_share": 0.91,
+    "spring_rate": 31.7,
+    "spring_free_length": 823.9,
+}
+"""All that a scene may say of the whole car but which of its axles this is."""
+
 OF_A_WHEEL = tuple(
     name
     for name, effect in EFFECTS.items()

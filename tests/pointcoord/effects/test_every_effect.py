@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from effects_by_hand import BY_HAND, DIFFERENTIATED, DIGITS, Car, Vector, by_hand, cross, plus
-from every_effect import OF_A_WHEEL
+from every_effect import NUMBERS_OF_A_CAR, OF_A_WHEEL
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf, workdps
@@ -33,15 +33,7 @@ Array = NDArray[np.float64]
 Numbers = Mapping[str, Mapping[str, Array]]
 U = 2.0**-53
 RADIUS = 300.0  # mm, of the wheel
-DATA = {
-    "axle": 1.0,
-    "wheelbase": 2618.3,
-    "centre_of_gravity_height": 511.7,
-    "brake_share": 0.37,
-    "drive_share": 0.91,
-    "spring_rate": 31.7,
-    "spring_free_length": 823.9,
-}
+DATA = {"axle": 1.0, **NUMBERS_OF_A_CAR}
 TIME = 2.0**-3  # s, a unit of time other than a second
 # What two wheels make is in test_axles, and what loads do in test_loads. One code differentiates all numbers:
 # of those that differ in what they are made of.
