@@ -20,7 +20,7 @@ from pointcoord.effects.arithmetic import angle, chosen, multiple, positive, rat
 from pointcoord.effects.car_number import DIMENSION, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
-from pointcoord.effects.steer_angle import STEER
+from pointcoord.effects.wheel_angles import STEER
 
 ACKERMANN_SHARE = Quantity("ackermann", "Ackermann", "%", "car")
 STEER_ERROR = Quantity("steer_error", "steer error", "rad", "car")

@@ -28,9 +28,9 @@ WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
 AXES = {"wheel_axis": "the wheel's spin axis", "steering_axis": "the steering axis"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Angle:
-    """An angle of a line of the car, in a plane of the car's axes; rad. See `car_number.CarNumber`.
+    """An angle of a line of the car, in a plane of the car's axes; rad. See `car_number.Number`.
 
     Attributes:
         name, words, sign: see `car_number.Number`.

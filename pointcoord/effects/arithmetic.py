@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 P = TypeVar("P", Array, Enclosed)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Dual(Generic[P]):
     """A number or a vector, and its derivative along a direction."""
 

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.effects.angle import Angle
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.car_axes import CarAxes
@@ -45,44 +46,7 @@ LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
 KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide or a steering wheel"}
 
 
-class CarNumber(Protocol):
-    """What every number of a car says of itself; see `Number`."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def words(self) -> str: ...
-    @property
-    def sign(self) -> str: ...
-    @property
-    def quantity(self) -> Quantity: ...
-    @property
-    def roles(self) -> tuple[str, ...]: ...
-    @property
-    def needs_radius(self) -> bool: ...
-    @property
-    def data(self) -> tuple[str, ...]: ...
-    @property
-    def way(self) -> str: ...
-
-    def formula(self, *corners: Any) -> Any:
-        """The number, in whichever arithmetic the points are; lengths in their unit."""
-        ...
-
-    def errors(self, corners: Sequence[Corner[Any]], found: Array, unit: float) -> Array:
-        """Proven and expected error of a value that was found, (2, N).
-
-        Args:
-            unit: of the corners' lengths, a power of two, mm.
-        """
-        ...
-
-    def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
-        """Why a drawing that has its roles does not have it, in words; empty if it does."""
-        ...
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Number:
     """A number by its formula; a length unless it says something else.
 
@@ -109,16 +73,23 @@ class Number:
     power: int = 1
 
     def errors(self, corners: Sequence[Corner[Any]], found: Array, unit: float) -> Array:
-        """From where it exactly is."""
+        """Proven and expected error of a value that was found, (2, N), from where it exactly is.
+
+        Args:
+            unit: of the corners' lengths, a power of two, mm.
+        """
         exact: Enclosed = self.formula(*corners)
         return exact.scaled(unit**self.power).errors(found)
 
     def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
-        """None."""
+        """Why a drawing that has its roles does not have it, in words: it always does."""
         return ""
 
 
-@dataclass(frozen=True)
+CarNumber = Number | Angle
+
+
+@dataclass(frozen=True, eq=False)
 class CarNumbers(Effect):
     """Some numbers of the car, along one way if any: of each wheel, or of the two of an axle together.
 

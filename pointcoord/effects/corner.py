@@ -62,7 +62,7 @@ def wheels_of(topology: Topology, roles: Iterable[str]) -> tuple[Wheel, ...]:
     return tuple(wheel for wheel in wheels if all(map(wheel.role, roles)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class View(Generic[S]):
     """The points of a wheel, seen along the car's directions.
 
@@ -108,7 +108,7 @@ class View(Generic[S]):
         return times(-ratio(self.radius, root(dot(in_disc, in_disc))), in_disc)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Corner(Generic[S]):
     """One wheel of a pose.
 

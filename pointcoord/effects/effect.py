@@ -41,7 +41,7 @@ class Quantity:
     of: Literal["point", "body", "joint", "car"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Doubt:
     """Something that looks wrong with drawings although they can be solved.
 
@@ -54,7 +54,7 @@ class Doubt:
     words: Callable[[tuple[int, ...]], str]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Poses:
     """Solved poses, from which effects are evaluated.
 
@@ -77,7 +77,7 @@ class Poses:
     slopes: Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Effect(ABC):
     """Something that a scene may ask for.
 

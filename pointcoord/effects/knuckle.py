@@ -4,7 +4,7 @@ Of three points p_0, p_1, p_2 of the knuckle with e1 = p_1 - p_0 and e2 = p_2 - 
 it is a e1 + b e2 + c n, n = e1 x e2, with constant a, b, c; so its derivative is a e1' + b e2' + c n'. Of
 the angular velocity w it is w x the vector, so that
 
-    2 |n|^2 w = (e2 x n) x e1' + (n x e1) x e2' + n x n'.
+    |n|^2 w = (e1' . e2) n - (e1' . n) e2 + (e2' . n) e1.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, reciprocal, times
+from pointcoord.effects.arithmetic import Dual, P, cross, dot, ratio, reciprocal, times
 from pointcoord.effects.corner import Corner, View
 from pointcoord.linkage.car_axes import Direction
 
@@ -65,11 +65,16 @@ def rising(corner: Corner[Dual[Any]]) -> Any:
 
 def angular_velocity(corner: Corner[Dual[Any]]) -> Any:
     """The turn of the knuckle along the way, rad per unit of the input."""
-    e1, e2, normal = _frame(corner)
-    n = normal.value
-    twice = cross(cross(e2.value, n), e1.slope) + cross(cross(n, e1.value), e2.slope) + cross(n, normal.slope)
-    square = dot(n, n)
-    return times(reciprocal(square + square), twice)
+    e1, e2, _ = _frame(corner)
+    return turn_of_edges(e1.value, e2.value, e1.slope, e2.slope)
+
+
+def turn_of_edges(e1: P, e2: P, v1: P, v2: P) -> P:
+    """The angular velocity of two edges of a body, from their derivatives."""
+    n = cross(e1, e2)
+    along = times(dot(v1, e2), n)
+    across = times(dot(v2, n), e1) - times(dot(v1, n), e2)
+    return times(reciprocal(dot(n, n)), along + across)
 
 
 def _frame(corner: Corner[Dual[Any]]) -> tuple[Dual[Any], Dual[Any], Dual[Any]]:

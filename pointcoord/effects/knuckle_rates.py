@@ -1,29 +1,31 @@
 r"""How fast the knuckle turns, and how fast that changes.
 
-A body turns as two edges of it do: with n = e1 x e2 and what an approximate rate w leaves of the edges'
-rates, s_i = e_i' - w x e_i,
+A body turns as two edges of it do (see `knuckle`): what an approximate rate w leaves of the edges' rates,
 
-    omega - w = [ (s_1 . e2) n - (s_1 . n) e2 + (s_2 . n) e1 ] / |n|^2,
+    s_i = e_i' - w x e_i = (omega - w) x e_i,
 
-since s_i = (omega - w) x e_i exactly; alpha likewise from s_i = e_i'' - omega x (omega x e_i) - w x e_i. The
-points of a rigid body give the same rates whichever of them are taken, so this proves how far off a rate is
-that was found from all points by least squares (see `rigid`).
+gives omega - w by the same formula; alpha likewise from s_i = e_i'' - omega x (omega x e_i) - w x e_i. So a
+rate is refined, and so it is proven how far off one is that was found in whichever way. The paper's quotient
+v65 x v75 / (v65 . r75) is 0/0 whenever omega lies in the points' plane.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects import rigid
+from pointcoord.effects.arithmetic import P, cross
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
+from pointcoord.effects.knuckle import turn_of_edges
+from pointcoord.errors import SingularConfiguration
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.topology import Topology
-from pointcoord.numerics.enclosure import Enclosed, both, cross, dot, quotient
+from pointcoord.numerics.enclosure import Enclosed, both
 from pointcoord.numerics.rounding import EPS
 
 if TYPE_CHECKING:
@@ -34,6 +36,9 @@ Array = NDArray[np.float64]
 States = Mapping[str, Array]
 Edges = tuple[Array, Array]
 
+# Each multiplies what is left of the first solution's rounding by some EPS k (see `ByEdges.loss`): some 1e-3
+# of a needle 1e-6 as thick as long, where after one the rounding was still seen.
+REFINEMENTS = 2
 VELOCITY = Quantity("angular_velocity", "angular velocity", "rad/s", "body")
 ACCELERATION = Quantity("angular_acceleration", "angular acceleration", "rad/s^2", "body")
 
@@ -59,24 +64,33 @@ class RatesFormula(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class LeastSquares:
-    """The turn that all points of the body follow best (see `rigid`)."""
+@dataclass(frozen=True, eq=False)
+class ByEdges:
+    """The turn of the two edges from the body's first point to its second and its third."""
 
     no_number: str = ""
 
     def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
-        """Angular velocity and acceleration of the body."""
-        return rigid.body_rates(
-            *(rigid.stack_points(list(states.values())) for states in (position, velocity, acceleration))
-        )
+        """Angular velocity and acceleration of the body.
+
+        Raises:
+            SingularConfiguration: the points are in one line; the turn about it is free.
+        """
+        (p, q), (v, w), (a, b) = (_edges(states, states) for states in (position, velocity, acceleration))
+        # By a power of two near the body's size, so that no product of lengths over- or underflows.
+        size = max(float(np.abs(edge).max(initial=0.0)) for edge in (p, q))
+        scale = np.ldexp(1.0, -np.frexp(size or 1.0)[1])
+        p, q, v, w, a, b = (part * scale for part in (p, q, v, w, a, b))
+        _require_apart(p, q)
+        omega = _refined(p, q, v, w)
+        a, b = (part - cross(omega, cross(omega, edge)) for part, edge in ((a, p), (b, q)))
+        return omega, _refined(p, q, a, b)
 
     def loss(self, edges: Edges, rates: Edges) -> Array:
-        """Of a thin triangle the inertia cancels.
+        """Of a thin triangle the first solution cancels.
 
-        J has a condition number near k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined solution keeps a
-        rounding of eps k of what it corrects; 4e3 covers the sums that J is made of. Of any knuckle but a
-        needle the loss is 1.
+        A solution is off by EPS k, k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined one keeps a rounding
+        of that of what it corrects; 4e3 covers the sums. Of any knuckle but a needle the loss is 1.
         """
         first, second = edges
         area = np.linalg.norm(np.cross(first, second), axis=-1, keepdims=True)
@@ -84,7 +98,36 @@ class LeastSquares:
         return np.asarray(1.0 + 4e3 * EPS * (squares / area) ** 2)
 
 
-@dataclass(frozen=True)
+def _edges(points: Mapping[str, P], names: Iterable[str]) -> tuple[P, P]:
+    first, second, third = (points[name] for name in islice(names, 3))
+    return second - first, third - first
+
+
+def _refined(p: Array, q: Array, v: Array, w: Array) -> Array:
+    """The turn of edges p and q whose rates are v and w."""
+    turn = np.zeros_like(p)
+    for _ in range(1 + REFINEMENTS):
+        turn = turn + turn_of_edges(p, q, v - cross(turn, p), w - cross(turn, q))
+    return turn
+
+
+def _require_apart(p: Array, q: Array) -> None:
+    """Refuse a triangle that is flat, by the condition number of the inertia of unit masses at its corners.
+
+    With the sum s of the squares of its sides that is 2 s^2 / (3 |p x q|^2) + 2.
+    """
+    sides = sum(np.vecdot(side, side) for side in (p, q, p - q))
+    normal = cross(p, q)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        condition = 2.0 * sides**2 / (3.0 * np.vecdot(normal, normal)) + 2.0
+    if not (condition * 8 * EPS < 1.0).all():
+        raise SingularConfiguration(
+            "the points of a body are in one line, so its turn about that line is free",
+            float(np.max(condition)),
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class BodyRates(Effect):
     """Angular velocity and acceleration of each body that the topology names.
 
@@ -92,7 +135,7 @@ class BodyRates(Effect):
         formula: how they are told from the body's points.
     """
 
-    formula: RatesFormula = LeastSquares()
+    formula: RatesFormula = ByEdges()
 
     @property
     def no_number(self) -> str:
@@ -120,7 +163,11 @@ class BodyRates(Effect):
         found: dict[str, dict[str, Array]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
         for body in numbers[VELOCITY.name]:
             names, spin = poses.mechanism.topology.bodies[body], None
-            loss = self.formula.loss(*(_middles(points, names) for points in poses.points[:2]))
+            edges, rates = (
+                (one.middle, other.middle)
+                for one, other in (_edges(points, names) for points in poses.points[:2])
+            )
+            loss = self.formula.loss(edges, rates)
             for d, quantity in enumerate(found, 1):
                 reported = numbers[quantity][body]
                 # About a rate that is no number nothing can be proven, but what is expected can be said.
@@ -130,11 +177,6 @@ class BodyRates(Effect):
                 found[quantity][body] = both(error, loss * off.radius[1]) / poses.powers[d][..., None]
                 spin = off.corrected(near)
         return found
-
-
-def _middles(points: Points, names: Sequence[str]) -> Edges:
-    first, second, third = (points[name].middle for name in names[:3])
-    return second - first, third - first
 
 
 def body_rate_error(
@@ -148,18 +190,12 @@ def body_rate_error(
         found: the computed rate, (N, 3).
         pull: the exact angular velocity where `rates` are accelerations.
     """
-    from pointcoord.bounds.enclosed_points import edges_of
-
-    e1, e2 = edges_of(points, names)
+    (e1, e2), (v1, v2) = _edges(points, names), _edges(rates, names)
     turning = e1.like(found)
-    v1, v2 = edges_of(rates, names)
     s1, s2 = v1 - cross(turning, e1), v2 - cross(turning, e2)
     if pull is not None:
         s1, s2 = (s - cross(pull, cross(pull, edge)) for s, edge in ((s1, e1), (s2, e2)))
-    normal = cross(e1, e2)
-    along = dot(s1, e2).spread_out * normal
-    across = dot(s2, normal).spread_out * e1 - dot(s1, normal).spread_out * e2
-    return quotient(along + across, dot(normal, normal).spread_out)
+    return turn_of_edges(e1, e2, s1, s2)
 
 
 KNUCKLE_RATES = BodyRates(

@@ -47,7 +47,7 @@ ROLES = ("wheel_axis", "knuckle")
 AXES = np.eye(3)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Along:
     """What happens along a way.
 
@@ -66,7 +66,7 @@ class _Along:
         return _Along(self.work - share * free.work, tuple(one - share * other for one, other in pairs))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loads(Effect):
     """The forces that hold a mechanism under the loads of its scene."""
 

@@ -10,9 +10,7 @@ from pointcoord.effects.angles_by_arcsine import ANGLES_BY_ARCSINE
 from pointcoord.effects.anti_features import ANTI_FEATURES
 from pointcoord.effects.arm_roll_centre import ARM_ROLL_CENTRE
 from pointcoord.effects.axle import AXLE
-from pointcoord.effects.camber import CAMBER
 from pointcoord.effects.car_number import CarNumber, CarNumbers
-from pointcoord.effects.caster import CASTER
 from pointcoord.effects.damper import DAMPER
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
@@ -24,10 +22,8 @@ from pointcoord.effects.point_states import POSITION, RATES
 from pointcoord.effects.roll_centre import ROLL_CENTRE
 from pointcoord.effects.screw_axis import SCREW_AXIS
 from pointcoord.effects.spring import SPRING
-from pointcoord.effects.steer_angle import STEER_ANGLE
 from pointcoord.effects.steering_axis import STEERING_AXIS
-from pointcoord.effects.toe import TOE
-from pointcoord.effects.wheel_angles import WHEEL_ANGLES
+from pointcoord.effects.wheel_angles import CAMBER, CASTER, STEER_ANGLE, TOE, WHEEL_ANGLES
 from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 
 ALWAYS: tuple[Effect, ...] = (POSITION,)

@@ -20,12 +20,11 @@ import numpy as np
 from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.arithmetic import Dual, angle, cross, dot, ratio, reciprocal, sign_of, times
 from pointcoord.effects.car_number import BY_RACK, DIMENSION, CarNumbers, Number
-from pointcoord.effects.caster import LEAN_REARWARD
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.knuckle import angular_velocity, at_rest, component
 from pointcoord.effects.steering_axis import LENGTHS, Axis
-from pointcoord.effects.wheel_angles import KINGPIN
+from pointcoord.effects.wheel_angles import KINGPIN, LEAN_REARWARD
 
 PITCH = Quantity("screw_pitch", "pitch of the screw axis", "mm/rad", "car")
 # Turns per rack travel of one radius of the wheel that rounding does not tell from none.

@@ -20,7 +20,7 @@ from pointcoord.effects.corner import Corner, View
 ROLES = ("steering_axis", "wheel_axis")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Axis(Generic[S]):
     """An axis that a wheel is steered about.
 

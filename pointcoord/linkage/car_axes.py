@@ -21,7 +21,7 @@ SIGNS = {"left": -1.0, "right": 1.0}
 OPPOSITE: Mapping[Direction, Direction] = {"down": "up", "inboard": "outboard", "forward": "rearward"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CarAxes:
     """Unit vectors of one wheel's car, each of shape (..., 3), and what else its scene says of the wheel.
 

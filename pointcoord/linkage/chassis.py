@@ -39,7 +39,7 @@ KINDS = ("values", "rates", "accelerations")
 SPREAD = 3.0**0.5
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ChassisMotion:
     """Inputs that move the chassis, each along a unit vector of shape (..., 3).
 

@@ -16,7 +16,7 @@ from pointcoord.numerics.double_double import Pair, exact_square, pair_root, two
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Drawing:
     """The drawn points and directions, in the mechanism's own units, each of shape (..., 3).
 

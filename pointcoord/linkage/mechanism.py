@@ -27,7 +27,7 @@ from pointcoord.time_functions import TimeFunction
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mechanism:
     """A topology with hardpoints; build it with `hardpoints.build_mechanism`.
 

@@ -201,7 +201,7 @@ def compiled(
     return _Compiler(structure, tuple(driven), choices, lengths or {}).topology(puts_in_place)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Compiler:
     structure: Structure
     driven: tuple[str, ...]

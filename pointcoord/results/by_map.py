@@ -22,7 +22,7 @@ from pointcoord.solve.status import COMPLETE, Status
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ByMap(SolvedScene):
     """Patches along the way of the inputs composed with their laws (see `patches.evaluation`).
 

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 SHOWN = 11
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Motion(Samples):
     """A solved scene at its own instants, or at those before something stopped it.
 

@@ -31,7 +31,7 @@ mechanism's origin."""
 BLOCK = 4096
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Readout:
     """How states become results: of a motion, of many designs, or of a map.
 

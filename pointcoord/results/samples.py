@@ -101,7 +101,7 @@ class Named(ReadOnly):
         return ", ".join(c.quantity.words for c in self.numbers.values() if c.computed)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Samples(Named):
     """What a scene asked for, at some instants.
 

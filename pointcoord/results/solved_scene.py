@@ -43,7 +43,7 @@ ORDERED = 2**13
 CARRIED = 32
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolvedScene(ABC):
     """What a motion is read from.
 

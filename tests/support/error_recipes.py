@@ -21,7 +21,7 @@ import validate.reference.route
 from absolute.follow import follow
 from absolute.initial_assembly import assemble
 from absolute.mechanism import Mechanism
-from pointcoord.effects.rigid import body_rates
+from pointcoord.effects.knuckle_rates import ByEdges
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
@@ -65,7 +65,7 @@ PAPER_CAR = BOUNCE.mechanism.plain(("arm_angle", "rack"))
 HINGE_OF_ONE_POINT = {**PAPER_CAR, "points": TABLE | {"lower_arm_rear": TABLE["lower_arm_front"]}}
 UPRIGHT = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 HELD = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.array([[0.0, 0.0, 0.0]])}
-IN_LINE = np.outer([0.0, 1.0, 2.0], [1.0, 2.0, 3.0])
+IN_LINE = {name: np.array([1.0, 2.0, 3.0]) * i for i, name in enumerate("abc")}
 # The arm's axis is level and the arm stands upright: the ball joint is on top of its circle.
 TOP = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_joint": (0, -300, 0)}
 
@@ -261,7 +261,7 @@ RECIPES: dict[str, Recipe] = {
         },
     ),
     "pointcoord.errors.SingularConfiguration": Recipe(
-        lambda *_: body_rates(IN_LINE, IN_LINE, IN_LINE),
+        lambda *_: ByEdges().rates(IN_LINE, IN_LINE, IN_LINE),
         ("in one line", "turn about that line is free", "condition number", "move an input or a point"),
         {"free": bool, "condition": lambda number: number > 1e14},
     ),

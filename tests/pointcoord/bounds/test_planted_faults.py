@@ -19,7 +19,7 @@ from pointcoord import simulate
 from pointcoord.bounds import certified_poses, enclosed_points
 from pointcoord.bounds.certified_poses import CertifiedPoses, grouped, with_known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
-from pointcoord.effects import knuckle_rates
+from pointcoord.effects import knuckle, knuckle_rates
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
@@ -194,7 +194,7 @@ FAULTS: list[tuple[Callable[..., Any], str, str]] = [
     (enclosed_points._carried, " + c * crossed", ""),
     (EnclosedPoses.reported, " + self.added[derivative]", ""),
     (knuckle_rates.body_rate_error, "s - cross(pull, cross(pull, edge))", "s"),
-    (knuckle_rates.body_rate_error, "along + across", "along"),
+    (knuckle.turn_of_edges, "along + across", "along"),
     (enclosure.angle_error, "sine * c - cosine * s", "sine * c"),
 ]
 

@@ -20,7 +20,7 @@ from pointcoord.bounds.proof import ROUNDINGS
 from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.effect import Effect, Poses
-from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, LeastSquares
+from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, ByEdges
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
@@ -296,7 +296,7 @@ def test_an_effect_needs_the_points_that_it_names_and_no_others(name: str, seed:
         assert not effect.own_names or part in effect.own_names
 
 
-class Lossless(LeastSquares):
+class Lossless(ByEdges):
     """As if the formula lost nothing."""
 
     def loss(self, edges: tuple[Array, Array], rates: tuple[Array, Array]) -> Array:
@@ -321,6 +321,6 @@ def test_of_a_needle_that_turns_as_much_more_is_expected_as_its_formula_loses() 
         assert loss >= least
         said, plain = (
             replace(KNUCKLE_RATES, formula=formula).errors(poses, numbers)["angular_velocity"][body][1]
-            for formula in (LeastSquares(), Lossless())
+            for formula in (ByEdges(), Lossless())
         )
         np.testing.assert_allclose(said, loss * plain, rtol=1e-3)

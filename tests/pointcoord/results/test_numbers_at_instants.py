@@ -11,7 +11,7 @@ from every_effect import every_effect
 from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
-from pointcoord.effects.toe import TOE
+from pointcoord.effects.wheel_angles import TOE
 from pointcoord.results.ways import ByChain
 
 EPS = float(np.finfo(float).eps)

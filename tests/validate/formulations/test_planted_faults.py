@@ -11,7 +11,6 @@ from built_in_cars import STEERED_CARS
 
 import absolute
 import absolute.rows
-import pointcoord.effects.rigid
 import pointcoord.patches.evaluation
 import pointcoord.patches.patches
 import pointcoord.results.readout
@@ -19,10 +18,11 @@ import pointcoord.solve.dense_output
 import pointcoord.solve.taylor
 import validate.formulations.modelled
 from pointcoord import Scene
-from pointcoord.effects.camber import LEAN as CAMBER
+from pointcoord.effects.knuckle_rates import ByEdges
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.effects.wheel_angles import KINGPIN
+from pointcoord.effects.wheel_angles import LEAN as CAMBER
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import NEWTON
 from pointcoord.results.samples import Samples
@@ -123,10 +123,8 @@ def _no_mixed_terms(patch: pytest.MonkeyPatch) -> None:
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
     """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities."""
-    rates = pointcoord.effects.rigid.body_rates
-    patch.setattr(
-        pointcoord.effects.rigid, "body_rates", lambda p, v, a: (rates(p, v, a)[0], rates(p, a, a)[0])
-    )
+    rates = ByEdges.rates
+    patch.setattr(ByEdges, "rates", lambda self, p, v, a: (rates(self, p, v, a)[0], rates(self, p, a, a)[0]))
 
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
