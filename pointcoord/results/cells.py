@@ -15,8 +15,7 @@ what a coordinate costs. Whether a cell is short enough is not guessed:
   of the series is rounded itself, whatever the terms are.
 - of a number that is computed of states, analytic as these are: where the second half of its coefficients is
   below `HALFWAY`, what lies beyond them is below the square of that and more.
-- a law of the chassis is taken at the instants themselves, unless the same holds of it and its own rounding
-  is that of its largest number in the cell.
+- a law of the chassis is taken at the instants themselves.
 
 A cell that is too long is halved; where one of few instants still is, as where a motion begins from rest and
 each number counts relative to itself, the plain formulas are left to do. How far a number is off is proven
@@ -25,7 +24,7 @@ from the number (see `bounds`), however it was found.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -34,12 +33,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange, SingularConfiguration
-from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyond
 from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.results.readout import BLOCK
 from pointcoord.results.solved_scene import SolvedScene
+from pointcoord.results.ways import ENOUGH
 from pointcoord.solve.dense_output import derivative_tables
 from pointcoord.solve.taylor import Chain
 
@@ -51,8 +50,6 @@ Stretch = tuple[int, int]
 DEGREE = 8
 # Instants of a cell: at most what keeps its powers in a second-level cache, at least what pays its points.
 MOST, FEWEST = 4096, 128
-# Instants of one series from which on looking for cells pays.
-ENOUGH = 1024
 # Of the terms' magnitudes, what may be left out; and what of the largest number of its kind is none at all:
 # rates that are solved for together share that much of each other's rounding.
 LEFT_OUT, SHARED = UNIT_ROUNDOFF / 8.0, 8.0 * EPS
@@ -66,7 +63,7 @@ HALFWAY = 2.0**-30
 TOGETHER = 2**18
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Cells:
     """Cells of instants, a number each.
 
@@ -125,84 +122,6 @@ class _Cells:
         )
 
 
-@dataclass(frozen=True)
-class _Laws:
-    """The laws of the chassis in cells.
-
-    Attributes:
-        derivatives: of them, that are reported.
-        coefficients: by law, of the powers, highest first, (cells, derivatives, DEGREE + 1).
-        smooth: by law, in which cells it is taken from these.
-    """
-
-    chassis: ChassisMotion
-    derivatives: tuple[int, ...]
-    coefficients: Mapping[str, Array]
-    smooth: Mapping[str, NDArray[np.bool_]]
-
-    @classmethod
-    def of(cls, chassis: ChassisMotion, derivatives: tuple[int, ...], cells: _Cells, times: Array) -> _Laws:
-        """Work them out.
-
-        Raises:
-            InputOutOfRange: as `ChassisMotion.law`.
-        """
-        points, moved = cells.points(times)
-        coefficients, smooth = {}, {}
-        for name, function in chassis.functions.items():
-            law = chassis.law(name, points.ravel(), derivatives[-1])[list(derivatives)]
-            values = law.reshape(-1, *points.shape)
-            found = interpolation(DEGREE).chebyshev(values, moved)
-            size, least = np.abs(values).max(axis=-1), np.abs(values).min(axis=-1)
-            rounding = np.stack([function.rounding(points.ravel(), d) for d in derivatives])
-            own = rounding.reshape(values.shape).min(axis=-1)
-            # What a law does not round by itself, as a spline, is meant as it is computed, digit by digit;
-            # so one whose derivatives jump is never a polynomial here.
-            kept = (own > 0.0) & (UNIT_ROUNDOFF * size <= 2.0 * np.maximum(UNIT_ROUNDOFF * least, own))
-            kept |= (values == values[..., :1]).all(axis=-1)
-            falling = np.abs(found[..., DEGREE // 2 + 1 :]).max(axis=-1) <= HALFWAY * size
-            smooth[name] = (kept & falling).all(axis=0)
-            coefficients[name] = _of_powers(found)
-        return cls(chassis, derivatives, coefficients, smooth)
-
-    def added_to(self, coefficients: Array, added: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Coefficients of rows with what stands added and, where all laws have some, what the laws add.
-
-        Args:
-            coefficients: (cells, rows, DEGREE + 1). added: (rows, laws x derivatives + 1).
-        Returns:
-            The coefficients, and in which cells the laws are in them.
-        """
-        count, smooth = len(self.derivatives), np.ones(len(coefficients), dtype=bool)
-        for name in self.chassis.functions:
-            smooth &= self.smooth[name]
-        found = coefficients.copy()
-        found[..., -1] += added[:, -1]
-        for i, name in enumerate(self.chassis.functions):
-            found[smooth] += added[:, i * count : (i + 1) * count] @ self.coefficients[name][smooth]
-        return found, smooth
-
-    def put(self, first: int, ends: Sequence[int], times: Array, powers: Array, out: Array) -> None:
-        """The laws at the instants of some cells, a row for each derivative of each law.
-
-        Args:
-            first: the first cell's number. ends: where the instants of each begin, and their end.
-            powers: of the instants' places in the cells, highest first, (DEGREE + 1, N).
-        """
-        count = len(self.derivatives)
-        for i, name in enumerate(self.chassis.functions):
-            rows = out[i * count : (i + 1) * count]
-            smooth = self.smooth[name][first : first + len(ends) - 1]
-            rough = np.repeat(~smooth, np.diff(ends))
-            if rough.any():
-                rows[:, rough] = self.chassis.law(name, times[rough], self.derivatives[-1])[
-                    list(self.derivatives)
-                ]
-            for cell in np.flatnonzero(smooth).tolist():
-                here = slice(ends[cell], ends[cell + 1])
-                np.matmul(self.coefficients[name][first + cell], powers[:, here], out=rows[:, here])
-
-
 def _of_powers(chebyshev: Array) -> Array:
     """Coefficients of powers, highest first, of each cell, from those of Chebyshev's polynomials.
 
@@ -216,7 +135,7 @@ def _of_powers(chebyshev: Array) -> Array:
     return np.ascontiguousarray(np.moveaxis(chebyshev @ interpolation(DEGREE).powers, 1, 0)[..., ::-1])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CloseInstants:
     """A way to fill a table where many instants lie close together.
 
@@ -244,7 +163,7 @@ class CloseInstants:
 
     def _fill(self, times: Array, rows: Array) -> list[Stretch]:
         whole = [(0, len(times))]
-        if len(times) < ENOUGH or not (times[0] >= self.solved.start and times[-1] <= self.solved.stop):
+        if not (times[0] >= self.solved.start and times[-1] <= self.solved.stop):
             return whole
         cells = self._cells(times)
         if not len(cells):
@@ -346,14 +265,13 @@ class CloseInstants:
         table, still, added = self.solved.readout.table, self.solved.readout.table.first_still, self._added
         coefficients, good = self._coefficients(cells, times)
         cells, coefficients = cells.chosen(good), coefficients[good]
-        laws = _Laws.of(self.solved.readout.chassis, table.reported, cells, times)
         terms = {row: np.flatnonzero(added[row, :-1]).tolist() for row in range(still, table.height)}
         stands = [row for row, own in terms.items() if not own]
         carried = [(row, own[0], own[1:]) for row, own in terms.items() if own]
         for low, high in cells.stretches():
             for row in stands:
                 rows[row, low:high] = added[row, -1]
-        whole, smooth = laws.added_to(coefficients, added[:still])
+        coefficients[..., -1] += added[:still, -1]
         room = np.ones((DEGREE + added.shape[-1], MOST))
         middle, half = cells.middle.tolist(), cells.half.tolist()
         spans = list(zip(cells.low.tolist(), cells.high.tolist(), strict=True))
@@ -366,15 +284,12 @@ class CloseInstants:
                 power[1, start:end] /= half[cell]
             for known in (1, 2, 4):
                 np.multiply(power[1 : known + 1], power[known], out=power[known + 1 : 2 * known + 1])
-            laws.put(first, ends, here, room[: DEGREE + 1, : ends[-1]], room[DEGREE + 1 :, : ends[-1]])
+            room[DEGREE + 1 :, : ends[-1]] = self._laws(here)
             for cell, (start, end) in enumerate(pairwise(ends), first):
                 low, high = spans[cell]
-                basis, own = room[: DEGREE + 1, start:end], room[DEGREE + 1 :, start:end]
-                if smooth[cell]:
-                    narrow_product(whole[cell], basis, rows[:still, low:high])
-                else:
-                    matrix = np.concatenate([whole[cell], added[:still, :-1]], axis=-1)
-                    narrow_product(matrix, room[:, start:end], rows[:still, low:high])
+                basis, own = room[:, start:end], room[DEGREE + 1 :, start:end]
+                matrix = np.concatenate([coefficients[cell], added[:still, :-1]], axis=-1)
+                narrow_product(matrix, basis, rows[:still, low:high])
                 # A product of matrices takes three times as long for rows that have one law each.
                 for row, law, others in carried:
                     out = rows[row, low:high]
@@ -383,6 +298,16 @@ class CloseInstants:
                         out += own[other] * added[row, other]
                     out += added[row, -1]
         return cells
+
+    def _laws(self, times: Array) -> Array:
+        """The laws of the chassis at instants, a row for each derivative of each.
+
+        Raises:
+            InputOutOfRange: as `ChassisMotion.law`.
+        """
+        chassis, reported = self.solved.readout.chassis, self.solved.readout.table.reported
+        laws = [chassis.law(name, times, reported[-1])[list(reported)] for name in chassis.functions]
+        return np.concatenate(laws) if laws else np.empty((0, len(times)))
 
     def _coefficients(self, cells: _Cells, times: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Of the rows that are solved for or computed; and in which cells computed ones are polynomials."""

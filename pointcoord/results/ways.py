@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
-from pointcoord.results.cells import CloseInstants
 from pointcoord.results.solved_scene import Places, SolvedScene
 from pointcoord.solve.box import Box
 from pointcoord.solve.dense_output import SeriesRows, evaluate
@@ -21,6 +20,7 @@ from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain, last_magnitudes
 
 if TYPE_CHECKING:
+    from pointcoord.results.cells import CloseInstants
     from pointcoord.solve.pointwise import Solved
 
 Array = NDArray[np.float64]
@@ -28,9 +28,11 @@ Numbers = NDArray[np.intp]
 
 # A coefficient of many designs up to this, of places whose size is 1, is what rounding leaves of rounding.
 NOTHING = EPS**2
+# Instants of one series from which on looking for cells pays.
+ENOUGH = 1024
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class AtInstants(SolvedScene):
     """Solved at each instant by itself."""
 
@@ -78,7 +80,7 @@ class AtInstants(SolvedScene):
         return self.solved.left[np.searchsorted(self.solved.times, instants)]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ByChain(SolvedScene):
     """Summed from a chain of series, which many designs may share, at any instants inside it."""
 
@@ -153,14 +155,17 @@ class ByChain(SolvedScene):
 
     def fill(self, times: Array, rows: Array) -> None:
         """By cells where instants of one car lie close together, unless it turns, and by blocks elsewhere."""
-        left = [(0, len(times))]
-        if self.readout.mechanism.drawn.ndim == 1 and not self.readout.chassis.turns:
+        left, one = [(0, len(times))], self.readout.mechanism.drawn.ndim == 1
+        if one and len(times) >= ENOUGH and not self.readout.chassis.turns:
             left = self._close.fill(times, rows)
         for first, last in left:
             super().fill(times[first:last], rows[..., first:last])
 
     @cached_property
     def _close(self) -> CloseInstants:
+        # Imported here: few motions are read at so many instants.
+        from pointcoord.results.cells import CloseInstants
+
         return CloseInstants(self, self.chain)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
