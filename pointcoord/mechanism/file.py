@@ -49,7 +49,7 @@ def _closing(changes: dict[str, Any]) -> dict[str, Any]:
     return changes
 
 
-class _Part(BaseModel):
+class _Part(BaseModel, defer_build=True):
     """Another mechanism that is part of one."""
 
     mechanism: Annotated[Any, AfterValidator(_name_or_tables)]
@@ -57,7 +57,7 @@ class _Part(BaseModel):
     mirrored: StrictBool = False
 
 
-class _Others(BaseModel):
+class _Others(BaseModel, defer_build=True):
     """The tables beside those of a structure."""
 
     closures: dict[Name, Annotated[dict[Name, dict[Name, Any]], AfterValidator(_closing)]] = {}

@@ -96,7 +96,7 @@ class Input(BaseModel):
         moves_the_chassis: whether it moves the whole car, so that it holds no freedom of the mechanism.
     """
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, defer_build=True)
     unit: ClassVar[str] = "mm"
     length: ClassVar[str] = ""
     moves_the_chassis: ClassVar[bool] = False

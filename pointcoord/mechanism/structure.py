@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import combinations
 from typing import Annotated, Any
 
@@ -25,20 +25,22 @@ PAIR_ROLES = ("wheel_axis", "steering_axis", "front_and_rear", "damper")
 ROLES = ("knuckle", *PAIR_ROLES, "inboard")
 
 
-_PAIR: TypeAdapter[Role] = TypeAdapter(Pair)
-_NAME: TypeAdapter[Role] = TypeAdapter(Name)
+@cache
+def _reader(kind: Any) -> TypeAdapter[Any]:
+    """What reads a type, built when the first table is read."""
+    return TypeAdapter(kind)
 
 
-def _read(kind: TypeAdapter[Role], value: object, key: str) -> Role:
-    """What a key of a table holds, where no type says what it is.
+def _read(kind: Any, value: object, *key: str) -> Any:
+    """A value of a type; the key of a table that holds it, where no type says so.
 
     Raises:
-        TableFault: it is not of this kind.
+        TableFault: it is not of this type.
     """
     try:
-        return kind.validate_python(value)
+        return _reader(kind).validate_python(value)
     except ValidationError as error:
-        raise fault_of(error, (key,)) from None
+        raise fault_of(error, key) from None
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ def _slide(table: object) -> object:
     if "points" in table:
         return table
     others = {key: value for key, value in table.items() if key != "point"}
-    return {"points": (_read(_NAME, table["point"], "point"),), **others}
+    return {"points": (_read(Name, table["point"], "point"),), **others}
 
 
 def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
@@ -71,7 +73,7 @@ def _roles(roles: Mapping[str, Any]) -> dict[str, Role]:
         last = role.rpartition(".")[2]
         if last not in ROLES:
             raise no_such("role", role, ROLES, (role,))
-        found[role] = _read(_PAIR if last in PAIR_ROLES else _NAME, who, role)
+        found[role] = _read(Pair if last in PAIR_ROLES else Name, who, role)
     return found
 
 
@@ -261,9 +263,6 @@ def _with_lists(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-_READER = TypeAdapter(Structure)
-
-
 def structure_of(tables: Mapping[str, Any], name: str) -> Structure:
     """The tables as they stand, each entry read by itself; parts and closures are not looked at.
 
@@ -271,7 +270,5 @@ def structure_of(tables: Mapping[str, Any], name: str) -> Structure:
         TableFault: something has not the shape or type that it must have.
     """
     given = {table: tables[table] for table in CLOSING if tables.get(table) is not None}
-    try:
-        return _READER.validate_python({"name": name, **given})
-    except ValidationError as error:
-        raise fault_of(error) from None
+    found: Structure = _read(Structure, {"name": name, **given})
+    return found

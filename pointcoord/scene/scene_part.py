@@ -95,7 +95,7 @@ PlainTable = Annotated[dict[str, Any], BeforeValidator(_own_table)]
 class Part(BaseModel):
     """A part of a scene, frozen, and checked in whatever way it is made."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
     _checked: dict[str, Any] | None = PrivateAttr(None)
 
