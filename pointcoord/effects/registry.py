@@ -6,24 +6,17 @@ from collections.abc import Mapping
 
 from pointcoord.effects.ackermann import ACKERMANN
 from pointcoord.effects.angle import Angle
-from pointcoord.effects.angles_by_arcsine import ANGLES_BY_ARCSINE
 from pointcoord.effects.anti_features import ANTI_FEATURES
-from pointcoord.effects.arm_roll_centre import ARM_ROLL_CENTRE
-from pointcoord.effects.axle import AXLE
 from pointcoord.effects.car_number import CarNumber, CarNumbers
-from pointcoord.effects.damper import DAMPER
+from pointcoord.effects.centres import ARM_ROLL_CENTRE, AXLE, INSTANT_CENTRES, ROLL_CENTRE
+from pointcoord.effects.damper import DAMPER, MOTION_RATIO, SPRING
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.gradients import WAYS, gradients
-from pointcoord.effects.instant_centres import INSTANT_CENTRES
 from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.loads import LOADS
-from pointcoord.effects.motion_ratio import MOTION_RATIO
 from pointcoord.effects.point_states import POSITION, RATES
-from pointcoord.effects.roll_centre import ROLL_CENTRE
-from pointcoord.effects.screw_axis import SCREW_AXIS
-from pointcoord.effects.spring import SPRING
-from pointcoord.effects.steering_axis import STEERING_AXIS
-from pointcoord.effects.wheel_angles import CAMBER, CASTER, STEER_ANGLE, TOE, WHEEL_ANGLES
+from pointcoord.effects.steering_axis import SCREW_AXIS, STEERING_AXIS
+from pointcoord.effects.wheel_angles import ANGLES_BY_ARCSINE, CAMBER, CASTER, STEER_ANGLE, TOE, WHEEL_ANGLES
 from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 
 ALWAYS: tuple[Effect, ...] = (POSITION,)

@@ -2,12 +2,44 @@
 
 For the left wheel in the paper's axes kingpin angle and camber are its eqs. (16) and (17); `outboard` makes
 the right wheel its mirror image.
+
+With n the spin axis, of length 1, some programs have the arcsines -asin(n . up) and asin(n . forward) for
+camber and toe, where others project n into a plane first. Adams/Car's turning tables have this camber, up to
+0.18 degrees from the projected one at steering lock; OptimumK has this toe, 0.999229 degrees where the
+projected one is 1 and camber is 2.25.
 """
 
 from __future__ import annotations
 
-from pointcoord.effects.angle import Angle
-from pointcoord.effects.car_number import CarNumbers
+from typing import Any
+
+from pointcoord.effects.angle import WHEEL, Angle
+from pointcoord.effects.arithmetic import S, angle, root
+from pointcoord.effects.car_number import CarNumbers, Number
+from pointcoord.effects.corner import Corner
+
+
+def camber_by_arcsine(corner: Corner[S]) -> S:
+    """-asin(n . up)."""
+    up, forward, outboard = _components(corner)
+    return -angle(up, root(forward * forward + outboard * outboard))
+
+
+def toe_by_arcsine(corner: Corner[S]) -> S:
+    """asin(n . forward)."""
+    up, forward, outboard = _components(corner)
+    return angle(forward, root(up * up + outboard * outboard))
+
+
+def _components(corner: Corner[S]) -> tuple[S, S, S]:
+    view = corner.seen
+    return view.along(view.spin, "up"), view.along(view.spin, "forward"), view.along(view.spin, "outboard")
+
+
+def _arcsine(of: Angle, formula: Any) -> Number:
+    name, words = f"{of.name}_by_arcsine", f"{of.words} by arcsine"
+    return Number(name, words, of.sign, formula, needs_radius=False, quantity=WHEEL, power=0)
+
 
 LEAN = Angle(
     name="camber",
@@ -58,3 +90,9 @@ WHEEL_ANGLES = CarNumbers.of("wheel_angles", "camber and kingpin angle, rad", LE
 TOE = CarNumbers.of("toe", "toe angle, rad", POINTING)
 STEER_ANGLE = CarNumbers.of("steer_angle", "steer angle, rad", STEER)
 CASTER = CarNumbers.of("caster", "caster angle, rad", LEAN_REARWARD)
+ANGLES_BY_ARCSINE = CarNumbers.of(
+    "angles_by_arcsine",
+    "camber and toe as arcsines, rad",
+    _arcsine(LEAN, camber_by_arcsine),
+    _arcsine(POINTING, toe_by_arcsine),
+)
