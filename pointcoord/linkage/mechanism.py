@@ -18,7 +18,7 @@ from pointcoord.errors import InputOutOfRange, UnknownName
 from pointcoord.linkage.carried_points import carried_gain, carried_place
 from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.layout import Layout
-from pointcoord.linkage.topology import Topology
+from pointcoord.linkage.topology import Piece, Topology
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.partial_map import PartialMap, moving_part
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -107,6 +107,27 @@ class Mechanism:
             places = (found[carrier] for carrier in carriers)
             found[name] = carried_place(self.carrier_weights[name], *places)
         return found
+
+    def turned_over(self, y: Array) -> tuple[NDArray[np.bool_], tuple[Piece, Piece] | None]:
+        """Poses y, (..., size), in which two pieces of a line turn over from the drawing, and such a pair.
+
+        A drawing need not be assembled: its points are put on one line first. Pieces that are drawn more than
+        a right angle apart, each in its own direction, would turn over against each other on the way, and
+        nothing tells which of them was meant.
+        """
+        pairs, places = self.topology.paired_pieces
+
+        def along(coordinates: Array) -> Array:
+            """Signs of the scalar products of each pair, (..., pairs)."""
+            ends = coordinates[..., places]
+            edges = ends[..., 1, :] - ends[..., 0, :]
+            return np.asarray(np.sign((edges[..., 0, :] * edges[..., 1, :]).sum(axis=-1)))
+
+        flipped = np.broadcast_to(along(self.drawn) != along(y), (*y.shape[:-1], len(pairs)))
+        bad = np.asarray(flipped.any(axis=-1))
+        if not bad.any():
+            return bad, None
+        return bad, pairs[int(np.argmax(flipped.reshape(-1, len(pairs)).any(axis=0)))]
 
     def known_series(self, inputs: Mapping[str, Array]) -> Array:
         """Series of all known coordinates from the series of the inputs.

@@ -20,9 +20,9 @@ from pointcoord.errors import MechanismError
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
-from pointcoord.linkage.constraints.kept_turn import KeptTurn
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
+from pointcoord.linkage.constraints.scalar_product import KeptTurn
 from pointcoord.linkage.directions import DIRECTIONS, axis_along, car_directions
 from pointcoord.linkage.drives import Drive, Travel, TurnedBy
 from pointcoord.linkage.topology import Sliding, Topology

@@ -15,6 +15,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BeforeValidator, StrictBool, TypeAdapter, ValidationError
 
+from pointcoord.linkage.directions import DIRECTIONS
 from pointcoord.mechanism.faults import TableFault, fault_of, known_keys, no_such
 from pointcoord.mechanism.inputs import CHASSIS, Distinct, Input, Name, Names, Pair, Role, input_of, renamed
 
@@ -272,3 +273,34 @@ def structure_of(tables: Mapping[str, Any], name: str) -> Structure:
     given = {table: tables[table] for table in CLOSING if tables.get(table) is not None}
     found: Structure = _read(Structure, {"name": name, **given})
     return found
+
+
+def joints_in_words(structure: Structure) -> Iterator[str]:
+    """Every ball joint, hinge, slide and rod, one a line."""
+    for one, other in combinations(structure.bodies, 2):
+        shared = structure.shared(one, other)
+        if len(shared) == 1:
+            yield f"ball joint of {one} and {other} at {shared[0]}"
+        if len(shared) == 2:
+            yield f"hinge of {one} and {other} about {shared[0]} - {shared[1]}"
+    for name, slide in structure.slides.items():
+        yield _slide_in_words(name, slide)
+    for rod, (start, end) in structure.rods.items():
+        yield f"rod {rod} from {_end(structure, start)} to {_end(structure, end)}"
+
+
+def _slide_in_words(name: str, slide: Slide) -> str:
+    line = slide.along if slide.along in DIRECTIONS else f"towards {slide.along} as drawn"
+    turns = "" if slide.turns else ", and does not turn"
+    points = " and ".join(slide.points)
+    return f"slide {name}: {points} on the line of {slide.body} through {slide.through} {line}{turns}"
+
+
+def _end(structure: Structure, point: str) -> str:
+    bodies = structure.bodies_of(point)
+    return f"{point} ({', '.join(bodies)})" if bodies else point
+
+
+def bodies_in_words(structure: Structure) -> Iterator[str]:
+    """Every moving body with its points."""
+    return (f"{body}: {', '.join(points)}" for body, points in structure.bodies.items() if body != CHASSIS)

@@ -61,8 +61,7 @@ class Motion(Samples):
     def _repr_html_(self) -> str:
         """Numbers of the car, or places of points where it has none, at some of the instants."""
         # Imported here: only notebooks ask for it.
-        from pointcoord.results.html_table import html_table
-        from pointcoord.results.named_columns import columns
+        from pointcoord.results.named_columns import columns, html_table
 
         picked = np.unique(
             np.linspace(0, len(self.times) - 1, min(SHOWN, len(self.times))).round().astype(int)

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import AssemblyError
-from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.linear import Factors, factorise, smallest_left_singular_vector
@@ -85,7 +84,7 @@ def closed_drawings(
     factors = mechanism.drawn_factors if mechanism.drawn.ndim == 1 else None
     path = follow(mechanism.map, mechanism.drawn, own, factors, tolerance)
     stopped = _stopped(mechanism, path, own, path.done < 1.0, "the drawing cannot be assembled", instant)
-    turned, pair = turned_over(mechanism, path.y)
+    turned, pair = mechanism.turned_over(path.y)
     if pair is not None:
         one, other = (" - ".join(piece) for piece in pair)
         problem = f"the drawing can close in two ways, {one} turns over against {other} on the way"

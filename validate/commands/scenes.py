@@ -11,7 +11,7 @@ from pointcoord.drawing_stands import Standing
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism.joints import bodies, joints
+from pointcoord.mechanism.structure import bodies_in_words, joints_in_words
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import effort
@@ -100,8 +100,8 @@ def _mechanism(part: MechanismPart) -> list[str]:
         for name, one in structure.inputs.items()
         if name not in (part.driven or ()) and not one.moves_the_chassis
     ]
-    lines = [f"bodies: {'; '.join(bodies(structure))}", "joints:"]
-    lines += [f"  {joint}" for joint in joints(structure)]
+    lines = [f"bodies: {'; '.join(bodies_in_words(structure))}", "joints:"]
+    lines += [f"  {joint}" for joint in joints_in_words(structure)]
     lines.append(
         f"freedoms: {count}, held by {', '.join(topology.holding_inputs) or 'no input'}"
         + (f"; could be driven as well: {', '.join(others)}" if others else "")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.registry import QUANTITIES
-from pointcoord.results.html_table import html_table
+from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown

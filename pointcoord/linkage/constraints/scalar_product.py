@@ -1,4 +1,4 @@
-"""The scalar product of two vectors: kept as drawn, or driven."""
+"""The scalar product of two vectors: kept as drawn, or driven, or what keeps two bodies from turning."""
 
 from __future__ import annotations
 
@@ -8,12 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from pointcoord.linkage.constraints.constraint import Constraint, dot
+from pointcoord.linkage.directions import unit_pair
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
-from pointcoord.numerics.double_double import PAIRS, pair_dot
+from pointcoord.numerics.double_double import (
+    PAIRS,
+    Pair,
+    pair_cross,
+    pair_dot,
+    pair_product,
+    pair_quotient,
+    pair_sum,
+)
 from pointcoord.numerics.quadratic import Product, Row
 
 Edge = tuple[str, str]
+ONE: Pair = np.array(1.0), np.array(0.0)
 
 
 @dataclass(frozen=True)
@@ -62,3 +72,36 @@ class ScalarProduct(Constraint):
         u, v = drawing.edge(*self.one), drawing.edge(*self.other)
         size = np.sum(np.abs(u[0] * v[0]), axis=-1)
         return {self.drawn: Placed(*pair_dot(u, v), PAIRS * size)}
+
+
+@dataclass(frozen=True)
+class KeptTurn(ScalarProduct):
+    r"""u . v = k of an edge u of the one body and v of the other. One row.
+
+    Where the second body's line is drawn off the first one's, closing the drawing turns it onto that, and by
+    nothing about it: by the smallest rotation T of its unit vector m into that of the line l. With
+    c = l . m and w = m x l,
+
+        k = u . T v = c u . v + u . (w x v) + (u . w) (w . v) / (1 + c).
+
+    About l the product changes as l . (v x u), so the three may not lie in one plane.
+
+    Attributes:
+        line: of the first body, l. own: of the second one, m, in either sense.
+    """
+
+    line: Edge = ("", "")
+    own: Edge = ("", "")
+
+    def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
+        u, v = drawing.edge(*self.one), drawing.edge(*self.other)
+        line, own = (unit_pair(drawing.edge(*edge)) for edge in (self.line, self.own))
+        sense = np.where(pair_dot(line, own)[0] < 0.0, -1.0, 1.0)[..., None]
+        own = own[0] * sense, own[1] * sense
+        cosine, w = pair_dot(line, own), pair_cross(own, line)
+        along, across = pair_product(cosine, pair_dot(u, v)), pair_dot(u, pair_cross(w, v))
+        more = pair_quotient(pair_product(pair_dot(u, w), pair_dot(w, v)), pair_sum(ONE, cosine))
+        high, low = pair_sum(along, pair_sum(across, more))
+        # Each of the three is at most |u| |v|, and so is what each of some ten steps rounds.
+        size = np.linalg.norm(u[0], axis=-1) * np.linalg.norm(v[0], axis=-1)
+        return {self.drawn: Placed(high, low, 10.0 * PAIRS * size)}

@@ -16,10 +16,9 @@ from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.constraints.contact_height import ContactHeight
 from pointcoord.linkage.constraints.ground import Displaced, Ground, TurnedBack
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal, PointInBody
-from pointcoord.linkage.constraints.kept_turn import KeptTurn
 from pointcoord.linkage.constraints.link import Link
 from pointcoord.linkage.constraints.on_line import OnLine
-from pointcoord.linkage.constraints.scalar_product import ScalarProduct
+from pointcoord.linkage.constraints.scalar_product import KeptTurn, ScalarProduct
 from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map

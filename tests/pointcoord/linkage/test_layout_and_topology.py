@@ -5,7 +5,6 @@ import pytest
 from sample_cars import SampleCar, by_car
 
 from pointcoord import UnknownName
-from pointcoord.linkage.drawing_orientation import turned_over
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.needed_part import needed_mechanism, needed_topology
 from pointcoord.linkage.topology import Topology
@@ -81,11 +80,11 @@ def test_pieces_that_turn_over_are_found_in_each_car_and_the_first_such_pair_is_
         [0.0, 1e-3, 0.5], (40, 1)
     )
     expected = np.array([flips(mechanism, y) for y in poses]).reshape(40, len(pairs))
-    bad, pair = turned_over(mechanism, poses)
+    bad, pair = mechanism.turned_over(poses)
     assert bad.tolist() == expected.any(axis=1).tolist()
     assert pair == (pairs[int(np.flatnonzero(expected.any(axis=0))[0])] if expected.any() else None)
     for y, turned in zip(poses, expected, strict=True):
-        alone, its_pair = turned_over(mechanism, y)
+        alone, its_pair = mechanism.turned_over(y)
         assert alone.shape == ()
         assert bool(alone) == any(turned)
         assert its_pair == (pairs[list(turned).index(True)] if any(turned) else None)

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from pointcoord import Scene, simulate
-from pointcoord.results.html_table import html_table
+from pointcoord.results.named_columns import html_table
 from validate import compare
 
 
