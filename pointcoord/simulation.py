@@ -245,7 +245,7 @@ def solve_by_series(task: Task, *, hopeful: bool = True) -> SolvedScene:
     settings = replace(settings, hopeful=hopeful)
     chain = build_chain(mechanism, task.functions, task.start, time.start, time.stop, settings)
     notes = tolerance_notes(task.scene, mechanism)
-    return ByChain(task.readout, task.functions, chain, notes=notes)
+    return ByChain.of(task.readout, task.functions, chain, notes)
 
 
 def solve_by_map(task: Task, why: str = "") -> SolvedScene:
@@ -264,7 +264,7 @@ def solve_by_map(task: Task, why: str = "") -> SolvedScene:
     span, effort = (time.start, time.stop), task.method.map_effort
     way = map_way(mechanism, task.functions, task.start, *span, limits, effort)
     notes = (*((why,) if why else ()), *tolerance_notes(task.scene, mechanism), *way.notes)
-    solved = ByMap(readout, task.functions, way, time.start, notes=notes)
+    solved = ByMap.of(readout, task.functions, way, time.start, notes)
     return replace(solved, status=Status(_stop_of_map(task, solved))) if way.reason else solved
 
 
@@ -336,7 +336,7 @@ def _at_instants(task: Task) -> SolvedScene:
     allowed = pose_tolerance(task.scene, task.method, mechanism)
     solver = task.method.at_instants
     solved = solver(mechanism, task.functions, task.start, instants, plan.derivative, term, allowed)
-    return AtInstants(task.readout, task.functions, solved)
+    return AtInstants.of(task.readout, task.functions, solved)
 
 
 def _motion(task: Task, solved: SolvedScene) -> Motion | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
@@ -16,8 +17,10 @@ from pointcoord.patches.evaluation import sum_series
 from pointcoord.patches.patches import ProvenPatches
 from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import WayMap
+from pointcoord.results.readout import Readout
 from pointcoord.results.solved_scene import Places, SolvedScene
-from pointcoord.solve.status import COMPLETE, Status
+from pointcoord.solve.status import COMPLETE
+from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 
@@ -27,39 +30,29 @@ class ByMap(SolvedScene):
     """Patches along the way of the inputs composed with their laws (see `patches.evaluation`).
 
     Attributes:
-        way: the patches.
-        begun: when the motion starts, s.
-        status: whether they cover all of the way, and if not, what stopped it.
+        way: the patches; `stop` is the end of the part of it that they cover.
     """
 
     way: WayMap
-    begun: float
-    status: Status = COMPLETE
 
-    @property
-    def solving(self) -> Work:
-        """What making the patches took."""
-        return self.way.work + Work(segments=len(self.orders), series_orders=sum(self.orders))
-
-    @property
-    def orders(self) -> tuple[int, ...]:
-        """Of each patch."""
-        return (self.patches.order,) * len(self.patches.low)
+    @classmethod
+    def of(
+        cls,
+        readout: Readout,
+        functions: Mapping[str, TimeFunction],
+        way: WayMap,
+        start: float,
+        notes: tuple[str, ...],
+    ) -> ByMap:
+        """A motion from `start`, s, which is complete unless it is said what stopped it."""
+        orders = (way.patches.order,) * len(way.patches.low)
+        work = way.work + Work(segments=len(orders), series_orders=sum(orders))
+        return cls(readout, functions, COMPLETE, work, start, way.until, orders, way, notes=notes)
 
     @property
     def patches(self) -> ProvenPatches:
         """Those along the way."""
         return self.way.patches
-
-    @property
-    def start(self) -> float:
-        """When the motion starts."""
-        return self.begun
-
-    @property
-    def stop(self) -> float:
-        """The end of the part of the way that patches cover."""
-        return self.way.until
 
     def fill_moving(self, instants: Array, places: Places, rows: Array) -> None:
         """The patches have series of all points that move."""

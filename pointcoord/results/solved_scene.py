@@ -49,40 +49,24 @@ class SolvedScene(ABC):
 
     Attributes:
         functions: the laws of the inputs that drive the linkage.
+        status: whether it covers all that was asked for, and if not, what stopped the solver.
+        solving: what solving took.
+        start, stop: from when on and up to when it is known, s; infinite where it is not at all.
+        orders: of every series that it is summed from.
         notes: where it was not solved as the scene asks.
     """
 
     readout: Readout
     functions: Mapping[str, TimeFunction]
+    status: Status
+    solving: Work
+    start: float
+    stop: float
+    orders: tuple[int, ...]
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     dense: ClassVar[bool] = True
     """Whether it is known between the scene's instants too."""
-
-    @property
-    @abstractmethod
-    def status(self) -> Status:
-        """Whether it covers all that was asked for, and if not, what stopped the solver."""
-
-    @property
-    @abstractmethod
-    def solving(self) -> Work:
-        """What solving took."""
-
-    @property
-    @abstractmethod
-    def orders(self) -> tuple[int, ...]:
-        """Of every series that it is summed from."""
-
-    @property
-    @abstractmethod
-    def stop(self) -> float:
-        """Up to when it is known, s; minus infinity where it is not at all."""
-
-    @property
-    @abstractmethod
-    def start(self) -> float:
-        """From when on, s."""
 
     @abstractmethod
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:

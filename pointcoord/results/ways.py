@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
-from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
+from pointcoord.results.readout import Readout
 from pointcoord.results.solved_scene import Places, SolvedScene
 from pointcoord.solve.box import Box
 from pointcoord.solve.dense_output import SeriesRows, evaluate
-from pointcoord.solve.status import Status
 from pointcoord.solve.taylor import Chain, last_magnitudes
+from pointcoord.time_functions import TimeFunction
 
 if TYPE_CHECKING:
     from pointcoord.results.cells import CloseInstants
@@ -39,30 +39,11 @@ class AtInstants(SolvedScene):
     solved: Solved
     dense: ClassVar[bool] = False
 
-    @property
-    def status(self) -> Status:
-        """The solver's."""
-        return self.solved.status
-
-    @property
-    def solving(self) -> Work:
-        """The solver's."""
-        return self.solved.work
-
-    @property
-    def orders(self) -> tuple[int, ...]:
-        """There are no series."""
-        return ()
-
-    @property
-    def start(self) -> float:
-        """The first instant."""
-        return float(self.solved.times[0]) if len(self.solved.times) else np.inf
-
-    @property
-    def stop(self) -> float:
-        """The last instant that was reached."""
-        return float(self.solved.times[-1]) if len(self.solved.times) else -np.inf
+    @classmethod
+    def of(cls, readout: Readout, functions: Mapping[str, TimeFunction], solved: Solved) -> AtInstants:
+        """From the first instant to the last one that was reached."""
+        first, last = solved.times[[0, -1]].tolist() if len(solved.times) else (np.inf, -np.inf)
+        return cls(readout, functions, solved.status, solved.work, first, last, (), solved)
 
     def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
         """As they were solved for."""
@@ -86,30 +67,19 @@ class ByChain(SolvedScene):
 
     chain: Chain
 
-    @property
-    def status(self) -> Status:
-        """The solver's."""
-        return self.chain.status
-
-    @property
-    def solving(self) -> Work:
-        """The solver's."""
-        return self.chain.work
-
-    @property
-    def orders(self) -> tuple[int, ...]:
-        """Of each segment."""
-        return tuple(segment.order for segment in self.chain.segments)
-
-    @property
-    def start(self) -> float:
-        """Of the chain."""
-        return self.chain.segments[0].start if self.chain.segments else np.inf
-
-    @property
-    def stop(self) -> float:
-        """The end of the chain."""
-        return self.chain.stop if self.chain.segments else -np.inf
+    @classmethod
+    def of(
+        cls,
+        readout: Readout,
+        functions: Mapping[str, TimeFunction],
+        chain: Chain,
+        notes: tuple[str, ...] = (),
+    ) -> ByChain:
+        """As far as the chain goes."""
+        segments = chain.segments
+        ends = (segments[0].start, chain.stop) if segments else (np.inf, -np.inf)
+        orders = tuple(segment.order for segment in segments)
+        return cls(readout, functions, chain.status, chain.work, *ends, orders, chain, notes=notes)
 
     def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
         """The sums of their series."""

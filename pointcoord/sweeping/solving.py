@@ -263,7 +263,7 @@ class _Block:
         self._look_at_closing(members, mechanism, solved.closed)
         for each in solved.followed:
             readout = course.readout(mechanism.taken(each.numbers))
-            self._fill(ByChain(readout, functions, each.chain), scene.instants, members[each.numbers])
+            self._fill(ByChain.of(readout, functions, each.chain), scene.instants, members[each.numbers])
         moved = members[solved.solved]
         if len(moved):
             for words in tolerance_notes(scene, mechanism.taken(int(solved.solved[0]))):
