@@ -27,11 +27,6 @@ def cross(a: Array, b: Array) -> Array:
     )
 
 
-def axes_first_cross(a: Array, b: Array) -> Array:
-    """The same of shapes (3, ...)."""
-    return np.asarray(a[NEXT] * b[LAST] - a[LAST] * b[NEXT])
-
-
 def lengths(vectors: Array) -> Array:
     """|v| of shape (..., 3), shape (...)."""
     return np.asarray(np.sqrt(np.vecdot(vectors, vectors)))

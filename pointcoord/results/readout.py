@@ -29,6 +29,8 @@ mechanism's origin."""
 
 # Instants at a time: what is made on the way stays in a second-level cache, and is long enough for numpy.
 BLOCK = 4096
+# Instants of one series from which on looking for cells pays (see `cells`).
+ENOUGH = 1024
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.numerics.rounding import EPS
-from pointcoord.results.readout import Readout
+from pointcoord.results.readout import ENOUGH, Readout
 from pointcoord.results.solved_scene import Places, SolvedScene
 from pointcoord.solve.box import Box
 from pointcoord.solve.dense_output import SeriesRows, evaluate
@@ -28,8 +28,6 @@ Numbers = NDArray[np.intp]
 
 # A coefficient of many designs up to this, of places whose size is 1, is what rounding leaves of rounding.
 NOTHING = EPS**2
-# Instants of one series from which on looking for cells pays.
-ENOUGH = 1024
 
 
 @dataclass(frozen=True, eq=False)

@@ -73,20 +73,6 @@ def test_a_tie_rod_pushed_outward_behind_the_axle_turns_either_wheel_in() -> Non
         assert (np.diff(simulate(Scene.from_mapping(content)).wheel["toe"]) > 0.01).all()
 
 
-def test_axes_that_are_not_right_handed_are_told_where_the_front_is() -> None:
-    content = Scene.load("off-axis-strut").model_dump(mode="json", exclude_none=True) | {"effects": ["toe"]}
-    right_handed = simulate(Scene.from_mapping(content))
-    assert not any("wrong sign" in note for note in right_handed.notes)
-    # y to the left and z up, but x still rearward: the mirror image of a car in right-handed axes.
-    points = {name: [x, -y, z] for name, (x, y, z) in content["mechanism"]["points"].items()}
-    content["mechanism"] |= {"points": points, "right": [0.0, -1.0, 0.0]}
-    left_handed = simulate(Scene.from_mapping(content))
-    (note,) = (note for note in left_handed.notes if "may have the wrong sign" in note)
-    assert "toe, steer angle, caster" in note
-    assert "towards [1.0, 0.0, 0.0]" in note
-    assert left_handed.wheel["toe"] == pytest.approx(-right_handed.wheel["toe"], abs=1e-13)
-
-
 def topology(stand_ins: dict[str, str]) -> SimpleNamespace:
     """A linkage whose wheel turns about inner - centre, steered about low - high."""
     lines = {"wheel_axis": ("inner", "centre"), "steering_axis": ("low", "high")}

@@ -219,20 +219,6 @@ def test_every_force_is_proven_to_some_roundings(name: str) -> None:
             assert (proof.proven[quantity][number] <= 1e-11 * largest).all(), number
 
 
-@pytest.mark.parametrize(
-    ("mechanism", "words"),
-    [
-        ({"loads": {}}, "under \\[mechanism.loads\\]"),
-        ({"wheel_radius": None}, "no wheel_radius"),
-        ({"loads": {"left": UP}}, "loads.left"),
-        ({"roles": {}}, "stand beside|beside type"),
-    ],
-)
-def test_what_loads_need_is_said(mechanism: Mapping[str, Any], words: str) -> None:
-    with pytest.raises(SceneError, match=words):
-        loaded("pushrod", **{"loads": UP, **mechanism})
-
-
 def test_a_mechanism_that_is_held_twice_has_no_forces() -> None:
     content = Scene.load("bricard").model_dump(exclude_none=True)
     structure = Scene.from_mapping(content).mechanism.structure

@@ -145,7 +145,7 @@ def test_a_plan_refuses_unknown_effects() -> None:
         plan_effects(("velocty",))
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["series", "map", "newton"])
 @pytest.mark.parametrize(
     ("name", "points"),
     [

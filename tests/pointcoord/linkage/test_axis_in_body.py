@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from pointcoord.linkage.constraints.in_body import AxisInBody, Normal
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drawing import Drawing, Placed
+from validate.reference.vectors import Vector, cross, dot, minus, times
 
 Array = NDArray[np.float64]
-Vector = list[Fraction]
 U = 2.0**-53
 BODY = Normal("n", "base", "first", "second")
 AXIS = AxisInBody("axis", "tail", "head", BODY)
@@ -20,19 +20,8 @@ HELD = OnLine("end", "head", "axis", "axis", "held", "held", axis=AXIS)
 
 
 def exact(vector: Array) -> Vector:
-    return [Fraction(c) for c in vector.tolist()]
-
-
-def less(a: Vector, b: Vector) -> Vector:
-    return [p - q for p, q in zip(a, b, strict=True)]
-
-
-def dot(a: Vector, b: Vector) -> Fraction:
-    return sum((p * q for p, q in zip(a, b, strict=True)), Fraction(0))
-
-
-def cross(a: Vector, b: Vector) -> Vector:
-    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+    x, y, z = map(Fraction, vector.tolist())
+    return x, y, z
 
 
 def drawn(seed: int, place: str, height: float) -> dict[str, Array]:
@@ -62,9 +51,9 @@ def test_the_place_of_an_axis_in_its_body_is_right_to_its_stated_doubt(
     placed = AXIS.placed(Drawing(points, np.array(1.0)))
     direction, constants = placed["axis"], [placed[name] for name in AXIS.constants]
     base, first, second, tail, head = (exact(points[n]) for n in ("base", "first", "second", "tail", "head"))
-    scale = _scale(less(head, tail))
-    axis = [scale * c for c in less(head, tail)]
-    e1, e2 = less(first, base), less(second, base)
+    scale = _scale(minus(head, tail))
+    axis = times(minus(head, tail), scale)
+    e1, e2 = minus(first, base), minus(second, base)
     frame = [e1, e2, cross(e1, e2)]
     volume = dot(frame[0], cross(frame[1], frame[2]))
     for i in range(3):
@@ -83,10 +72,10 @@ def test_a_point_is_held_at_its_drawn_distance_on_its_drawn_side(seed: int, plac
     assume(np.linalg.norm(points["head"] - points["tail"]) > 1e-3)
     held = HELD.placed(Drawing(points, np.array(1.0)))["held"]
     tail, head, end = (exact(points[n]) for n in ("tail", "head", "end"))
-    scale = _scale(less(head, tail))
-    axis = [scale * c for c in less(head, tail)]
-    squared = dot(less(end, head), less(end, head)) / dot(axis, axis)
-    side = 1 if dot(less(end, head), axis) >= 0 else -1
+    scale = _scale(minus(head, tail))
+    axis = times(minus(head, tail), scale)
+    squared = dot(minus(end, head), minus(end, head)) / dot(axis, axis)
+    side = 1 if dot(minus(end, head), axis) >= 0 else -1
     found, lacks, doubt = _numbers(held)
     # found = side sqrt(squared) + e  gives  found^2 - squared = 2 found e - e^2
     error = ((found + lacks) ** 2 - squared) / (2 * (found + lacks)) if squared else found

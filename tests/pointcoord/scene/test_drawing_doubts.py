@@ -115,6 +115,7 @@ def test_a_car_drawn_forwards_is_doubted_whatever_side_it_is_said_to_be() -> Non
     (doubt,) = Scene.from_mapping(content).mechanism.doubts
     assert "toe, steer angle, caster" in doubt
     assert "may have the wrong sign" in doubt
+    assert "towards [-1.0, 0.0, 0.0]" in doubt
     content["mechanism"] |= {"right": [0.0, -1.0, 0.0], "side": "right"}
     assert Scene.from_mapping(content).mechanism.doubts == ()
 
