@@ -9,10 +9,11 @@ which is all that positions, velocities, accelerations and whole motions need.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import comb, factorial, perm
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,31 +33,50 @@ SMALL_ANGLE = 2.0**-27
 TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
 
 
-class TimeFunction(Protocol):
+class TimeFunction(ABC):
     """A scalar function of time that is analytic between its breaks.
 
     A coefficient too large for the arithmetic comes out infinite; whoever uses it must check.
     """
 
+    @abstractmethod
     def series(self, instants: ArrayLike, order: int) -> Array:
         """Coefficients about each instant, shape (..., order + 1), unit / s**k."""
-        ...
 
+    @abstractmethod
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
         """How far the computed value may be from the law's own, rounded once, shape (N,); or a derivative."""
-        ...
 
+    @abstractmethod
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """The law's own value and time derivatives, each (N,)."""
-        ...
 
     def enclosed(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
         """The law's own value and time derivatives, each rounded once, (N,).
 
         A series of the law does not round its value, so that is expected beside what `rounding` says.
         """
-        ...
+        values = enumerate(self.exact(instants, derivatives))
+        return [self._rounded_once(value, instants, derivative) for derivative, value in values]
 
+    def _rounded_once(self, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
+        """A value rounded to the nearest double: which one is certain, unless it lies next to a tie.
+
+        Next to a tie it may be either neighbour. Where twice the working precision tells less than the
+        computed value does, that is taken, and it may be a neighbour as well.
+        """
+        nearest, doubt = exact.high, exact.radius[0]
+        gap = 0.5 * np.abs(np.nextafter(nearest, np.copysign(np.inf, exact.low)) - nearest)
+        proven = np.where(np.abs(exact.low) + doubt < gap, 0.0, doubt + 2.0 * gap)
+        computed = factorial(derivative) * self.series(instants, derivative)[..., derivative]
+        coarse = self.rounding(instants, derivative)
+        neighbours = coarse + 2.0 * UNIT_ROUNDOFF * np.abs(computed)
+        sharp = proven <= neighbours
+        values = np.where(sharp, nearest, computed)
+        expected = coarse + UNIT_ROUNDOFF * np.abs(values)
+        return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
+
+    @abstractmethod
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
         """Between which numbers every computed value of it lies over spans of time, each (N,).
 
@@ -66,30 +86,20 @@ class TimeFunction(Protocol):
         Args:
             first, last: ends of each span, (N,), s; no break lies between them.
         """
-        ...
 
     @property
     def breaks(self) -> tuple[float, ...]:
         """Instants where a derivative jumps, s; a power series must not be used across them."""
-        ...
+        return ()
 
     @property
+    @abstractmethod
     def still(self) -> bool:
         """Whether it is constant by its form, whatever the instants."""
-        ...
-
-
-class Rounded:
-    """A time function whose own value is known in twice the working precision."""
-
-    def enclosed(self: TimeFunction, instants: Array, derivatives: int = 2) -> list[Enclosed]:
-        """See `TimeFunction`."""
-        values = enumerate(self.exact(instants, derivatives))
-        return [_rounded_once(self, value, instants, derivative) for derivative, value in values]
 
 
 @dataclass(frozen=True)
-class Polynomial(Rounded):
+class Polynomial(TimeFunction):
     """f(t) = sum_j coefficients[j] t^j.
 
     >>> Polynomial((1.0, 2.0, 3.0)).series(2.0, 2)  # value, rate and half the acceleration at 2 s
@@ -97,7 +107,6 @@ class Polynomial(Rounded):
     """
 
     coefficients: tuple[float, ...]
-    breaks: ClassVar[tuple[float, ...]] = ()  # analytic everywhere
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """Taylor shift: f_k = sum_{j >= k} binomial(j, k) c_j t^(j - k).
@@ -166,14 +175,13 @@ class Polynomial(Rounded):
 
 
 @dataclass(frozen=True)
-class Sine(Rounded):
+class Sine(TimeFunction):
     """f(t) = offset + amplitude sin(angular_frequency t + phase); rad/s and rad."""
 
     amplitude: float
     angular_frequency: float
     phase: float = 0.0
     offset: float = 0.0
-    breaks: ClassVar[tuple[float, ...]] = ()  # analytic everywhere
 
     def series(self, instants: ArrayLike, order: int) -> Array:
         """f_k = amplitude w^k sin(w t + phase + k pi / 2) / k!, plus the offset for k = 0."""
@@ -272,7 +280,7 @@ class Sine(Rounded):
 
 
 @dataclass(frozen=True)
-class Table(Rounded):
+class Table(TimeFunction):
     """The cubic spline through (times, values), not-a-knot at its ends.
 
     Its value, rate and acceleration are continuous; its third derivative jumps at the times, where it is that
@@ -344,7 +352,7 @@ class Table(Rounded):
 
 
 @dataclass(frozen=True)
-class Sum(Rounded):
+class Sum(TimeFunction):
     """f(t) = sum_i terms[i](t)."""
 
     terms: tuple[TimeFunction, ...]
@@ -392,24 +400,6 @@ class Sum(Rounded):
 def _factorials(order: int) -> Array:
     """k! for k from 0 to an order."""
     return np.array([float(factorial(k)) for k in range(order + 1)])
-
-
-def _rounded_once(law: TimeFunction, exact: Enclosed, instants: Array, derivative: int) -> Enclosed:
-    """A law's value rounded to the nearest double: which one is certain, unless it lies next to a tie.
-
-    Next to a tie it may be either neighbour. Where twice the working precision tells less than the computed
-    value does, that is taken, and it may be a neighbour as well.
-    """
-    nearest, doubt = exact.high, exact.radius[0]
-    gap = 0.5 * np.abs(np.nextafter(nearest, np.copysign(np.inf, exact.low)) - nearest)
-    proven = np.where(np.abs(exact.low) + doubt < gap, 0.0, doubt + 2.0 * gap)
-    computed = factorial(derivative) * law.series(instants, derivative)[..., derivative]
-    coarse = law.rounding(instants, derivative)
-    neighbours = coarse + 2.0 * UNIT_ROUNDOFF * np.abs(computed)
-    sharp = proven <= neighbours
-    values = np.where(sharp, nearest, computed)
-    expected = coarse + UNIT_ROUNDOFF * np.abs(values)
-    return Enclosed.of(values, 0.0, np.where(sharp, proven, neighbours), expected)
 
 
 def _middle_and_half(first: Array, last: Array) -> tuple[Array, Array]:

@@ -18,7 +18,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,21 +104,12 @@ class Loads(Effect):
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Tensions, (N,), and forces, (N, 3)."""
-        topology = poses.mechanism.topology
-
-        def corner(wheel: Wheel) -> Corner[Array]:
-            return corner_of(poses, wheel)
-
-        return _forces(topology, poses.axes, corner, poses.slopes, np.zeros_like, 1.0, np.asarray)
+        return _forces(poses, partial(corner_of, poses), np.zeros_like, 1.0, np.asarray)
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """From where each exactly is."""
-        topology, unit = poses.mechanism.topology, float(poses.mechanism.unit)
-
-        def corner(wheel: Wheel) -> Corner[Enclosed]:
-            return enclosed_corner(poses, wheel)
-
-        exact = _forces(topology, poses.axes, corner, poses.slopes, still, 1.0 / unit, Enclosed.of)
+        unit = float(poses.mechanism.unit)
+        exact = _forces(poses, partial(enclosed_corner, poses), still, 1.0 / unit, Enclosed.of)
         return {q: {n: each.errors(numbers[q][n]) for n, each in of.items()} for q, of in exact.items()}
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
@@ -165,10 +157,8 @@ def _held(topology: Topology) -> tuple[Wheel, ...]:
 
 
 def _forces(
-    topology: Topology,
-    axes: CarAxes,
+    poses: Poses | EnclosedPoses,
     corner: Callable[[Wheel], Corner[Any]],
-    slopes: Mapping[Way, Any],
     zero: Callable[[Any], Any],
     unit: float,
     constant: Callable[[Array], Any],
@@ -179,7 +169,8 @@ def _forces(
         zero: what has no derivative, as its slope. unit: mm in the unit of the corners. constant: plain
             numbers in their arithmetic.
     """
-    loaded = [(corner(Wheel(topology, part)), load) for part, load in axes.loads.items()]
+    topology, slopes = poses.mechanism.topology, cast("Mapping[Way, Any]", poses.slopes)
+    loaded = [(corner(Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
     damped = [(wheel, corner(wheel)) for wheel in _held(topology)]
 
     def along(way: Way) -> _Along:
