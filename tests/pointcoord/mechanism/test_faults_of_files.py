@@ -108,6 +108,8 @@ def test_a_type_that_is_misspelt_names_the_one_that_is_near() -> None:
         Scene.from_mapping({**SCENE, "mechanism": {**SCENE["mechanism"], "type": "none.toml"}})
     with pytest.raises(SceneError, match=r"mechanism\.type: this key is missing"):
         Scene.from_mapping({**SCENE, "mechanism": {"points": {}}})
+    with pytest.raises(SceneError, match="there are roles beside type = 'double_wishbone'"):
+        Scene.from_mapping({**SCENE, "mechanism": {**SCENE["mechanism"], "roles": {}}})
 
 
 def test_a_fault_of_tables_in_a_scene_has_the_key_of_the_scene() -> None:
