@@ -34,6 +34,8 @@ from absolute.solution import Array
 from absolute.vectors import EPS
 
 Number = Callable[[Motion], Dual]
+# A number of an axis, by its direction, upward, and the way from a place of it to the wheel centre.
+OfAxis = Callable[[Motion, Dual, Dual], Dual]
 
 OUTBOARD, REARWARD, UP = 0, 1, 2
 TIME = "time"
@@ -82,17 +84,52 @@ def travel(motion: Motion) -> Dual:
     return still.components(still.moved(_centre(still)))[UP]
 
 
-def scrub_radius(motion: Motion) -> Dual:
-    """Distance of contact point and steering axis at the ground, never negative."""
-    outboard, rearward, _ = _off_axis(motion, contact(motion))
-    return hypot(outboard, rearward)
+def steering(number: OfAxis) -> Number:
+    """A number of the steering axis."""
+    return lambda motion: number(motion, _along(motion, "steering_axis"), _from_lower(motion))
 
 
-def mechanical_trail(motion: Motion) -> Dual:
-    """Steering axis at the ground from the contact point, along the tyre's own forward."""
-    outboard, rearward, _ = _off_axis(motion, contact(motion))
+def screw(number: OfAxis) -> Callable[[Motion], Array]:
+    """The same of the screw axis.
+
+    Of a turn w and a velocity v of the wheel centre the way to it is v x w / w^2, but for its part along the
+    axis.
+    """
+
+    def of(motion: Motion) -> Array:
+        w, v = _screw(motion)
+        square = (w * w).sum(axis=0)
+        axis, off = (motion.corner.axes @ of for of in (w, np.cross(v, w, axis=0) / square))
+        return number(motion, constant(axis * np.sign(axis[UP])), constant(off)).value
+
+    return of
+
+
+def _level_with(axis: Dual, point: Dual) -> Dual:
+    """To a point from the place of an axis that is as high; `point` from any place of it."""
+    return point - axis * (point[UP] / axis[UP])
+
+
+def _at_ground(motion: Motion, axis: Dual, centre: Dual) -> Dual:
+    return _level_with(axis, centre + motion.components(contact(motion)))
+
+
+def mechanical_trail(motion: Motion, axis: Dual, centre: Dual) -> Dual:
+    """An axis at the ground from the contact point, along the tyre's own forward."""
+    outboard, rearward, _ = _at_ground(motion, axis, centre)
     spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis")
     return (rearward * spin_outboard - outboard * spin_rearward) / hypot(spin_outboard, spin_rearward)
+
+
+AXIS_LENGTHS: Mapping[str, OfAxis] = {
+    "kingpin_offset": lambda *of: _at_ground(*of)[OUTBOARD],
+    # Never negative.
+    "scrub_radius": lambda *of: hypot(_at_ground(*of)[OUTBOARD], _at_ground(*of)[REARWARD]),
+    "mechanical_trail": mechanical_trail,
+    "castor_offset": lambda *of: _at_ground(*of)[REARWARD],
+    "kingpin_offset_at_wheel": lambda motion, *of: _level_with(*of)[OUTBOARD],
+    "hub_trail": lambda motion, *of: -_level_with(*of)[REARWARD],
+}
 
 
 def camber_by_arcsine(motion: Motion) -> Dual:
@@ -121,12 +158,7 @@ LENGTHS: Mapping[str, Number] = {
     "contact_travel": lambda motion: _contact_moved(replace(motion, turns=()))[UP],
     "half_track_change": lambda motion: _contact_moved(motion)[OUTBOARD],
     "recession": lambda motion: _contact_moved(motion)[REARWARD],
-    "kingpin_offset": lambda motion: _off_axis(motion, contact(motion))[OUTBOARD],
-    "scrub_radius": scrub_radius,
-    "mechanical_trail": mechanical_trail,
-    "castor_offset": lambda motion: _off_axis(motion, contact(motion))[REARWARD],
-    "kingpin_offset_at_wheel": lambda motion: _off_axis(motion)[OUTBOARD],
-    "hub_trail": lambda motion: -_off_axis(motion)[REARWARD],
+    **{name: steering(number) for name, number in AXIS_LENGTHS.items()},
     "damper_length": lambda motion: hypot(*motion.line(*motion.corner.ends("damper"))),
 }
 
@@ -221,49 +253,10 @@ def screw_pitch(motion: Motion) -> Array:
     return np.asarray((w * v).sum(axis=0) / (w * w).sum(axis=0))
 
 
-def of_screw(number: Callable[[Motion, Array, Array], Array]) -> Callable[[Motion], Array]:
-    """A number of the screw axis, by its direction, upward, and the way from it to the wheel centre.
-
-    Of a turn w and a velocity v of the wheel centre that way is v x w / w^2, but for its part along the axis.
-    """
-
-    def of(motion: Motion) -> Array:
-        w, v = _screw(motion)
-        square = (w * w).sum(axis=0)
-        axis, off = (motion.corner.axes @ of for of in (w, np.cross(v, w, axis=0) / square))
-        return number(motion, axis * np.sign(axis[UP]), off)
-
-    return of
-
-
-def _level_with(axis: Array, point: Array) -> Array:
-    """To a point from the place of an axis that is as high; `point` from any place of it."""
-    return np.asarray(point - axis * (point[UP] / axis[UP]))
-
-
-def _at_ground(motion: Motion, axis: Array, off: Array) -> Array:
-    return _level_with(axis, off + motion.components(contact(motion)).value)
-
-
-def _trail(motion: Motion, axis: Array, off: Array) -> Array:
-    outboard, rearward, _ = _at_ground(motion, axis, off)
-    spin_outboard, spin_rearward, _ = _along(motion, "wheel_axis").value
-    level = np.hypot(spin_outboard, spin_rearward)
-    return np.asarray((rearward * spin_outboard - outboard * spin_rearward) / level)
-
-
-OF_SCREW: Mapping[str, tuple[str, Callable[[Motion, Array, Array], Array]]] = {
-    "screw_kingpin": ("rad", lambda motion, axis, off: np.arctan2(-axis[OUTBOARD], axis[UP])),
-    "screw_caster": ("rad", lambda motion, axis, off: np.arctan2(axis[REARWARD], axis[UP])),
-    "screw_kingpin_offset": ("mm", lambda *of: _at_ground(*of)[OUTBOARD]),
-    "screw_scrub_radius": ("mm", lambda *of: np.hypot(*_at_ground(*of)[:UP])),
-    "screw_mechanical_trail": ("mm", _trail),
-    "screw_castor_offset": ("mm", lambda *of: _at_ground(*of)[REARWARD]),
-    "screw_kingpin_offset_at_wheel": ("mm", lambda motion, *of: _level_with(*of)[OUTBOARD]),
-    "screw_hub_trail": ("mm", lambda motion, *of: -_level_with(*of)[REARWARD]),
-}
 OF_RACK: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
-    **{name: (unit, of_screw(number)) for name, (unit, number) in OF_SCREW.items()},
+    "screw_kingpin": ("rad", screw(lambda motion, axis, centre: arctan2(-axis[OUTBOARD], axis[UP]))),
+    "screw_caster": ("rad", screw(lambda motion, axis, centre: arctan2(axis[REARWARD], axis[UP]))),
+    **{f"screw_{name}": ("mm", screw(number)) for name, number in AXIS_LENGTHS.items()},
     "screw_pitch": ("mm/rad", screw_pitch),
 }
 OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
@@ -501,14 +494,9 @@ def _anti(motion: Motion, velocity: Array, share: str) -> Array:
     return 100.0 * part * sign * _ratio(velocity[REARWARD] * wheelbase, _rising(velocity) * height)
 
 
-def _off_axis(motion: Motion, beside: Dual | None = None) -> Dual:
-    """To the wheel centre, or a point beside it, from the point of the steering axis that is as high, by its
-    components, (3, N)."""
-    lower, _ = motion.corner.ends("steering_axis")
-    point = motion.line(lower, _centre(motion))
-    point = motion.components(point if beside is None else point + beside)
-    axis = _along(motion, "steering_axis")
-    return point - axis * (point[UP] / axis[UP])
+def _from_lower(motion: Motion) -> Dual:
+    """From the lower point of the steering axis to the wheel centre, by its components, (3, N)."""
+    return motion.components(motion.line(motion.corner.ends("steering_axis")[0], _centre(motion)))
 
 
 @dataclass(frozen=True)

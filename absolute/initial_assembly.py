@@ -60,10 +60,8 @@ def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
             f"closing the drawing moves {furthest!r} by {moved * drawing.size:.3g} mm; beyond "
             f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
             "meant: draw the points closer to an assembled pose",
-            None,
-            mechanism.named(mechanism.drawn_inputs.tolist()),
-            {},
-            moved * drawing.size,
+            inputs=_drawn_inputs(mechanism),
+            residual=moved * drawing.size,
         )
 
 
@@ -91,12 +89,10 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
         f"the drawing stands for two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
         "mm from closed, and which assembly is meant depends on which of its parts is put right, "
         "since a pose where both meet lies between; draw the points closer to an assembled pose",
-        None,
-        mechanism.named(mechanism.drawn_inputs.tolist()),
-        {},
-        largest,
-        float(drawn.condition[0]),
-        open_joints,
+        inputs=_drawn_inputs(mechanism),
+        residual=largest,
+        condition=float(drawn.condition[0]),
+        limits=open_joints,
     )
 
 
@@ -110,12 +106,10 @@ def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> Assembly
         f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
         f"{limited_by(limits)}"
         "draw the points closer to an assembled pose",
-        None,
-        mechanism.named(mechanism.drawn_inputs.tolist()),
-        {},
-        left,
-        float(reached.pose.condition[0]),
-        limits,
+        inputs=_drawn_inputs(mechanism),
+        residual=left,
+        condition=float(reached.pose.condition[0]),
+        limits=limits,
     )
 
 
@@ -163,11 +157,12 @@ def _drawn_pose(mechanism: Mechanism, target: Array) -> Configurations:
             "Look for points on one line that should not be (a steering arm on the strut axis, "
             "an arm along its own axis) or an input at its dead point; "
             f"{limited_by(limits)}move a point off it",
-            None,
-            mechanism.named(mechanism.drawn_inputs.tolist()),
-            {},
-            float("nan"),
-            float(drawn.condition[0]),
-            limits,
+            inputs=_drawn_inputs(mechanism),
+            condition=float(drawn.condition[0]),
+            limits=limits,
         )
     return drawn
+
+
+def _drawn_inputs(mechanism: Mechanism) -> dict[str, float]:
+    return mechanism.named(mechanism.drawn_inputs.tolist())

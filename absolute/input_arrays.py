@@ -31,17 +31,6 @@ def input_series(names: Sequence[str], inputs: Mapping[str, Array], orders: int)
     return np.stack(columns, axis=-1) if columns else np.zeros((0, orders, 0))
 
 
-def chassis_series(chassis: Array | None, count: int, orders: int) -> Array:
-    """(N, orders, 3): translation of the chassis and its rates; zeros for None.
-
-    Raises:
-        InputError: another shape or length, or not finite.
-    """
-    if chassis is None:
-        return np.zeros((count, orders, 3))
-    return checked("chassis", chassis, (orders, 3), count)
-
-
 def checked(name: str, values: object, shape: tuple[int, ...], count: int | None = None) -> Array:
     """A copy of `values` as floats of shape (N, *shape), finite throughout; N is `count` if that is given."""
     try:

@@ -2,10 +2,8 @@
 
 from collections.abc import Sequence
 from math import comb
-from typing import NamedTuple
 
 import numpy as np
-from numpy.lib.stride_tricks import as_strided
 
 from absolute.backend import pin
 from absolute.errors import DescriptionError
@@ -16,18 +14,6 @@ from absolute.solution import Array
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
-
-
-class Poses(NamedTuple):
-    """Poses of all bodies, the chassis first: rotation (..., bodies, 3, 3), origin (..., bodies, 3)."""
-
-    rotation: Array
-    origin: Array
-
-
-def address(array: Array) -> int:
-    """Where the first number of an array is kept."""
-    return int(array.ctypes.data)
 
 
 class Mechanism:
@@ -69,11 +55,8 @@ class Mechanism:
         self.pin_data = self.pin_model.createData()
         self.drawn = pin.neutral(self.pin_model)
         self.drawn.reshape(-1, 7)[:, :3] = self.drawing.origins[1:]
-        # Pinocchio keeps the placements one after the other, the universe first, each a rotation and the
-        # translation after it, column by column: a view reaches them all, and `poses` copies it out.
-        first, second = (placement.rotation for placement in list(self.pin_data.oMi)[:2])
-        apart = address(second) - address(first)
-        self._placements = as_strided(first, (bodies, 12), (apart, first.itemsize))
+        # Of all bodies, the universe first; they change with the data.
+        self._placements = list(self.pin_data.oMi)
         self._factors = np.array([drive.factor for drive in model.inputs])
         self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
         self.drawn_inputs = np.array([drive.drawn for drive in model.inputs])
@@ -82,16 +65,21 @@ class Mechanism:
         """(..., groups) signs of the determinants of Jacobians (..., rows, rows), group by group."""
         return signs_of(self.groups, jacobian)
 
-    def poses(self, q: Array) -> Poses:
-        """Poses of all bodies at configurations (..., 7 * moving bodies)."""
-        held = np.empty((*q.shape[:-1], *self._placements.shape))
-        model, data, placements = self.pin_model, self.pin_data, self._placements
-        each = zip(q.reshape(-1, model.nq), held.reshape(-1, *placements.shape), strict=True)
-        for one, found in each:
-            pin.forwardKinematics(model, data, one)
-            found[...] = placements
-        rotation = held[..., :9].reshape(*held.shape[:-1], 3, 3).swapaxes(-1, -2)
-        return Poses(rotation.copy(), held[..., 9:].copy())
+    def poses(self, q: Array) -> tuple[Array, Array]:
+        """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the chassis first, at configurations
+        (..., 7 * moving bodies)."""
+        lead, bodies = q.shape[:-1], len(self._placements)
+        rotation, origin = np.empty((*lead, bodies, 3, 3)), np.empty((*lead, bodies, 3))
+        each = (
+            q.reshape(-1, self.pin_model.nq),
+            rotation.reshape(-1, bodies, 3, 3),
+            origin.reshape(-1, bodies, 3),
+        )
+        for one, turned, moved in zip(*each, strict=True):
+            pin.forwardKinematics(self.pin_model, self.pin_data, one)
+            turned[...] = [placement.rotation for placement in self._placements]
+            moved[...] = [placement.translation for placement in self._placements]
+        return rotation, origin
 
     def spread(self, step: Array) -> Array:
         """(..., 6 * moving bodies) of unknowns (...): what is known is zero."""

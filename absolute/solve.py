@@ -10,7 +10,7 @@ from absolute.effects import TIME, effects_of, inputs_of, numbers_of
 from absolute.errors import AbsoluteError, InputError
 from absolute.follow import through
 from absolute.initial_assembly import assemble, locked
-from absolute.input_arrays import chassis_series, input_series, orders_of
+from absolute.input_arrays import checked, input_series, orders_of
 from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
@@ -138,7 +138,8 @@ class Assembled:
         driving = {n: law for n, law in inputs.items() if n not in model.turns or n in model.values}
         orders = orders_of(inputs)
         series = input_series(model.values, driving, orders)
-        carried = chassis_series(chassis, len(series), orders)
+        still = np.zeros((len(series), orders, 3))
+        carried = still if chassis is None else checked("chassis", chassis, (orders, 3), len(series))
         turns = turnings(model, inputs, len(series), orders)
         # Inputs that take the same value have a column each.
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]

@@ -1,4 +1,4 @@
-"""The shipped scenes as the model is given them, drawings near theirs, and where their points exactly are.
+"""The shipped scenes as the model is given them, and where their points exactly are.
 
 The reference, which says so, is held to closed forms and printed tables in tests/mechanisms.
 """
@@ -63,19 +63,3 @@ def off(solution: absolute.Solution) -> Array:
     """(N,) mm: points that miss their rows by the accuracy that is stated lie within so many times that."""
     assert solution.condition is not None
     return np.asarray(solution.accuracy * solution.condition)
-
-
-def redrawn(motion: Motion, random: np.random.Generator, spread: float) -> Motion:
-    """The mechanism with every point up to so many mm elsewhere, at random inputs near its drawing."""
-    points = {
-        name: np.array(place, float) + random.uniform(-spread, spread, 3)
-        for name, place in motion.plain["points"].items()
-    }
-    plain = motion.plain | {"points": points}
-    drawn = absolute.close_drawing(absolute.compile(plain)).inputs
-    widths = {name: 0.2 if "angle" in plain["inputs"][name] else 25.0 for name in motion.inputs}
-    inputs = {
-        name: np.array([[drawn[name], 0.0, 0.0]]) + width * random.uniform(-1.0, 1.0, (1, 3))
-        for name, width in widths.items()
-    }
-    return Motion(plain, inputs)

@@ -1,4 +1,4 @@
-"""Mechanisms from plain data: what each primitive means, on a crank and a rod, and redundant hinges."""
+"""Rows that follow from each other, and the digits of points that are drawn near each other."""
 
 from typing import Any
 
@@ -11,79 +11,11 @@ from shipped import EPS, Array, Motion, error, exact, off
 
 import absolute
 
-TURN: dict[str, Any] = {"turn": {"angle": "crank", "from": "drawing", "on": "chassis"}}
 
-
-def at(values: Any, rate: float = 0.0, second: float = 0.0) -> Array:
-    """Value, rate and acceleration at N instants."""
+def at(values: Any, rate: float = 0.0) -> Array:
+    """Value, rate and no acceleration at N instants."""
     values = np.asarray(values, dtype=float)
-    return np.stack([values, np.full_like(values, rate), np.full_like(values, second)], axis=-1)
-
-
-def plain(
-    bodies: dict[str, Any], points: dict[str, Any], inputs: dict[str, Any], **more: Any
-) -> dict[str, Any]:
-    """A mechanism that is no car."""
-    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0), "side": "left"}
-    return {"name": "mechanism", "bodies": bodies, "points": points, "inputs": inputs, **axes, **more}
-
-
-def crank(inputs: dict[str, Any]) -> dict[str, Any]:
-    """A crank of 300 mm about x, and beside it a rod of 700 mm to a point that slides to the right."""
-    points = {"a": (0, 0, 0), "b": (100, 0, 0), "end": (0, 180, 240)}
-    points["slide"] = (0, 180 + np.sqrt(700**2 - 240**2), 0)
-    bore = {"points": ["slide"], "body": "chassis", "through": "a", "along": "right", "turns": True}
-    more = {"rods": {"rod": ["end", "slide"]}, "slides": {"bore": bore}}
-    return plain({"chassis": ["a", "b"], "crank": ["a", "b", "end"]}, points, inputs, **more)
-
-
-def test_a_hinge_turns_from_the_drawing_by_any_number_of_turns() -> None:
-    turn = np.array([0.0, 1.0, 3.0, 7.0, 20.0, -50.0, -1.0])
-    motion = Motion(crank(TURN), {"turn": at(turn, 2.0, -3.0)}).solve(conditions=True)
-    angle = np.arctan2(240, 180) + turn
-    y, z = 300 * np.cos(angle), 300 * np.sin(angle)
-    root = np.sqrt(700**2 - z**2)
-    # y + sqrt(l^2 - z^2), with y' = -z w, z' = y w, w = 2, w' = -3.
-    y1, z1 = -2 * z, 2 * y
-    y2, z2 = 3 * z - 4 * y, -3 * y - 4 * z
-    root1 = -z * z1 / root
-    root2 = (-(z1**2) - z * z2 - root1**2) / root
-    for found, expected, fast in (
-        (motion.position, y + root, 1.0),
-        (motion.velocity, y1 + root1, 2.0),
-        (motion.acceleration, y2 + root2, 7.0),
-    ):
-        # The turns asked for are rounded, and so is this form.
-        rounding = 16 * EPS * (1.0 + np.abs(turn)) * np.abs(expected).max()
-        assert (np.abs(found["slide"][:, 1] - expected) <= fast * off(motion) + rounding).all()
-    assert np.allclose(motion.angular_velocity["crank"], [2.0, 0.0, 0.0], rtol=0, atol=1e-14)
-    assert set(motion.angular_velocity) == {"crank"}
-
-
-@pytest.mark.parametrize(
-    "given",
-    [
-        {"travel": ["bore"]},
-        {"distance": ["a", "slide"]},
-        {"height": "slide", "along": "right"},
-        {"height": "end"},
-        {"angle": "crank", "of": "end", "about": "a", "from": "up"},
-    ],
-    ids=["travel", "distance", "height along", "height", "angle"],
-)
-def test_every_input_leads_to_the_pose_that_the_turn_leads_to(given: dict[str, Any]) -> None:
-    turned = Motion(crank(TURN), {"turn": at([0.3], 0.5, -0.25)}).solve()
-    states = (turned.position, turned.velocity, turned.acceleration)
-    point, axis, drawn = ("end", 2, 240.0) if given.get("height") == "end" else ("slide", 1, 0.0)
-    if given.get("height") == "slide":
-        drawn = 180 + np.sqrt(700**2 - 240**2)
-    law = [of[point][0, axis] for of in states] - np.array([drawn, 0.0, 0.0])
-    if "angle" in given:
-        law = np.array([np.arctan2(180, 240) - 0.3, -0.5, 0.25])
-    motion = Motion(crank({"in": given}), {"in": law[None]}).solve(conditions=True)
-    for of, wanted in zip((motion.position, motion.velocity, motion.acceleration), states, strict=True):
-        for name in ("end", "slide"):
-            assert np.abs(of[name] - wanted[name]).max() <= 64 * off(motion)[0], name
+    return np.stack([values, np.full_like(values, rate), np.zeros_like(values)], axis=-1)
 
 
 def four_bar(tilt: float = 0.0, **more: Any) -> dict[str, Any]:
@@ -97,22 +29,9 @@ def four_bar(tilt: float = 0.0, **more: Any) -> dict[str, Any]:
         "coupler": ["p1", "q1", "p2", "q2"],
         "rocker": ["p2", "q2", "p3", "q3"],
     }
-    return plain(bodies, points, TURN, **more)
-
-
-def test_a_four_bar_of_hinges_follows_its_circles() -> None:
-    turn = np.linspace(-0.4, 0.9, 27)
-    motion = Motion(four_bar(), {"turn": at(turn, 1.0)}).solve(conditions=True)
-    pin = 50.0 * np.exp(1j * (np.arctan2(30, 40) + turn))
-    # The joint is where circles about the pin and about the other pivot meet, on the drawn side.
-    across = 150.0 - pin
-    coupler, rocker = np.hypot(120, 30), np.hypot(10, 60)
-    along = (coupler**2 - rocker**2 + np.abs(across) ** 2) / (2 * np.abs(across))
-    joint = pin + across / np.abs(across) * (along + 1j * np.sqrt(coupler**2 - along**2))
-    found = motion.position["p2"]
-    error = np.abs(found[:, 1] + 1j * found[:, 2] - joint)
-    assert (error <= off(motion) + 32 * EPS * 200.0).all()
-    assert np.abs(found[:, 0]).max() < 1e-12
+    inputs = {"turn": {"angle": "crank", "from": "drawing", "on": "chassis"}}
+    axes = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0), "side": "left"}
+    return {"name": "four-bar", "bodies": bodies, "points": points, "inputs": inputs, **axes, **more}
 
 
 @pytest.mark.parametrize(
@@ -132,26 +51,6 @@ def test_a_four_bar_whose_hinges_are_not_parallel_is_locked(
         Motion(bars, {"turn": at(turn, rate)}).solve(effects=effects)
     if tilt == 1e-10:
         assert Motion(bars, {"turn": at([0.0])}).solve(effects=["toe"]).effects
-
-
-def test_a_slide_of_two_points_of_one_body_may_turn_or_not() -> None:
-    points = {"a": (0, 0, 0), "b": (0, 100, 0), "c": (0, 300, 0), "d": (30, 350, 40), "e": (200, 300, 0)}
-    slide = {"points": ["b", "c"], "body": "chassis", "through": "a", "along": "right"}
-    bodies = {"chassis": ["a", "e"], "ram": ["b", "c", "d"]}
-    travel = {"out": {"travel": ["bore"]}}
-    fixed = plain(bodies, points, travel, slides={"bore": {**slide, "turns": False}})
-    motion = Motion(fixed, {"out": at([130.0])}).solve()
-    assert motion.position["d"][0] == pytest.approx([30.0, 380.0, 40.0], abs=1e-12)
-    free = plain(
-        bodies, points, travel | {"lift": {"height": "d"}}, slides={"bore": {**slide, "turns": True}}
-    )
-    motion = Motion(free, {"out": at([130.0]), "lift": at([-10.0])}).solve()
-    assert motion.position["d"][0] == pytest.approx([40.0, 380.0, 30.0], abs=1e-11)
-    # Drawn askew, the ram is laid into its bore by the smallest turn, in which its other points do not roll.
-    askew = fixed | {"points": points | {"c": (0, 300, 20)}}
-    closed = absolute.close_drawing(absolute.compile(askew)).position
-    assert closed["c"][[0, 2]] == pytest.approx([0.0, 0.0], abs=1e-12)
-    assert closed["d"][0] == pytest.approx(30.0, abs=1e-12)
 
 
 # Pairs of one body of the paper's strut.

@@ -9,13 +9,27 @@ import pytest
 from mechanism_files import plain_scene
 from one_arm import plain as one_arm
 from shipped import Array, Motion
-from test_mechanisms import TURN, crank
 
 import absolute
 from absolute import DescriptionError, InputError
 
+TURN: dict[str, Any] = {"turn": {"angle": "crank", "from": "drawing", "on": "chassis"}}
 STRUT = plain_scene("steer", ["arm_angle", "rack"])
 POINTS = STRUT["points"]
+
+
+def crank(inputs: dict[str, Any]) -> dict[str, Any]:
+    """A crank of 300 mm about x, and beside it a rod of 700 mm to a point that slides to the right."""
+    bore = {"points": ["slide"], "body": "chassis", "through": "a", "along": "right", "turns": True}
+    return {
+        "name": "crank",
+        "bodies": {"chassis": ["a", "b"], "crank": ["a", "b", "end"]},
+        "points": {"a": (0, 0, 0), "b": (100, 0, 0), "end": (0, 180, 240), "slide": (0, 837.6, 0)},
+        "rods": {"rod": ["end", "slide"]},
+        "slides": {"bore": bore},
+        "inputs": inputs,
+        **{"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0), "side": "left"},
+    }
 
 
 @pytest.fixture(autouse=True)
@@ -129,14 +143,14 @@ def test_exact_limit_of_the_motion_is_refused() -> None:
 # The ends of the range of doubles
 
 
-@pytest.mark.parametrize("value", [1.1e100, -1e154, 1e200, 1.7976931348623157e308])
+@pytest.mark.parametrize("value", [1.1e100, -1.7976931348623157e308])
 def test_a_huge_coordinate_is_refused_with_its_point_and_the_limit(value: float) -> None:
     for name, place in POINTS.items():
         points = POINTS | {name: (place[0], value, place[2])}
         assert refused(STRUT | {"points": points}, r"products .* overflow.*1e\+100 mm").name == name
 
 
-@pytest.mark.parametrize("value", [1e10, -1e15, 1e30, -1e60, 1e100])
+@pytest.mark.parametrize("value", [1e10, -1e30, 1e100])
 def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warning(value: float) -> None:
     for name, place in POINTS.items():
         for axis in range(3):
@@ -148,7 +162,7 @@ def test_one_coordinate_far_from_the_others_is_solved_or_refused_without_a_warni
             assert all(np.isfinite(array).all() for array in solution.acceleration.values())
 
 
-@pytest.mark.parametrize("factor", [5e-324, 1e-310, 1e-200, 1e-110, 0.0])
+@pytest.mark.parametrize("factor", [5e-324, 1e-110, 0.0])
 def test_a_car_too_small_for_products_of_its_lengths_is_refused(factor: float) -> None:
     refused(STRUT | {"points": {n: tuple(factor * x for x in p) for n, p in POINTS.items()}}, "1e-100 mm")
 
@@ -227,7 +241,7 @@ def test_a_turn_that_is_no_motion_is_refused_with_what_and_where(law: Array, wor
         Motion(one_arm(), {"turn": np.zeros((3, 3)), "steer": np.zeros((3, 3)), "roll": law}).solve()
 
 
-@pytest.mark.parametrize("instant", [0, 1, 100])
+@pytest.mark.parametrize("instant", [0, 100])
 @pytest.mark.parametrize(("name", "fast"), [("arm_angle", [1e200, 0.0]), ("rack", [1e300, 1e308])])
 def test_rates_too_large_for_floating_point_are_refused_with_their_instant(
     name: str, fast: list[float], instant: int
@@ -241,7 +255,7 @@ def test_rates_too_large_for_floating_point_are_refused_with_their_instant(
     assert (0 if kept is None else len(kept.residual)) == instant
 
 
-@pytest.mark.parametrize("fast", [1e-300, 1e6, 1e100, 1e152])
+@pytest.mark.parametrize("fast", [1e-300, 1e152])
 def test_rates_are_in_proportion_to_those_of_the_inputs(fast: float) -> None:
     def moving(scale: float) -> absolute.Solution:
         # Time runs faster by `scale`: rates by it, accelerations by its square.

@@ -34,3 +34,8 @@ def beside(axis: Array) -> Array:
     """A unit vector across a unit vector."""
     other = vector(np.eye(3)[np.argmin(np.abs(axis.astype(float)))])
     return unit(other - (other @ axis) * axis)
+
+
+def size(v: Sequence[Any]) -> Any:
+    """The length of a vector."""
+    return sqrt(sum(x * x for x in v))

@@ -10,6 +10,7 @@ from typing import Any
 from lotus_front import POINTS as LOTUS
 from plain_mechanisms import close_car, design_of, solve_car
 
+from validate.cars.paper_car import PAPER
 from validate.reference import Instant
 from validate.reference.design import Design, Known, values_only
 from validate.reference.vectors import Vector
@@ -17,19 +18,8 @@ from validate.reference.vectors import Vector
 Points = Mapping[str, Vector]
 Inputs = Mapping[str, tuple[Any, ...]]
 
-# The paper's Table 1, mm, left wheel. It does not close, and the paper has no point wheel_axis_inner.
-TABLE_1 = {
-    "lower_arm_front": (270, -5, -10),
-    "lower_arm_rear": (540, -10, -20),
-    "rack_centre": (570, 60, 90),
-    "strut_top": (460, -180, 470),
-    "lower_ball_joint": (450, -330, -40),
-    "tie_rod_outer": (560, -300, 60),
-    "strut_lower": (452, -320, 20),
-    "strut_rod_end": (456, -250, 246),
-    "tie_rod_inner": (570, 60, 90),
-    "wheel_centre": (452, -410, 20),
-}
+# Left wheel, in whole mm. It does not close, and the paper has no point wheel_axis_inner.
+TABLE_1 = {name: tuple(map(int, place)) for name, place in PAPER.items()}
 FRONT_AXLE = {
     "axle": "front",
     "wheelbase": 2600,

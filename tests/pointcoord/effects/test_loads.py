@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from guided_knuckle import guided_knuckle
-from hinged_knuckle import hinged_knuckle
+from knuckles_on_arms import guided_knuckle, hinged_knuckle
 from numpy.typing import NDArray
 
 from pointcoord import MapError, Motion, Scene, SceneError, kinematic_map, simulate

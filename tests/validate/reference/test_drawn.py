@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from exact_vectors import Points, numbers, size
+from many_digits import number, size
 from mpmath import mpf
 from plain_mechanisms import close_car
 from reference_cars import OFF_AXIS as CAR
+from reference_cars import Points
 
-from validate.reference.vectors import cross, dot, minus, plus, times
+from validate.reference.vectors import Vector, cross, dot, minus, plus, times
+
+
+def numbers(vector: Vector) -> Vector:
+    """Of many digits."""
+    return number(vector[0]), number(vector[1]), number(vector[2])
 
 
 def apart(one: Points, other: Points) -> mpf:

@@ -8,7 +8,7 @@ from typing import Any
 
 import mpmath
 import pytest
-from exact_vectors import size
+from many_digits import size
 from mpmath import mpf
 from plain_mechanisms import plain_mechanism
 from whole_numbers import WISHBONES

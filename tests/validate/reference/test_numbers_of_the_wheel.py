@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from exact_vectors import number
+from many_digits import number
 from mechanism_drawings import described
 from mechanism_files import plain_scene
 from mpmath import mpf
