@@ -117,3 +117,32 @@ def test_a_slide_whose_points_are_those_of_a_hinge_does_not_say_which_body_is_ke
     content["mechanism"]["points"]["tip"] = (points["above"] + 50.0).tolist()
     with pytest.raises(SceneError, match=r"of arm and of carriage, so that it is not said which of them"):
         Scene.from_mapping(content)
+
+
+@pytest.mark.parametrize("name", [*FORMULATIONS, "reference"])
+def test_an_angle_about_a_point_that_moves_is_measured_in_the_axes_of_the_car(name: str) -> None:
+    arm = {"angle": "fore", "of": "tip", "about": "elbow", "from": "up"}
+    points = {"hip": [0, 0, 0], "hip2": [90, 0, 0], "elbow": [0, 400, 0], "elbow2": [90, 400, 0]}
+    content: dict[str, Any] = {
+        "mechanism": {
+            "points": points | {"tip": [0, 600, 150]},
+            "bodies": {
+                "chassis": ["hip", "hip2"],
+                "upper": ["hip", "hip2", "elbow", "elbow2"],
+                "fore": ["elbow", "elbow2", "tip"],
+            },
+            "inputs": {"shoulder": {"angle": "upper", "from": "drawing"}, "fore": arm},
+            **{"up": [0, 0, 1], "right": [0, 1, 0], "side": "left"},
+        },
+        "inputs": {"shoulder": {"polynomial": [0.0, 0.5]}, "fore": {"polynomial": [0.75, 0.25]}},
+        "effects": [],
+        "time": {"start": 0.0, "stop": 1.0, "samples": 2},
+    }
+    scene = Scene.from_mapping(content)
+    places = (reference_solution if name == "reference" else formulation(name).solve)(scene).position
+    for shoulder, fore, elbow, tip in zip(
+        (0.0, 0.5), (0.75, 1.0), places["elbow"], places["tip"], strict=True
+    ):
+        upper = [0.0, 400.0 * np.cos(shoulder), 400.0 * np.sin(shoulder)]
+        assert elbow == pytest.approx(upper, abs=1e-12)
+        assert tip - elbow == pytest.approx([0.0, 250.0 * np.sin(fore), 250.0 * np.cos(fore)], abs=1e-11)
