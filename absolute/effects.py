@@ -276,30 +276,29 @@ OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
 }
 
 
+def derived(number: Number, by: str) -> Callable[[Motion], Array]:
+    """A number, or its change: for each mm of travel, all other inputs and the chassis held; for each mm of
+    the slide, all else held; for each second, as everything moves."""
+
+    def of(motion: Motion) -> Array:
+        found = number(motion)
+        if not by:
+            return found.value
+        slope = _slope(motion, found, by)
+        return _ratio(slope, _travelled(motion)) if by == "travel" else slope
+
+    return of
+
+
 def _wheel_effects() -> Iterator[tuple[str, Effect]]:
     for unit, numbers in (("rad", ANGLES), ("mm", LENGTHS)):
         for name, number in numbers.items():
-            yield name, Effect(unit, _value(number))
-            yield f"{name}_by_travel", Effect(f"{unit}/mm", _by_travel(number), "travel")
-            yield f"{name}_by_rack", Effect(f"{unit}/mm", _by(number, "rack"), "rack")
-            yield f"{name}_by_time", Effect(f"{unit}/s", _by(number, TIME), TIME)
+            yield name, Effect(unit, derived(number, ""))
+            for by, per in (("travel", "mm"), ("rack", "mm"), (TIME, "s")):
+                yield f"{name}_by_{by}", Effect(f"{unit}/{per}", derived(number, by), by)
     for by, table in (("travel", OF_VELOCITIES), ("rack", OF_RACK)):
         for name, (unit, value) in table.items():
             yield name, Effect(unit, value, by)
-
-
-def _value(number: Number) -> Callable[[Motion], Array]:
-    return lambda motion: number(motion).value
-
-
-def _by_travel(number: Number) -> Callable[[Motion], Array]:
-    """Its change for each mm of travel, all other inputs and the chassis held."""
-    return lambda motion: _ratio(_slope(motion, number(motion), "travel"), _travelled(motion))
-
-
-def _by(number: Number, by: str) -> Callable[[Motion], Array]:
-    """Its change for each mm of the slide, all else held, or for each second, as everything moves."""
-    return lambda motion: _slope(motion, number(motion), by)
 
 
 def track(left: Motion, right: Motion) -> Array:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from many_digits import DIGITS, vector
+from mechanism_closed_forms import NoPoseError, raised, turn
 from mechanism_files import mechanism_file, plain, plain_scene
 from mpmath import cos, mp, mpf, sqrt
 from shipped import EPS, Array, Motion, error, off, shipped
@@ -25,27 +26,14 @@ def at(**values: float) -> dict[str, Array]:
     return {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}
 
 
-def ball_joint(points: Any, angle: float) -> Any:
-    """The ball joint on its circle about the arm's axis, as high as the arm angle says; None beyond the ends.
-
-    The cosine of the arm angle is  (u_z (u . d) + rise radius w_z) / |d|,  with u the axis, d the arm,
-    and w the direction at a right angle to u that leads up.
-    """
+def ball_joint(angle: float) -> Any:
+    """The strut's, on its circle about the arm's axis; NoPoseError beyond the ends."""
     with mp.workdps(DIGITS):
         front, rear, ball = (
-            vector(points[n]) for n in ("lower_arm_front", "lower_arm_rear", "lower_ball_joint")
+            vector(STRUT["points"][f"lower_{n}"]) for n in ("arm_front", "arm_rear", "ball_joint")
         )
-        u, d, up = rear - front, ball - front, vector((0, 0, 1))
-        u = u / sqrt(u @ u)
-        level = np.cross(u, up)
-        level = level / sqrt(level @ level)
-        w, along = np.cross(level, u), u @ d
-        radius = sqrt(d @ d - along**2)
-        rise = (sqrt(d @ d) * cos(mpf(angle)) - u[2] * along) / (radius * w[2])
-        if abs(rise) >= 1:
-            return None
-        side = 1 if d @ level > 0 else -1
-        return front + u * along + (w * rise + level * side * sqrt(1 - rise**2)) * radius
+        height = sqrt((ball - front) @ (ball - front)) * cos(mpf(angle))
+        return turn((front, rear), raised(ball, (front, rear), height))(ball)
 
 
 @pytest.mark.parametrize(("end", "out"), [(0.5624915120982854, -1.0), (2.653128692580990, 1.0)])
@@ -55,7 +43,8 @@ def test_an_arm_goes_to_the_ends_of_the_circle_of_its_ball_joint_and_no_further(
 ) -> None:
     inside, beyond = end - by * out, end + by * out
     # 1e-13 is far beyond the rounding of the end itself, so there is no pose.
-    assert ball_joint(STRUT["points"], beyond) is None
+    with pytest.raises(NoPoseError):
+        ball_joint(beyond)
     with pytest.raises(absolute.PoseError) as refused:
         Motion(STRUT, at(arm_angle=beyond, rack=0.0)).solve()
     assert refused.value.limits[0] == ARM
@@ -65,10 +54,7 @@ def test_an_arm_goes_to_the_ends_of_the_circle_of_its_ball_joint_and_no_further(
     # hence to e of the order of eps times constants of the mechanism.
     assert abs(refused.value.reached["arm_angle"] - end) < 1e-10
     solution = Motion(STRUT, at(arm_angle=inside, rack=0.0)).solve(rates=False, conditions=True)
-    assert (
-        error(solution.position["lower_ball_joint"][0], ball_joint(STRUT["points"], inside))
-        <= off(solution)[0]
-    )
+    assert error(solution.position["lower_ball_joint"][0], ball_joint(inside)) <= off(solution)[0]
 
 
 # Racks of the paper's car at which tie rod and steering arm come to lie in line with the steering axis, and

@@ -115,14 +115,6 @@ def test_no_instants_give_an_empty_motion() -> None:
     assert empty.effects["toe"].shape == (0,)
 
 
-def test_many_near_instants_take_few_corrections_together() -> None:
-    """Predictions of second order leave at most four corrections, with no poses between."""
-    motion = shipped("bounce", 81)
-    iterations = motion.solve().iterations
-    assert iterations.min() >= 1
-    assert iterations[1:].max() <= 4
-
-
 def test_a_step_is_predicted_to_the_second_order(monkeypatch: pytest.MonkeyPatch) -> None:
     assembled, missed = absolute.Assembled(absolute.compile(shipped("bounce").plain)), list[float]()
 

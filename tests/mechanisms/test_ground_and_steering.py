@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mechanism_files import mechanism_file
 
 from pointcoord import Scene, SceneError, simulate
 from validate.adjudication.reference_solution import reference_solution
@@ -63,27 +64,17 @@ def axle(effects: tuple[str, ...] = (*ANGLES, "wheel_angles", "wheel_travel_by_t
 def steered(per_turn: float | None, effects: tuple[str, ...] = (*RATES, "toe", "toe_by_rack")) -> Scene:
     """A double wishbone by its steering wheel; without its travel per turn by the rack itself."""
     inputs = {"wheel_travel": {"height": "wheel_centre"}, "rack": {"travel": "rack"}}
-    laws: dict[str, Any] = {
-        "wheel_travel": {"polynomial": [0.0, 9.0]},
-        "rack": {"polynomial": [0.0, 8.0, 4.0]},
-    }
-    tables = {
-        n: v
-        for n, v in Scene.load("double-wishbone").mechanism.plain(()).items()
-        if n in ("bodies", "rods", "roles")
-    }
-    slide = {"point": "tie_rod_inner", "through": "rack_centre", "along": "left"}
-    part = {"side": "right", "points": WISHBONE["points"], **tables, "slides": {"rack": slide}}
-    part["stand_ins"] = {"rack_centre": "tie_rod_inner"}
+    rack = [0.0, 8.0, 4.0]
+    part = {**mechanism_file("double_wishbone"), "side": "right", "points": WISHBONE["points"]}
     if per_turn is not None:
         inputs["rack"] = {"steers": "rack"}
-        laws["rack"] = {"polynomial": [2.0 * np.pi / per_turn * c for c in (0.0, 8.0, 4.0)]}
+        rack = [2.0 * np.pi / per_turn * c for c in rack]
         part["rack_per_turn"] = per_turn
     return Scene.from_mapping(
         {
             "effects": effects,
-            "mechanism": {"title": "wishbone", **part, "inputs": inputs},
-            "inputs": laws,
+            "mechanism": {**part, "inputs": inputs},
+            "inputs": {"wheel_travel": {"polynomial": [0.0, 9.0]}, "rack": {"polynomial": rack}},
             "time": TIME,
         }
     )

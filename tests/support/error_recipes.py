@@ -27,21 +27,16 @@ from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.assemblies.legs import forms
 from validate.ci.baseline import read_baseline
-from validate.ci.scene_folder import scenes_below
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.table import Store as RowStore
 from validate.cost.table import measured_here
 from validate.cost.way import Answer
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
-from validate.curves.numbers import found, numbers_of
 from validate.fitting.fit import free_coordinates
 from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
-from validate.hard.catalogue import chosen
 from validate.hardpoint_files.axes import Axes
-from validate.html.folder import require_folder
-from validate.html.hard_cases import read_hard_cases
 from validate.measured.reading import columns_of_text
 from validate.output.columns import write_motion
 from validate.peers.in_pinocchio import InPinocchio
@@ -55,7 +50,6 @@ from validate.reference.route import closed
 from validate.solvers.check import check
 from validate.spanning_tree.cut import cut
 from validate.studies import cluster
-from validate.studies.store import look
 from validate.studies.study import Task
 
 BOUNCE = pointcoord.Scene.load("bounce")
@@ -68,15 +62,6 @@ HELD = {"arm_angle": np.array([[1.6, 0.0, 0.0]]), "rack": np.array([[0.0, 0.0, 0
 IN_LINE = {name: np.array([1.0, 2.0, 3.0]) * i for i, name in enumerate("abc")}
 # The arm's axis is level and the arm stands upright: the ball joint is on top of its circle.
 TOP = {"lower_arm_front": (0, 0, 0), "lower_arm_rear": (200, 0, 0), "lower_ball_joint": (0, -300, 0)}
-
-
-class Late:
-    """What a cluster works out that is gone."""
-
-    status = "closed"
-
-    def result(self) -> None:
-        raise TimeoutError
 
 
 class Recipe(NamedTuple):
@@ -315,10 +300,6 @@ RECIPES: dict[str, Recipe] = {
         lambda folder, _: read_baseline(str(folder / "none.npz")),
         ("none.npz", "No such file", "--save-baseline"),
     ),
-    "validate.errors.UsageError: a folder of scenes": Recipe(
-        lambda folder, _: scenes_below(str(folder)),
-        ("--scenes-dir", "holds no scene", ".toml"),
-    ),
     "validate.peers.errors.HardpointsError": Recipe(
         lambda *_: linkage_of(HINGE_OF_ONE_POINT),
         ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
@@ -390,27 +371,12 @@ RECIPES: dict[str, Recipe] = {
         ("singular", "condition number", "can be solved", "Look for points on one line"),
         {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
     ),
-    "validate.errors.UsageError: a number": Recipe(
-        lambda *_: found("cambr", numbers_of(BOUNCE)),
-        ("'cambr' names no number that is here (did you mean 'camber'?)", "there are: time, "),
-    ),
     "validate.cli.Answer": Recipe(lambda *_: cli._parsed(["--version"]), ("pointcoord ",)),
     "validate.errors.UsageError: a command": Recipe(
         lambda *_: cli._parsed(["simulat", "bounce"]),
         ("simulat", "did you mean 'simulate'?", "pointcoord --help"),
     ),
-    "validate.errors.UsageError: records": Recipe(
-        lambda folder, _: look(folder),
-        ("--records ", "holds no records of a study", "run the study first"),
-    ),
-    "validate.errors.UsageError: a cluster": Recipe(
-        lambda *_: cluster._require_scheduler(cluster.quiet_dask(), "far"),
-        ("the scheduler far does not answer", "give --scheduler an address"),
-    ),
-    "validate.studies.study.StudyStopped: its cluster": Recipe(
-        lambda *_: cluster._result(Late(), Late()), ("the scheduler", "does not answer any more")
-    ),
-    "validate.studies.study.StudyStopped: its task": Recipe(
+    "validate.studies.study.StudyStopped": Recipe(
         lambda *_: cluster.rows_of(lambda task: [][task.number], Task("held", 7), "here"),
         ("held 7: IndexError: ",),
     ),
@@ -480,28 +446,6 @@ RECIPES: dict[str, Recipe] = {
         lambda folder, _: write_motion(str(folder / "no" / "x.csv"), pointcoord.simulate(BOUNCE)),
         ("x.csv: cannot be written", "there is no folder"),
         {"target": lambda name: name.endswith("x.csv"), "problem": bool},
-    ),
-    "validate.errors.UsageError: a report's folder": Recipe(
-        lambda folder, _: (
-            (folder / "index.html").write_text("<p>mine</p>"),
-            require_folder(str(folder)),
-        ),
-        ("index.html: is no report of this program", "give another folder"),
-    ),
-    "validate.errors.UsageError: a file of hard cases": Recipe(
-        lambda folder, _: (
-            (folder / "hard.json").write_text('{"kind": "validate"}'),
-            read_hard_cases(str(folder / "hard.json")),
-        ),
-        ("hard.json: holds no hard cases", "allowed: a file that `pointcoord hard --json FILE` wrote"),
-    ),
-    "validate.errors.UsageError: an ending": Recipe(
-        lambda *_: write_motion("motion.xlsx", pointcoord.simulate(BOUNCE)),
-        ("motion.xlsx", "no known ending", "allowed: .csv, .npz, .parquet"),
-    ),
-    "validate.errors.UsageError: a hard case": Recipe(
-        lambda *_: chosen(["arm-higest"]),
-        ("no hard case is called 'arm-higest'", "near names: ", "--list"),
     ),
     "validate.assemblies.legs.NotOnLegsError": Recipe(
         lambda *_: forms({"roles": {}}, {}),

@@ -1,12 +1,12 @@
-"""Angles of a wheel and a steering axis that are leaned by hand: signs, limits, and what is proven."""
+"""Angles of a wheel and a steering axis: limits of the drawing, and what is proven.
+
+What they are, with their signs, is in tests/mechanisms.
+"""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, simulate
 from pointcoord.effects.corner import Wheel
@@ -20,57 +20,6 @@ UP, RIGHTWARD = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])  # x rearwa
 AXES = CarAxes(UP, RIGHTWARD, RIGHTWARD)
 LOW = np.array([10.0, 600.0, 100.0])
 CAMBER, KINGPIN = ANGLES["camber"], ANGLES["kingpin"]
-# About which axis a right wheel leans for its angle to grow, and from which direction.
-LEANS = {
-    "camber": (0, -1.0, RIGHTWARD),  # out at the top
-    "toe": (2, 1.0, RIGHTWARD),  # in at the front
-    "steer_angle": (2, 1.0, RIGHTWARD),  # to the left
-    "kingpin": (0, 1.0, UP),  # in at the top
-    "caster": (1, 1.0, UP),  # back at the top
-}
-
-
-@pytest.mark.parametrize("name", ANGLES)
-@settings(deadline=None, max_examples=40)
-@given(st.floats(-60.0, 60.0), st.floats(-1.0, 1.0), st.sampled_from([-1.0, 1.0]))
-def test_an_angle_is_how_far_its_line_was_leaned_on_either_side(
-    name: str, degrees: float, unseen: float, side: float
-) -> None:
-    axis, sense, start = LEANS[name]
-    about = np.eye(3)[axis]
-    # What the line has along the axis that it leans about is not seen.
-    line = Rotation.from_rotvec(sense * degrees * about, degrees=True).apply(start) + unseen * about
-    mirror = np.array([1.0, side, 1.0])
-    axes = CarAxes(UP, RIGHTWARD, side * RIGHTWARD)
-    found = ANGLES[name].value(LOW * mirror, (LOW + 300.0 * line) * mirror, axes)
-    # In at the front is to the left for a right wheel.
-    degrees *= side if name == "steer_angle" else 1.0
-    # A few roundings of coordinates up to 1000 over the length of 300.
-    assert found == pytest.approx(np.radians(degrees), abs=16 * EPS * 1000 / 300)
-
-
-def test_the_papers_formulas_for_the_left_wheel() -> None:
-    p5, p7, p10 = (
-        np.array(p) for p in ([450.0, -330.0, -40.0], [452.0, -320.0, 20.0], [452.0, -410.0, 25.0])
-    )
-    left = CarAxes(UP, RIGHTWARD, -RIGHTWARD)
-    # eqs. (16) and (17), in the quadrant where the arc tangent is its own branch
-    assert KINGPIN.value(p5, p7, left) == pytest.approx(np.arctan(10.0 / 60.0), abs=4 * EPS)
-    assert CAMBER.value(p7, p10, left) == pytest.approx(np.arctan(-5.0 / 90.0), abs=4 * EPS)
-
-
-def test_a_tie_rod_pushed_outward_behind_the_axle_turns_either_wheel_in() -> None:
-    scene = Scene.load("off-axis-strut")
-    points = scene.mechanism.points
-    assert points["tie_rod_outer"][0] > points["lower_ball_joint"][0]  # behind it
-    mirrored = {name: (x, -y, z) for name, (x, y, z) in points.items()}
-    # The rack's travel is along the car's left, which is outward for the left wheel.
-    for side, drawn, outward in (("left", dict(points), 1.0), ("right", mirrored, -1.0)):
-        content = scene.model_dump(mode="json", exclude_none=True) | {"effects": ["toe"]}
-        content["mechanism"] |= {"side": side, "points": drawn}
-        content["inputs"] = {"rack": {"polynomial": [0.0, 10.0 * outward]}, "arm_angle": {"constant": 1.63}}
-        content["time"] = {"start": 0.0, "stop": 1.0, "samples": 5}
-        assert (np.diff(simulate(Scene.from_mapping(content)).wheel["toe"]) > 0.01).all()
 
 
 def topology(stand_ins: dict[str, str]) -> SimpleNamespace:
