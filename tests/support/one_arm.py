@@ -4,7 +4,7 @@ The arm turns by t about the line from pivot to pivot_end and the carriage trave
 the arm is at  P + R(t) (p - P) + s d;  then the car turns. Derivatives are mpmath's.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -108,47 +108,56 @@ def place(name: str, values: Mapping[str, Any], turns: tuple[str, ...] = BOTH) -
     return p
 
 
-def numbers(effect: str, given: Mapping[str, list[float]], time: float) -> dict[str, mpf]:
-    """The numbers of an effect, the inputs being polynomials of time, rad and mm."""
+def numbers(effects: Sequence[str], given: Mapping[str, list[float]], time: float) -> dict[str, mpf]:
+    """The numbers of effects, the inputs being polynomials of time, rad and mm."""
     with mp.workdps(DIGITS):
+        cars = {by: _car(given, time, by) for by in ("steer", "turn")}
+        return {
+            n: one
+            for effect in effects
+            for of in by_hand(effect, cars["steer" if effect.endswith("_by_rack") else "turn"]).values()
+            for n, (one,) in of.items()
+        }
 
-        def law(t: Any) -> dict[str, Any]:
-            return {n: sum(mpf(c) * t**k for k, c in enumerate(law)) for n, law in given.items()}
 
-        here = law(mpf(time))
-        by = "steer" if effect.endswith("_by_rack") else "turn"
+def _car(given: Mapping[str, list[float]], time: float, by: str) -> Car:
+    """At a time, with what changes by an input."""
 
-        def slope(of: Callable[[Any], Any], at: Any) -> tuple[Any, ...]:
-            return tuple(diff(lambda x, i=i: of(x)[i], at) for i in range(3))
+    def law(t: Any) -> dict[str, Any]:
+        return {n: sum(mpf(c) * t**k for k, c in enumerate(law)) for n, law in given.items()}
 
-        def driven(name: str, turns: tuple[str, ...]) -> tuple[Any, ...]:
-            return slope(lambda x: place(name, {**here, by: x}, turns), here[by])
+    here = law(mpf(time))
 
-        def moved(name: str, turns: tuple[str, ...]) -> tuple[Any, ...]:
-            return slope(lambda t: place(name, law(t), turns), mpf(time))
+    def slope(of: Callable[[Any], Any], at: Any) -> tuple[Any, ...]:
+        return tuple(diff(lambda x, i=i: of(x)[i], at) for i in range(3))
 
-        points = plain()["points"]
-        hinge = place("pivot_end", here) - place("pivot", here)
-        zero = (mpf(0),) * 3
-        car = Car(
-            points={n: [tuple(place(n, here)), moved(n, BOTH)] for n in points},
-            added=[zero, zero],
-            turn=(zero, zero),
-            bodies=(),
-            wheel_axis=tuple(ROLES["wheel_axis"]),
-            steering_axis=tuple(ROLES["steering_axis"]),
-            damper=tuple(ROLES["damper"]),
-            wheel_radius=mpf(RADIUS),
-            in_chassis={n: tuple(place(n, here, ())) for n in points},
-            rates_in_chassis={n: moved(n, ()) for n in points},
-            drawn={n: tuple(vector(p)) for n, p in points.items()},
-            moving={n: driven(n, BOTH) for n in points},
-            moving_in_chassis={n: driven(n, ()) for n in points},
-            driven_turn=tuple(hinge / sqrt(hinge @ hinge)),
-            origin=zero,
-            data={n: mpf(v) for n, v in CAR.items() if n != "axle"} | {"axle": mpf(-1)},
-            up=(mpf(0), mpf(0), mpf(1)),
-            right=(mpf(0), mpf(1), mpf(0)),
-            outboard=(mpf(0), mpf(-1), mpf(0)),
-        )
-    return {n: one for of in by_hand(effect, car).values() for n, (one,) in of.items()}
+    def driven(name: str, turns: tuple[str, ...]) -> tuple[Any, ...]:
+        return slope(lambda x: place(name, {**here, by: x}, turns), here[by])
+
+    def moved(name: str, turns: tuple[str, ...]) -> tuple[Any, ...]:
+        return slope(lambda t: place(name, law(t), turns), mpf(time))
+
+    points = plain()["points"]
+    hinge = place("pivot_end", here) - place("pivot", here)
+    zero = (mpf(0),) * 3
+    return Car(
+        points={n: [tuple(place(n, here)), moved(n, BOTH)] for n in points},
+        added=[zero, zero],
+        turn=(zero, zero),
+        bodies=(),
+        wheel_axis=tuple(ROLES["wheel_axis"]),
+        steering_axis=tuple(ROLES["steering_axis"]),
+        damper=tuple(ROLES["damper"]),
+        wheel_radius=mpf(RADIUS),
+        in_chassis={n: tuple(place(n, here, ())) for n in points},
+        rates_in_chassis={n: moved(n, ()) for n in points},
+        drawn={n: tuple(vector(p)) for n, p in points.items()},
+        moving={n: driven(n, BOTH) for n in points},
+        moving_in_chassis={n: driven(n, ()) for n in points},
+        driven_turn=tuple(hinge / sqrt(hinge @ hinge)),
+        origin=zero,
+        data={n: mpf(v) for n, v in CAR.items() if n != "axle"} | {"axle": mpf(-1)},
+        up=(mpf(0), mpf(0), mpf(1)),
+        right=(mpf(0), mpf(1), mpf(0)),
+        outboard=(mpf(0), mpf(-1), mpf(0)),
+    )
