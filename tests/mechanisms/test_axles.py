@@ -203,20 +203,21 @@ CAR = {
 
 
 @by_each
-@pytest.mark.parametrize("side", SIDES)
-def test_each_wheel_of_an_axle_has_the_numbers_of_the_wheel_alone(who: str, side: str) -> None:
-    shipped = Scene.load("axle-steer").mechanism
-    own = {n.partition(".")[2]: p for n, p in shipped.points.items() if n.startswith(f"{side}.")}
+def test_each_wheel_of_an_axle_has_the_numbers_of_the_wheel_alone(who: str) -> None:
+    points = Scene.load("axle-steer").mechanism.points
     given = {"wheel_radius": RADIUS, "car": CAR}
-    alone = {"type": "double_wishbone", "side": side, "points": own, **given}
-    laws = {name.removeprefix(f"{side}."): law for name, law in LAWS.items()}
-    laws = {name: law for name, law in laws.items() if "." not in name}
-    effects = scene_of(alone, [], **laws).mechanism.effects
-    single = solved_by(who, scene_of(alone, effects, **laws))
-    both = solved_by(who, scene_of({"type": "axle", "points": shipped.points, **given}, effects, **LAWS))
-    for quantity, numbers in single.numbers.items():
-        claims = [one.accuracy.claims[quantity] for one in (single, both)]
-        for name, number in numbers.items():
-            there = f"{side}.{name}"
-            off = np.abs(both.numbers[quantity][there] - number)
-            assert (off <= claims[0][name] + claims[1][there]).all(), (quantity, name)
+    wheels = {}
+    for side in SIDES:
+        own = {n.partition(".")[2]: p for n, p in points.items() if n.startswith(f"{side}.")}
+        alone = {"type": "double_wishbone", "side": side, "points": own, **given}
+        laws = {"wheel_travel": LAWS[f"{side}.wheel_travel"], "rack": LAWS["rack"]}
+        effects = scene_of(alone, [], **laws).mechanism.effects
+        wheels[side] = solved_by(who, scene_of(alone, effects, **laws))
+    both = solved_by(who, scene_of({"type": "axle", "points": points, **given}, effects, **LAWS))
+    for side, single in wheels.items():
+        for quantity, numbers in single.numbers.items():
+            claims = [one.accuracy.claims[quantity] for one in (single, both)]
+            for name, number in numbers.items():
+                there = f"{side}.{name}"
+                off = np.abs(both.numbers[quantity][there] - number)
+                assert (off <= claims[0][name] + claims[1][there]).all(), (quantity, name)

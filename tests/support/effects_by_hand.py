@@ -192,32 +192,18 @@ def _slopes(base: Callable[[Car], Numbers], car: Car) -> dict[str, mpf]:
     return {name: (ahead[name][0] - behind[name][0]) / (2 * STEP) for name in ahead}
 
 
-def _by_rack(effect: str) -> Callable[[Car], Numbers]:
+def _derived(effect: str, by: str) -> Callable[[Car], Numbers]:
+    """The change of its numbers for each mm of the rack or of travel, or for each second."""
+
     def numbers(car: Car) -> Numbers:
         (quantity,) = BY_HAND[effect](car)
+        if by == "time":
+            rates = {name: states[1] for name, states in car.points.items()}
+            car = replace(car, moving=rates, moving_in_chassis=car.rates_in_chassis)
+        step = _slopes(_wheel_travel, car)["travel"] if by == "travel" else mpf(1)
         found = _slopes(BY_HAND[effect], car)
-        return {PER_MM[quantity]: {f"{name}_by_rack": [slope] for name, slope in found.items()}}
-
-    return numbers
-
-
-def _by_time(effect: str) -> Callable[[Car], Numbers]:
-    def numbers(car: Car) -> Numbers:
-        (quantity,) = BY_HAND[effect](car)
-        rates = {name: states[1] for name, states in car.points.items()}
-        over_time = replace(car, moving=rates, moving_in_chassis=car.rates_in_chassis)
-        found = _slopes(BY_HAND[effect], over_time)
-        return {PER_SECOND[quantity]: {f"{name}_by_time": [slope] for name, slope in found.items()}}
-
-    return numbers
-
-
-def _by_travel(effect: str) -> Callable[[Car], Numbers]:
-    def numbers(car: Car) -> Numbers:
-        (quantity,) = BY_HAND[effect](car)
-        travel = _slopes(_wheel_travel, car)["travel"]
-        found = _slopes(BY_HAND[effect], car)
-        return {PER_MM[quantity]: {f"{name}_by_travel": [slope / travel] for name, slope in found.items()}}
+        per = PER_SECOND if by == "time" else PER_MM
+        return {per[quantity]: {f"{name}_by_{by}": [slope / step] for name, slope in found.items()}}
 
     return numbers
 
@@ -382,14 +368,13 @@ DIFFERENTIATED = (
     "steering_axis",
     "damper",
 )
-BY_HAND |= {f"{name}_by_travel": _by_travel(name) for name in DIFFERENTIATED}
-BY_HAND |= {f"{name}_by_rack": _by_rack(name) for name in DIFFERENTIATED}
-BY_HAND |= {f"{name}_by_time": _by_time(name) for name in DIFFERENTIATED}
+BY_HAND |= {
+    f"{name}_by_{by}": _derived(name, by) for name in DIFFERENTIATED for by in ("travel", "rack", "time")
+}
 
 
 def by_hand(effect: str, car: Car) -> Numbers:
     """The numbers of an effect, by quantity and name; each a list of its components."""
     base, _, by = effect.rpartition("_by_")
-    differentiated = {"travel": _by_travel, "rack": _by_rack, "time": _by_time}
     with workdps(DIGITS):
-        return BY_HAND[effect](car) if effect in BY_HAND else differentiated[by](base)(car)
+        return (BY_HAND[effect] if effect in BY_HAND else _derived(base, by))(car)
