@@ -71,10 +71,11 @@ def test_every_number_of_a_turned_car_far_out_is_the_references_within_what_is_c
         assert row.tolerance < 1e-9 * max(1.0, size), row
 
 
-@pytest.mark.parametrize("along", ["down", "left", "forward", "rearward"])
-def test_absolute_displaces_the_car_along_any_direction(along: str) -> None:
+def test_absolute_displaces_the_car_along_every_direction_at_once() -> None:
     content = turning("double-wishbone").model_dump(exclude_none=True)
-    content["mechanism"]["inputs"]["heave"]["along"] = along
+    for speed, along in enumerate(("down", "left", "right", "forward", "rearward"), 1):
+        content["mechanism"]["inputs"][along] = {"moves": "chassis", "along": along}
+        content["inputs"][along] = {"polynomial": [5.0, 2.0**speed]}
     assert compare(Scene.from_mapping(content), "pointcoord", "absolute").agreed
 
 
