@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
-from absolute.solution import Array
-
 Places = NDArray[np.intp]
 
 
@@ -46,9 +44,3 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
         Group(np.flatnonzero(group[own] == one), np.flatnonzero(group[of_column] == one))
         for one in dict.fromkeys(group[1:])
     ]
-
-
-def signs_of(groups: list[Group], jacobian: Array) -> Array:
-    """(..., groups) signs of the determinants of the blocks of Jacobians (..., rows, rows)."""
-    blocks = (jacobian[..., rows[:, None], columns] for rows, columns in groups)
-    return np.stack([np.sign(np.linalg.det(block)) for block in blocks], axis=-1)

@@ -7,7 +7,7 @@ import numpy as np
 
 from absolute.backend import pin
 from absolute.errors import DescriptionError
-from absolute.groups import groups_of, signs_of
+from absolute.groups import groups_of
 from absolute.model import Model
 from absolute.rows import RowStack
 from absolute.solution import Array
@@ -63,7 +63,8 @@ class Mechanism:
 
     def signs(self, jacobian: Array) -> Array:
         """(..., groups) signs of the determinants of Jacobians (..., rows, rows), group by group."""
-        return signs_of(self.groups, jacobian)
+        blocks = (jacobian[..., rows[:, None], columns] for rows, columns in self.groups)
+        return np.stack([np.sign(np.linalg.det(block)) for block in blocks], axis=-1)
 
     def poses(self, q: Array) -> tuple[Array, Array]:
         """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the chassis first, at configurations

@@ -17,7 +17,7 @@ from absolute.model import Model
 from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates, velocities
 from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
-from absolute.turning import turnings
+from absolute.turning import Turning
 from absolute.vectors import EPS
 
 # Roundings of eps in the rate of a row, of its pose and its velocities, each as in its value (see `rows`).
@@ -140,15 +140,20 @@ class Assembled:
         series = input_series(model.values, driving, orders)
         still = np.zeros((len(series), orders, 3))
         carried = still if chassis is None else checked("chassis", chassis, (orders, 3), len(series))
-        turns = turnings(model, inputs, len(series), orders)
+        turns = [
+            (turn, checked(name, inputs[name], (orders,), len(series)))
+            for name, turn in model.turns.items()
+            if name in inputs
+        ]
         # Inputs that take the same value have a column each.
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
         runs = [Instants.none(orders - 1, len(mechanism.drawing.bodies), len(by))]
 
         def solution(count: int | None = None) -> Solution:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
-            turned = tuple(turn.first(len(found.residual)) for turn in turns)
-            motion = Motion(mechanism, found, carried[: len(found.residual)], turned, tuple(by))
+            there = len(found.residual)
+            turned = tuple(Turning(turn.about, turn.axis, angle[:there]) for turn, angle in turns)
+            motion = Motion(mechanism, found, carried[:there], turned, tuple(by))
             carried_by = forces(motion) if loads else {}
             return motion.solution(rates, conditions, effects=numbers_of(asked, motion), **carried_by)
 

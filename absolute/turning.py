@@ -14,14 +14,11 @@ whose rates are s and s', angular velocity w + R s and angular acceleration a + 
 next one takes what the one before has made. A displacement is added last.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import comb
 
 import numpy as np
 
-from absolute.input_arrays import checked
-from absolute.model import Model
 from absolute.solution import Array
 from absolute.vectors import carried
 
@@ -37,10 +34,6 @@ class Turning:
     about: Array
     axis: Array
     angle: Array
-
-    def first(self, count: int) -> "Turning":
-        """At the first instants alone."""
-        return replace(self, angle=self.angle[:count])
 
     @property
     def rotation(self) -> Array:
@@ -73,18 +66,3 @@ class Turning:
         seen = self.seen(arm)
         seen[0] += about
         return seen
-
-
-def turnings(model: Model, inputs: Mapping[str, Array], count: int, orders: int) -> tuple[Turning, ...]:
-    """The turns of a model that are given, in its order.
-
-    Args:
-        inputs: name -> (N, orders) angle and rates of some of them, among others. count: N.
-    Raises:
-        InputError: one is of another length, or not finite.
-    """
-    return tuple(
-        Turning(turn.about, turn.axis, checked(name, inputs[name], (orders,), count))
-        for name, turn in model.turns.items()
-        if name in inputs
-    )
