@@ -266,7 +266,7 @@ class Topology:
     @cached_property
     def fighting(self) -> tuple[str, ...]:
         """Inputs of rows that are more than the coordinates that they hold, however the car is drawn."""
-        rows = rows_too_many(self.map)
+        rows = rows_too_many(self.map.reads, self.map.unknowns)
         read = {coordinate for row in rows for coordinate in self.map.reads[row]}
         named = (drive.input for drive in self.drives if self.layout.scalar(drive.coordinate) in read)
         return tuple(dict.fromkeys(named))

@@ -18,7 +18,6 @@ batch have the blocks of the entries that any of them has, which is a block tria
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -112,27 +111,13 @@ class Substitution:
         return Substitution(self.plan, own, outside)
 
 
-@dataclass(frozen=True)
-class BlockInverse:
-    """The inverse of matrices, shape (..., n, n), and the parts that it was made of."""
-
-    inverse: Array
-    substitution: Substitution
-
-
-@dataclass(frozen=True)
-class _Entries:
-    """Where a matrix has entries; see `structure.System`."""
-
-    reads: Sequence[Sequence[int]]
-    unknowns: int
-
-
-def inverse_by_blocks(matrix: Array) -> BlockInverse | None:
-    """The inverse of large matrices, (..., n, n); None where blocks make it no easier, or there is none.
+def inverse_by_blocks(matrix: Array) -> tuple[Array, Substitution] | None:
+    """The inverse of large matrices, (..., n, n), and the parts that it is made of.
 
     Args:
         matrix: finite numbers.
+    Returns:
+        None where blocks make it no easier, or there is no inverse.
     """
     n = matrix.shape[-1]
     if n < LARGE:
@@ -154,7 +139,7 @@ def _plan_of(filled: bytes, n: int) -> _Plan:
     """How to go about a pattern, which stays the same from pose to pose, n rows of n bits."""
     bits = np.unpackbits(np.frombuffer(filled, dtype=np.uint8), count=n * n).reshape(n, n)
     reads = np.split(np.nonzero(bits)[1], np.cumsum(np.count_nonzero(bits, axis=1))[:-1])
-    blocks = structure_of(_Entries([read.tolist() for read in reads], n)).blocks
+    blocks = structure_of([read.tolist() for read in reads], n).blocks
     rows = np.array([row for block in blocks for row in block.rows])
     unknowns = np.array([unknown for block in blocks for unknown in block.unknowns])
     place = np.empty(n, dtype=np.intp)
@@ -178,7 +163,7 @@ def _plan_of(filled: bytes, n: int) -> _Plan:
     return _Plan(rows, unknowns, groups, later, largest)
 
 
-def _inverted(matrix: Array, plan: _Plan) -> BlockInverse:
+def _inverted(matrix: Array, plan: _Plan) -> tuple[Array, Substitution]:
     batch, n = matrix.shape[:-2], matrix.shape[-1]
     inverse = np.zeros_like(matrix)
     # Rows of the inverse that are read again, their columns in the order of the blocks.
@@ -198,11 +183,11 @@ def _inverted(matrix: Array, plan: _Plan) -> BlockInverse:
         saved[..., first:last, :high] = found[..., plan.later[first:last] - low, :]
         own_parts.append(own)
         outside_parts.append(outside)
-    return BlockInverse(inverse, Substitution(plan, tuple(own_parts), tuple(outside_parts)))
+    return inverse, Substitution(plan, tuple(own_parts), tuple(outside_parts))
 
 
 def product_of_few_entries(left: Array, right: Array) -> Array:
-    """Products of matrices, (..., n, n), the right ones of few entries when they are large.
+    """Products of matrices, (..., n, k) and (..., k, m), the right ones of few entries when they are large.
 
     Some columns at a time: where none of these has an entry in a row, the left one's column adds nothing.
     """

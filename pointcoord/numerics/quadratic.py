@@ -21,6 +21,7 @@ from math import frexp
 import numpy as np
 from numpy.typing import NDArray
 
+from pointcoord.numerics.block_inverse import product_of_few_entries
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.numerics.structure import Structure, structure_of
 
@@ -50,12 +51,6 @@ Pattern = tuple[Indices, Indices, Array, Indices, Indices]
 DENSE = 2**14
 
 
-# Rows from which on the few entries of curvature are picked; below, a product with zeros is quicker.
-LARGE = 100
-# Rows of a large matrix at a time: what is picked from them stays in a second-level cache.
-ROWS = 32
-
-
 @dataclass(frozen=True)
 class _Curvature:
     """The entries 2 B_rjk of a map by pairs of unknowns (j, k), proportional ones together.
@@ -66,18 +61,13 @@ class _Curvature:
     Attributes:
         first, second, scales: the pairs by direction, and what multiplies it, positive, (pairs,).
         starts: where each direction's pairs start, (directions,).
-        rows, values: the entries of all directions, one after the other.
-        begins: where each direction's entries begin, (directions,).
-        table: the same, (rows of the map, directions).
+        table: the entries of each direction, (rows of the map, directions).
     """
 
     first: Indices
     second: Indices
     scales: Array
     starts: Indices
-    rows: Indices
-    values: Array
-    begins: Indices
     table: Array
 
     @classmethod
@@ -91,7 +81,6 @@ class _Curvature:
                 direction = tuple((row, value / scale) for row, value in kept)
                 directions.setdefault(direction, []).append((j, k, abs(scale)))
         found = [pair for same in directions.values() for pair in same]
-        entries = [entry for direction in directions for entry in direction]
         table = np.zeros((count, len(directions)))
         for column, direction in enumerate(directions):
             for row, value in direction:
@@ -101,9 +90,6 @@ class _Curvature:
             np.array([k for _, k, _ in found], dtype=np.intp),
             np.array([scale for _, _, scale in found]),
             np.cumsum([0, *(len(same) for same in directions.values())])[:-1].astype(np.intp),
-            np.array([row for row, _ in entries], dtype=np.intp),
-            np.array([value for _, value in entries]),
-            np.cumsum([0, *(len(direction) for direction in directions)])[:-1].astype(np.intp),
             table,
         )
 
@@ -115,49 +101,13 @@ class _Curvature:
     def bent(self, preconditioner: Array, weights: Array | None) -> Array:
         """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns); without weights they are 1."""
         sizes = self.plain if weights is None else self.sizes(weights)
-        if len(self.table) < LARGE:
-            return np.asarray((np.abs(preconditioner @ self.table) @ sizes[..., None])[..., 0])
-        batch = np.broadcast_shapes(preconditioner.shape[:-2], sizes.shape[:-1])
-        sizes = np.broadcast_to(sizes, (*batch, sizes.shape[-1]))
-        found = np.empty((*batch, preconditioner.shape[-2]))
-        # One large matrix is work enough for a call.
-        for member in np.ndindex(preconditioner.shape[:-2]):
-            found[(..., *member, slice(None))] = self._bent_one(
-                preconditioner[member], sizes[(..., *member, slice(None))]
-            )
-        return found
-
-    def _bent_one(self, preconditioner: Array, sizes: Array) -> Array:
-        """The same of one large matrix, (..., unknowns), for sizes of shape (..., directions)."""
-        # A direction of one row is a column of X.
-        by_row = np.zeros((*sizes.shape[:-1], len(self.table)))
-        by_row[..., self.rows[self.begins[self.alone]]] = sizes[..., self.alone]
-        rows, values, begins = self.shared
-        found = np.empty((*sizes.shape[:-1], len(preconditioner)))
-        for low in range(0, len(preconditioner), ROWS):
-            some = preconditioner[low : low + ROWS]
-            sums = np.abs(np.add.reduceat(some.take(rows, axis=-1) * values, begins, axis=-1))
-            bent = by_row @ np.abs(some).T + sizes[..., ~self.alone] @ sums.T
-            found[..., low : low + ROWS] = bent
-        return found
+        turned = product_of_few_entries(preconditioner, self.table)
+        return np.asarray((np.abs(turned, out=turned) @ sizes[..., None])[..., 0])
 
     @cached_property
     def plain(self) -> Array:
         """The sizes of weights of 1, (directions,)."""
         return np.asarray(np.add.reduceat(self.scales, self.starts))
-
-    @cached_property
-    def alone(self) -> NDArray[np.bool_]:
-        """The directions that have one entry."""
-        return np.asarray(np.diff(self.begins, append=len(self.rows)) == 1)
-
-    @cached_property
-    def shared(self) -> tuple[Indices, Array, Indices]:
-        """Rows and values of the entries of the others, and where each begins."""
-        lengths = np.diff(self.begins, append=len(self.rows))
-        kept = np.repeat(~self.alone, lengths)
-        begins = np.cumsum([0, *lengths[~self.alone]])[:-1].astype(np.intp)
-        return self.rows[kept], self.values[kept], begins
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +175,7 @@ class QuadraticMap:
     @cached_property
     def structure(self) -> Structure:
         """Which rows determine which unknowns, block after block."""
-        return structure_of(self)
+        return structure_of(self.reads, self.unknowns)
 
     @property
     def terms(self) -> tuple[Array, Indices]:

@@ -16,25 +16,12 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 FREE = -1
 Indices = NDArray[np.intp]
-
-
-class System(Protocol):
-    """Rows in coordinates, of which the first `unknowns` are unknown."""
-
-    @property
-    def reads(self) -> Sequence[Collection[int]]:
-        """The coordinates that each row reads."""
-
-    @property
-    def unknowns(self) -> int:
-        """How many are unknown."""
 
 
 @dataclass(frozen=True)
@@ -102,16 +89,19 @@ class Structure:
         return tuple(found)
 
 
-def structure_of(system: System) -> Structure:
+def structure_of(reads: Sequence[Collection[int]], unknowns: int) -> Structure:
     """The blocks of a system; one block of everything where rows and unknowns cannot be paired.
 
     `QuadraticMap.structure` remembers it.
+
+    Args:
+        reads: the coordinates that each row reads, of which the first `unknowns` are unknown.
     """
-    patterns = [sorted(coordinates) for coordinates in system.reads]
-    entries = [[i for i in pattern if i < system.unknowns] for pattern in patterns]
-    row_of, spare = _matching(entries, system.unknowns)
-    if spare or len(entries) != system.unknowns:
-        return Structure((_block(patterns, range(len(patterns)), range(system.unknowns)),))
+    patterns = [sorted(coordinates) for coordinates in reads]
+    entries = [[i for i in pattern if i < unknowns] for pattern in patterns]
+    row_of, spare = _matching(entries, unknowns)
+    if spare or len(entries) != unknowns:
+        return Structure((_block(patterns, range(len(patterns)), range(unknowns)),))
     unknown_of = [FREE] * len(entries)
     for unknown, row in enumerate(row_of):
         unknown_of[row] = unknown
@@ -121,9 +111,9 @@ def structure_of(system: System) -> Structure:
     )
 
 
-def rows_too_many(system: System) -> tuple[int, ...]:
+def rows_too_many(reads: Sequence[Collection[int]], unknowns: int) -> tuple[int, ...]:
     """Rows that read fewer unknowns than they are, whatever the numbers in them; empty if there are none."""
-    _, spare = _matching([[i for i in row if i < system.unknowns] for row in system.reads], system.unknowns)
+    _, spare = _matching([[i for i in row if i < unknowns] for row in reads], unknowns)
     return spare
 
 

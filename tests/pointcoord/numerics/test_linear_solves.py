@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord.numerics import block_inverse, quadratic
+from pointcoord.numerics import block_inverse
 from pointcoord.numerics import narrow_product as module
 from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.linear import (
@@ -232,7 +232,6 @@ def test_a_long_chain_goes_the_same_way_by_blocks_as_without(monkeypatch: pytest
 
     by_blocks, work = solved()
     monkeypatch.setattr(block_inverse, "LARGE", np.inf)
-    monkeypatch.setattr(quadratic, "LARGE", np.inf)
     plain, plain_work = solved()
     assert work == plain_work
     # Truncation of either, and rounding of poses of condition numbers near 1000.

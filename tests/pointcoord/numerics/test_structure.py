@@ -1,7 +1,7 @@
 """The blocks of a system, held to scipy's graph algorithms and to the definition of a block triangle."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from hypothesis import given
@@ -12,8 +12,7 @@ from scipy.sparse.csgraph import connected_components, maximum_bipartite_matchin
 from pointcoord.numerics.structure import Structure, rows_too_many, structure_of
 
 
-@dataclass(frozen=True)
-class Pattern:
+class Pattern(NamedTuple):
     """Rows of which only is known what they read."""
 
     reads: Sequence[Collection[int]]
@@ -70,7 +69,7 @@ def require_blocks(structure: Structure, pattern: Pattern) -> None:
 
 @given(patterns())
 def test_rows_too_many_are_more_than_the_unknowns_that_they_read(pattern: Pattern) -> None:
-    rows = rows_too_many(pattern)
+    rows = rows_too_many(*pattern)
     assert (not rows) == (by_scipy(pattern) is not None)
     read = {i for row in rows for i in pattern.reads[row] if i < pattern.unknowns}
     # One more than they can be, so that leaving out any one of them would do.
@@ -79,7 +78,7 @@ def test_rows_too_many_are_more_than_the_unknowns_that_they_read(pattern: Patter
 
 @given(patterns())
 def test_blocks_of_a_random_pattern_are_those_of_scipy(pattern: Pattern) -> None:
-    found, wanted = structure_of(pattern), by_scipy(pattern)
+    found, wanted = structure_of(*pattern), by_scipy(pattern)
     if wanted is None:
         assert [(b.rows, b.unknowns) for b in found.blocks] == [(tuple(range(pattern.unknowns)),) * 2]
         return
@@ -91,7 +90,7 @@ def test_blocks_of_a_random_pattern_are_those_of_scipy(pattern: Pattern) -> None
 def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
     pattern: Pattern, data: st.DataObject
 ) -> None:
-    structure = structure_of(pattern)
+    structure = structure_of(*pattern)
     n, blocks = pattern.unknowns, structure.blocks
     home = {u: number for number, block in enumerate(blocks) for u in block.unknowns}
     reached = np.eye(len(blocks), dtype=bool)
@@ -114,10 +113,10 @@ def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
 def test_the_blocks_of_a_long_chain_or_circle_are_no_recursion() -> None:
     n = 30_000
     chain = [{i, i + 1} for i in range(n - 1)]
-    assert len(structure_of(Pattern([*chain, {n - 1}], n)).blocks) == n
-    assert len(structure_of(Pattern([*chain, {n - 1, 0}], n)).blocks) == 1
+    assert len(structure_of([*chain, {n - 1}], n).blocks) == n
+    assert len(structure_of([*chain, {n - 1, 0}], n).blocks) == 1
     # The last row finds its unknown taken, and so does each that gives way to it.
-    assert len(structure_of(Pattern([*chain, {0}], n)).blocks) == n
+    assert len(structure_of([*chain, {0}], n).blocks) == n
 
 
 def test_rows_that_cannot_be_paired_with_unknowns_are_one_block_of_everything() -> None:
@@ -127,7 +126,7 @@ def test_rows_that_cannot_be_paired_with_unknowns_are_one_block_of_everything() 
         ([{0}, {1}, {0, 1}], 2),  # too many
         ([{7}], 1),  # nothing reads the unknown
     ):
-        (block,) = structure_of(Pattern(reads, unknowns)).blocks
+        (block,) = structure_of(reads, unknowns).blocks
         assert block.rows == tuple(range(len(reads)))
         assert block.unknowns == tuple(range(unknowns))
         assert set(block.reads) == set().union(*reads) - set(range(unknowns))
