@@ -57,42 +57,24 @@ class Interpolation:
 @lru_cache(maxsize=8)
 def interpolation(degree: int) -> Interpolation:
     """The matrices of an even degree, at least 2."""
-    angles = np.pi * np.arange(degree, -1.0, -1.0) / degree
+    series, orders = np.polynomial.chebyshev, np.arange(degree + 1)
+    angles = np.pi * orders[::-1] / degree
     points = np.cos(angles)
     points[degree // 2] = 0.0
-    orders = np.arange(degree + 1)
-    weights = np.full(degree + 1, 2.0 / degree)
-    weights[[0, -1]] /= 2.0
-    halved = np.ones(degree + 1)
-    halved[[0, -1]] = 0.5
-    coefficients = halved[:, None] * np.cos(np.outer(orders, angles)) * weights
+    halved = np.where(orders % degree == 0, 0.5, 1.0)
+    coefficients = halved[:, None] * np.cos(np.outer(orders, angles)) * (halved * 2.0 / degree)
     powers = np.zeros((degree + 1, degree + 1))
-    powers[0, 0] = powers[1, 1] = 1.0
-    for k in range(2, degree + 1):
-        powers[k, 1:] = 2.0 * powers[k - 1, :-1]
-        powers[k] -= powers[k - 2]
-    # T_k' = k U_(k-1), U by the same recursion with U_1 = 2 x.
-    second = np.zeros((degree + 1, degree + 1))
-    second[0] = 1.0
-    second[1] = 2.0 * points
-    for k in range(2, degree + 1):
-        second[k] = 2.0 * points * second[k - 1] - second[k - 2]
-    rates = np.concatenate([np.zeros((1, degree + 1)), orders[1:, None] * second[:-1]])
-    return Interpolation(points, coefficients, powers, rates.T @ coefficients)
+    for k in orders:
+        powers[k, : k + 1] = series.cheb2poly(np.eye(degree + 1)[k])
+    slopes: Array = series.chebvander(points, degree - 1) @ np.asarray(series.chebder(coefficients), float)
+    return Interpolation(points, coefficients, powers, slopes)
 
 
 @lru_cache(maxsize=8)
 def shares_beyond(degree: int, orders: int) -> Array:
-    """How much of x^m is made of T_k beyond a degree, for m below `orders`: the sum of their coefficients.
-
-    x^m = 2^(1 - m) sum' binomial(m, (m - k) / 2) T_k over k = m, m - 2, ...
-    """
-    return np.array(
-        [
-            sum(comb(m, (m - k) // 2) for k in range(degree + 1, m + 1) if (m - k) % 2 == 0) * 2.0 ** (1 - m)
-            for m in range(orders)
-        ]
-    )
+    """How much of x^m is made of T_k beyond a degree, for m below `orders`: the sum of their coefficients."""
+    laws = (np.polynomial.chebyshev.poly2cheb(np.eye(orders)[m]) for m in range(orders))
+    return np.array([np.abs(law[degree + 1 :]).sum() for law in laws])
 
 
 @lru_cache(maxsize=64)

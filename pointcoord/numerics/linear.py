@@ -159,8 +159,8 @@ def factorise(matrix: Array) -> Factors:
     safe = scaled if whole else _with_identity(scaled, sound)
     blocks = inverse_by_blocks(safe) if whole else None
     if blocks is not None:
-        inverse, substitution = blocks
-        return Factors(scaled, inverse, row_scale, _condition(scaled, inverse), substitution)
+        own, substitution = blocks
+        return Factors(scaled, own, row_scale, _condition(scaled, own), substitution)
     try:
         inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:

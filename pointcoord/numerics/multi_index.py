@@ -67,32 +67,13 @@ class Powers:
         edges: list[int] = np.searchsorted(degrees, np.arange(self.order + 2), side="left").tolist()
         return edges
 
-    def pairs(self, alike: bool) -> list[tuple[Places, Places]]:
-        """For each power k, where all i and k - i, 0 <= i <= k, lie in a table of all exponents.
-
-        Args:
-            alike: of a square, where an exponent of k is odd, half of them, so that i, k - i is there and
-                k - i, i is not (see `times`).
-        """
-        return self._pairs[alike]
-
     @cached_property
-    def _pairs(self) -> tuple[list[tuple[Places, Places]], list[tuple[Places, Places]]]:
-        every, half = list[tuple[Places, Places]](), list[tuple[Places, Places]]()
-        for k in self.exponents.tolist():
-            up, down = [slice(one + 1) for one in k], [slice(one, None, -1) for one in k]
-            every.append((tuple(up), tuple(down)))
-            odd = next((axis for axis, one in enumerate(k) if one % 2), None)
-            if odd is not None:
-                middle = k[odd] // 2
-                up[odd], down[odd] = slice(middle + 1), slice(k[odd], middle, -1)
-            half.append((tuple(up), tuple(down)))
-        return every, half
-
-    @cached_property
-    def times(self) -> NDArray[np.float64]:
-        """How often a square has each pair of `pairs` where these are half of all, (powers,)."""
-        return np.where((self.exponents % 2).any(axis=-1), 2.0, 1.0)
+    def pairs(self) -> list[tuple[Places, Places]]:
+        """For each power k, where all i and k - i, 0 <= i <= k, lie in a table of all exponents."""
+        return [
+            (tuple(slice(one + 1) for one in k), tuple(slice(one, None, -1) for one in k))
+            for k in self.exponents.tolist()
+        ]
 
     def places(self, low: int, high: int) -> Indices | slice:
         """Where powers lie in a table of all exponents up to `order`, laid out flat."""

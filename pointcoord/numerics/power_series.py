@@ -148,19 +148,14 @@ def _recursion(
     left, right = table[..., : terms.count], table[..., -terms.count :]
     table = table.reshape(-1, *table.shape[inputs:])
     table[every.places(1, every.count)] = terms.factors(own[1:])
-    # Of one input there are few pairs of each.
-    squares = inputs > 1 and terms.ends.shape[-1] == terms.count
-    pairs, times = every.pairs(squares), every.times.reshape(-1, *[1] * (left.ndim - inputs))
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
     sums = np.zeros((every.count - low, *left.shape[inputs:]))
     for start, stop in pairwise(edges[max(first, 2) :]):
         each = sums[start - low : stop - low]
         for place in range(start, stop):
-            up, down = pairs[place]
+            up, down = every.pairs[place]
             # A power still to come is multiplied by the constant term's 0.
             np.einsum(subscripts, left[up], right[down], out=each[place - start])
-        if squares:
-            each *= times[start:stop]
         table[every.places(start, stop)] -= advanced(each)
     own[low:, ..., :n] -= solved(sums)
     own[0, ..., :n] = y[..., :n]

@@ -47,9 +47,6 @@ Row = tuple[Product, ...]
 # Of a derivative's entries; see `_pattern`.
 Pattern = tuple[Indices, Indices, Array, Indices, Indices]
 
-# Terms times coordinates up to which full matrices of zeros and ones cost less than picking elements.
-DENSE = 2**14
-
 
 @dataclass(frozen=True)
 class _Curvature:
@@ -330,8 +327,6 @@ class MovingProducts:
 
     def factors(self, moving: Array) -> Array:
         """The differences of every product, of coordinates that move and a last 0, (..., sides * count)."""
-        if moving.shape[-1] * len(self.ends[0]) <= DENSE:
-            return np.asarray(moving @ self._differences)
         plus, minus = self.ends
         return np.asarray(moving.take(plus, axis=-1) - moving.take(minus, axis=-1))
 
@@ -345,15 +340,6 @@ class MovingProducts:
     def size(self) -> int:
         """How many coordinates move, with the last 0."""
         return int(self.ends.max()) + 1
-
-    @cached_property
-    def _differences(self) -> Array:
-        """The same as a matrix, two entries +-1 a column: a difference is rounded once, as by itself."""
-        plus, minus = self.ends
-        matrix = np.zeros((self.size, len(plus)))
-        matrix[plus, np.arange(len(plus))] += 1.0
-        matrix[minus, np.arange(len(minus))] -= 1.0
-        return matrix
 
     def gather(self, products: Array) -> Array:
         """Sum products, shape (..., count), into rows, shape (..., rows)."""

@@ -21,7 +21,7 @@ every series (see `partial_map`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache, partial
 from math import perm
@@ -104,20 +104,6 @@ class Segment:
         """Of the series."""
         return int(self.coefficients.shape[-2]) - 1
 
-    def powers(self, instants: Array, derivatives: int) -> list[Array]:
-        """Powers of s at instants, (N,), and their rates, so many derivatives in all, each (terms, N)."""
-        s, terms = (instants - self.start) / self.scale, self.order + 1
-        powers = np.ones((terms, len(s)))
-        for k in range(1, terms):
-            np.multiply(powers[k - 1], s, out=powers[k])
-        found = [powers]
-        factors = np.arange(1.0, terms)[:, None] / self.scale
-        for _ in range(derivatives - 1):
-            lower = np.zeros_like(powers)
-            np.multiply(found[-1][:-1], factors, out=lower[1:])
-            found.append(lower)
-        return found
-
     def taken(self, members: Numbers) -> Self:
         """Of some members; one batch dimension."""
         left = np.broadcast_to(self.left, self.coefficients.shape[:1])[members]
@@ -139,12 +125,6 @@ class Chain:
     def stop(self) -> float:
         """The last instant, s."""
         return self.segments[-1].stop
-
-    def parts(self, instants: Array) -> Iterator[tuple[Segment, slice]]:
-        """Each segment with which of some instants, in increasing order, lie on it."""
-        starts = [segment.start for segment in self.segments[1:]]
-        edges = [0, *np.searchsorted(instants, starts, side="left").tolist(), len(instants)]
-        yield from zip(self.segments, map(slice, edges[:-1], edges[1:]), strict=True)
 
 
 @dataclass(frozen=True)

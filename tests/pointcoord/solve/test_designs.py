@@ -14,6 +14,7 @@ from pointcoord.method import SERIES
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import chain_settings, pose_tolerance, prepare_task
 from pointcoord.solve import box, taylor
+from pointcoord.solve.dense_output import evaluate
 from pointcoord.solve.designs import SolvedDesigns, solve_designs
 from pointcoord.solve.taylor import Chain, build_chain
 
@@ -56,12 +57,11 @@ def alone(scene: Scene) -> tuple[Mechanism, Chain]:
 
 
 def unknowns(mechanism: Mechanism, chain: Chain, instants: np.ndarray, derivative: int = 0) -> np.ndarray:
-    parts = [
-        segment.powers(instants[part], derivative + 1)[derivative].T
-        @ segment.coefficients[..., : mechanism.map.unknowns]
-        for segment, part in chain.parts(instants)
-    ]
-    return np.concatenate(parts, axis=-2)
+    columns = [segment.coefficients[..., : mechanism.map.unknowns] for segment in chain.segments]
+    first = chain.segments[0]
+    if isinstance(first, box.Box):
+        return np.asarray(first.powers(instants, derivative + 1)[derivative].T @ columns[0])
+    return evaluate(chain, columns, instants, derivative)[derivative]
 
 
 def found_of(mechanism: Mechanism, solved: SolvedDesigns, instants: np.ndarray) -> dict[int, np.ndarray]:
