@@ -109,7 +109,7 @@ def enclosed_coordinates(
     spread = certificate.spread[:, 0] + 32.0 * UNIT_ROUNDOFF * largest
     proven = spread + _tail(system, poses, magnitude, spread + largest)
     uncertain = system.uncertainty(pose.high[:, 0], pose.radius[1, :, 0])
-    looking = _applied(magnitude, uncertain) + unsolved[:, None]
+    looking = np.matvec(magnitude, uncertain) + unsolved[:, None]
     result = [_moved(pose, -certificate.step, proven, looking)]
     moved = np.zeros((len(proven), system.size))
     moved[:, :n] = largest + proven
@@ -146,7 +146,7 @@ def _tail(system: QuadraticMap, poses: CertifiedPoses, magnitude: Array, known: 
     for _ in range(2):
         moved = np.concatenate([radius, np.zeros((len(radius), system.size - system.unknowns))], axis=-1)
         bent = 0.5 * magnitude @ system.jacobian_uncertainty(moved)
-        tail = np.minimum(_applied(certificate.defect + bent, radius), most)
+        tail = np.minimum(np.matvec(certificate.defect + bent, radius), most)
         radius = np.minimum(radius, known + tail)
     return tail
 
@@ -161,12 +161,12 @@ def _corrected(computed: Enclosed, rest: Enclosed, poses: CertifiedPoses, spoilt
     n, magnitude = inverse.shape[-1], np.abs(inverse)
     gamma, middle = (n + 3) * EPS, rest.middle
     step = -applied(inverse, middle)
-    proven = _applied(magnitude, rest.radius[0, :, 0] + gamma * np.abs(middle).max(axis=1))
+    proven = np.matvec(magnitude, rest.radius[0, :, 0] + gamma * np.abs(middle).max(axis=1))
     whole = np.abs(step).max(axis=1) + proven
     room = 1.0 - poses.certificate.contraction.max(axis=1)
     largest = np.where(room > 0.0, whole.max(axis=-1) / room, np.inf)[:, None]
-    tail = _applied(spoilt, whole + _applied(spoilt, np.broadcast_to(largest, whole.shape)))
-    rounded = _applied(magnitude, rest.radius[1, :, 0])
+    tail = np.matvec(spoilt, whole + np.matvec(spoilt, np.broadcast_to(largest, whole.shape)))
+    rounded = np.matvec(magnitude, rest.radius[1, :, 0])
     # A rate that does not depend on the others is solved for with them, and has a rounding of theirs left
     # after one refinement.
     shared = gamma * poses.factors.condition * rounded.max(axis=-1)
@@ -185,10 +185,6 @@ def _moved(computed: Enclosed, by: Array, proven: Array, expected: Array) -> Enc
     radius[1, ..., :n] = expected[:, None]
     radius[1] += UNIT_ROUNDOFF * computed.size
     return Enclosed(high, low, radius, change, reach)
-
-
-def _applied(matrix: Array, vector: Array) -> Array:
-    return np.asarray((matrix @ vector[..., None])[..., 0])
 
 
 def enclosed_points(mechanism: Mechanism, coordinates: Sequence[Enclosed]) -> list[dict[str, Enclosed]]:

@@ -91,8 +91,8 @@ class Substitution:
         for group, own, outside in zip(self.plan.groups, self.own, self.outside, strict=True):
             rows = b[..., group.low : group.high]
             if len(group.reads):
-                rows = rows - _times(outside, x.take(group.reads, axis=-1))
-            x[..., group.low : group.high] = _times(own, rows)
+                rows = rows - np.matvec(outside, x.take(group.reads, axis=-1))
+            x[..., group.low : group.high] = np.matvec(own, rows)
         found = np.empty_like(x)
         found[..., self.plan.unknowns] = x
         return found
@@ -203,8 +203,3 @@ def product_of_few_entries(left: Array, right: Array) -> Array:
         rows = np.flatnonzero(filled[:, some].any(axis=1))
         np.matmul(left[..., rows], right[..., rows, some], out=found[..., some])
     return found
-
-
-def _times(matrix: Array, x: Array) -> Array:
-    """Products of matrices and vectors; of one, `dot` takes half the time that the operator @ does."""
-    return np.asarray(matrix.dot(x) if matrix.ndim == 2 and x.ndim == 1 else (matrix @ x[..., None])[..., 0])

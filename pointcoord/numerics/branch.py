@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.chebyshev import binomials
+from pointcoord.numerics.kantorovich import nearer_perron
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import Converged
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -39,7 +40,7 @@ Indices = NDArray[np.intp]
 # Share of the distance within which an assembly is alone that may lie between it and the series.
 NEAR = 0.25
 # Into how many parts a segment is divided, one after the other where that proves nothing, and norms tried.
-PARTS, WEIGHINGS, SMALLEST = (1, 4, 16), 6, 1e-300
+PARTS, WEIGHINGS = (1, 4, 16), 6
 # Where EPS |X|^2 is smaller, rounding hides nothing: of coordinates near 1 omega |X| d is at most some
 # thousand times that.
 CLEAR = 1e-6
@@ -110,7 +111,7 @@ def hidden(system: QuadraticMap, y: Array, factors: Factors) -> NDArray[np.bool_
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
         rows = system.uncertainty(y, np.zeros(y.shape[-1]))
-        noise = (np.abs(inverse) @ rows[..., None])[..., 0].max(axis=-1)
+        noise = np.matvec(np.abs(inverse), rows).max(axis=-1)
         return np.asarray(doubtful & ~(system.lipschitz(inverse) * noise <= 1.0))
 
 
@@ -183,20 +184,14 @@ def _regular(system: QuadraticMap, y: Array, entries: Array, magnitudes: bool) -
 
 
 def below_one(matrix: Array) -> NDArray[np.bool_]:
-    """Whether matrices of no negative elements, (..., n, n), are below 1 in some norm, (...,).
-
-    |Z| = max_i (Z w)_i / w_i for any w > 0; the best w is Perron's vector, which Z w + w comes nearer to.
-    """
+    """Whether matrices of no negative elements, (..., n, n), are below 1 in some norm, (...,)."""
     weights, below = np.ones(matrix.shape[:-1]), np.zeros(matrix.shape[:-2], dtype=bool)
     for _ in range(WEIGHINGS):
-        turned = (matrix @ weights[..., None])[..., 0]
-        norm = (turned / weights).max(axis=-1)
+        weights, norm = nearer_perron(matrix, weights)
         # What is not finite is not below anything.
         below |= norm < SURE
         if below.all():
             break
-        weights = weights + turned / np.maximum(norm, SMALLEST)[..., None]
-        weights /= weights.max(axis=-1, keepdims=True)
     return below
 
 

@@ -58,6 +58,7 @@ from pointcoord.numerics.vectors import components_last
 Array = NDArray[np.float64]
 
 INFLATION = 1.0 + 1e-6
+SMALLEST = 1e-300
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,16 @@ def smallest_radius(eta: Array, z: Array, omega: Array) -> Array:
     return np.where((room > 0.0) & (constant < 1.0) & np.isfinite(least), least, np.inf)
 
 
-def used(eta: Array, z: Array, omega: Array | float) -> Array:
-    """z + sqrt(2 omega eta), which is below 1 where the test holds, and goes with the length of a way."""
-    return np.asarray(z + np.sqrt(2.0 * omega * eta))
+def nearer_perron(matrix: Array, weights: Array) -> tuple[Array, Array]:
+    """Weights for which the norm of matrices of no negative elements, (..., n, n), is smaller; and its norm.
+
+    |Z| = max_i (Z w)_i / w_i for any w > 0; it is least for Perron's vector, which Z w + w comes nearer to,
+    also where several eigenvalues are of one size. The largest weight is 1.
+    """
+    turned = np.matvec(matrix, weights)
+    norm = (turned / weights).max(axis=-1)
+    weights = weights + turned / np.maximum(norm, SMALLEST)[..., None]
+    return weights / weights.max(axis=-1, keepdims=True), norm
 
 
 def ball(eta: Array, z: Array, omega: Array) -> Ball:

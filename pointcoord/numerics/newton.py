@@ -176,7 +176,7 @@ def _noise(system: QuadraticMap, y: Array, factors: Factors, size: Array) -> Arr
     if (size > ROUNDINGS * EPS * factors.condition).all():
         return np.zeros((*size.shape, system.unknowns))
     rows = system.uncertainty(y, np.zeros(y.shape[-1]))
-    return np.asarray((np.abs(factors.preconditioner) @ rows[..., None])[..., 0])
+    return np.asarray(np.matvec(np.abs(factors.preconditioner), rows))
 
 
 def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Array, omega: Array) -> Array:
@@ -190,8 +190,7 @@ def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Arra
     """
     d = np.zeros((*step.shape[:-1], system.size))
     d[..., : system.unknowns] = step
-    rows, inverse = system.residual(d), factors.preconditioner
-    bent = inverse.dot(rows) if rows.ndim == 1 else (inverse @ rows[..., None])[..., 0]
+    bent = np.matvec(factors.preconditioner, system.residual(d))
     return smallest_radius(np.abs(bent).max(axis=-1), omega * size, omega)
 
 

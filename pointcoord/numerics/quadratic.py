@@ -99,7 +99,7 @@ class _Curvature:
         """sum_jk |sum_r X_ir 2 B_rjk| g_j g_k, shape (..., unknowns); without weights they are 1."""
         sizes = self.plain if weights is None else self.sizes(weights)
         turned = product_of_few_entries(preconditioner, self.table)
-        return np.asarray((np.abs(turned, out=turned) @ sizes[..., None])[..., 0])
+        return np.asarray(np.matvec(np.abs(turned, out=turned), sizes))
 
     @cached_property
     def plain(self) -> Array:

@@ -101,7 +101,7 @@ def prove_patches(
         remaining, cut = _remaining(system, factors, series, order, low, data)
         change = _change(system, factors, series, order, low, data)
         weights = _perron(change.value)
-        z = ((change.value @ weights[..., None])[..., 0] / weights).max(axis=-1)
+        z = (np.matvec(change.value, weights) / weights).max(axis=-1)
         eta = (remaining.value / weights).max(axis=-1)
         omega = system.lipschitz(factors.preconditioner, weights)
         found = ball(eta, z, omega)
@@ -214,13 +214,10 @@ def _perron(matrix: Array) -> Array:
     """Weights for which the norm of a matrix of no negative elements is near its spectral radius, (P, n)."""
     usable = np.where(np.isfinite(matrix), matrix, 0.0)
     weights = np.ones(matrix.shape[:-1])
+    largest = np.maximum(usable.sum(axis=-1).max(axis=-1), 1e-300)[:, None]
     for _ in range(ITERATIONS):
         # Adding what was there keeps matrices with several eigenvalues of one size from going round.
-        weights = (
-            weights
-            + (usable @ weights[..., None])[..., 0]
-            / np.maximum(usable.sum(axis=-1).max(axis=-1), 1e-300)[:, None]
-        )
+        weights = weights + np.matvec(usable, weights) / largest
         weights /= weights.max(axis=-1, keepdims=True)
     return np.asarray(np.maximum(weights, LEAST))
 
@@ -231,9 +228,6 @@ def _errors(
     """Errors of the coordinates and of their derivatives, (P, unknowns)."""
     z, g = change.value, weights
 
-    def applied(matrix: Array, vector: Array) -> Array:
-        return np.asarray((matrix @ vector[..., None])[..., 0])
-
     def norm(vector: Array) -> Array:
         return np.asarray((vector / g).max(axis=-1))
 
@@ -242,22 +236,23 @@ def _errors(
         size = norm(right) / (1.0 - contraction)
         found = size[:, None] * g
         for _ in range(REFINEMENTS):
-            found = np.minimum(found, right + applied(z, found) + (omega * radius * size)[:, None] * g)
+            found = np.minimum(found, right + np.matvec(z, found) + (omega * radius * size)[:, None] * g)
         return found
 
     value = radius[:, None] * g
     for _ in range(REFINEMENTS):
-        rest = remaining.value + applied(z, value) + (0.5 * omega * radius**2)[:, None] * g
+        rest = remaining.value + np.matvec(z, value) + (0.5 * omega * radius**2)[:, None] * g
         value = np.minimum(value, rest)
     first = np.empty_like(remaining.first)
     inputs = first.shape[1]
     for i in range(inputs):
-        first[:, i] = solved(remaining.first[:, i] + applied(change.first[:, i], value))
+        first[:, i] = solved(remaining.first[:, i] + np.matvec(change.first[:, i], value))
     second = np.empty_like(remaining.second)
     for i in range(inputs):
         for j in range(i, inputs):
             crossed = omega * norm(first[:, i]) * norm(first[:, j])
-            right = remaining.second[:, i, j] + applied(change.second[:, i, j], value) + crossed[:, None] * g
-            right += applied(change.first[:, i], first[:, j]) + applied(change.first[:, j], first[:, i])
+            right = remaining.second[:, i, j] + crossed[:, None] * g
+            right += np.matvec(change.second[:, i, j], value)
+            right += np.matvec(change.first[:, i], first[:, j]) + np.matvec(change.first[:, j], first[:, i])
             second[:, i, j] = second[:, j, i] = solved(right)
     return Jet(value, first, second)

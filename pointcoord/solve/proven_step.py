@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.block_inverse import product_of_few_entries
-from pointcoord.numerics.kantorovich import used
+from pointcoord.numerics.kantorovich import nearer_perron
 from pointcoord.numerics.multi_index import products
 from pointcoord.numerics.power_series import multiplied, powers_first
 from pointcoord.numerics.quadratic import QuadraticMap
@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 # Newton's method would converge only linearly from the end of the step.
 ROOM = 0.9
 # Times that weights are brought nearer to those of the smallest norm.
-WEIGHINGS, SMALLEST, NOTHING = 4, 1e-300, 1e-150
+WEIGHINGS, NOTHING = 4, 1e-150
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def prove(
     left, right = (powers_first(each) for each in system.factors(series))
     rest = system.gather(multiplied(left, right, products(1, order, (0, 2 * order), 0)))
     rest[:2] -= wanted
-    remaining = np.abs((inverse @ rest[..., None])[..., 0])
+    remaining = np.abs(np.matvec(inverse, rest))
     change = product_of_few_entries(inverse, system.jacobian(powers_first(series)))
     change[0] -= np.eye(n)
     np.abs(change, out=change)
@@ -88,11 +88,11 @@ def prove(
     def proven(weights: Array, some: Array) -> tuple[NDArray[np.intp], Array]:
         """Numbers of the lengths that are proven in a norm, (m,), and how far their ends are alone."""
         powers = _powers(tuple(some.tolist()), 2 * order)
-        turned = (change @ weights[..., None])[..., 0] / weights
+        turned = np.matvec(change, weights) / weights
         z = _summed(powers[:, : order + 1], turned)
         eta = _summed(powers, remaining / weights)
         omega = system.lipschitz(inverse, weights)
-        holds = used(eta, z, omega) <= ROOM
+        holds = z + np.sqrt(2.0 * omega * eta) <= ROOM
         number = np.where(holds.any(axis=0), holds.argmax(axis=0), len(some))
         return number, (1.0 - z[np.minimum(number, len(some) - 1), np.arange(len(number))]) / omega
 
@@ -101,9 +101,7 @@ def prove(
     if number.any():
         # Nearer to the weights for which the norm of what changes most is smallest.
         for _ in range(WEIGHINGS):
-            turned = (change[1] @ weights[..., None])[..., 0]
-            weights = weights + turned / np.maximum((turned / weights).max(axis=-1), SMALLEST)[:, None]
-            weights = weights / weights.max(axis=-1, keepdims=True)
+            weights, _ = nearer_perron(change[1], weights)
         weights = np.where((number[:, None] > 0) & np.isfinite(weights), weights, 1.0)
         number, alone = proven(weights, lengths)
     return Proof(np.append(lengths, 0.0)[number], alone, weights)

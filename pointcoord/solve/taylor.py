@@ -437,7 +437,7 @@ class _Course:
             return np.zeros(reached.y.shape[:-1])
         _, data = self.mechanism.known_data(self.part.back(reached.y), off)
         rows = self.part.system.uncertainty(reached.y, self.part.taken(data))
-        return np.asarray((np.abs(reached.factors.preconditioner) @ rows[..., None])[..., 0].max(axis=-1))
+        return np.asarray(np.matvec(np.abs(reached.factors.preconditioner), rows).max(axis=-1))
 
     def stops_at(self, joint: _Joint, unfinished: NDArray[np.bool_], coarsest: bool) -> Status:
         """Why no segment leads on from a joint.
