@@ -61,11 +61,6 @@ def orientation(system: QuadraticMap, factors: Factors) -> Array:
     return signs
 
 
-def same_signs(one: Array, other: Array) -> NDArray[np.bool_]:
-    """Whether all signs of orientations, (..., blocks), are the same, and none is 0 or no number, (...,)."""
-    return np.asarray((one * other > 0.0).all(axis=-1))
-
-
 def on_branch(
     system: QuadraticMap, series: Array, s: float, reached: Converged, factors: Factors
 ) -> NDArray[np.bool_]:
@@ -93,7 +88,8 @@ def same_side(
         y: the end, shape (..., size). factors: of C_u there. side: orientation at the start.
         last: whether nothing goes on from there: only what lies beyond may be on another branch.
     """
-    same = same_signs(orientation(system, factors), side)
+    # No sign is another, 0 or no number.
+    same = np.asarray((orientation(system, factors) * side > 0.0).all(axis=-1))
     return same if np.all(last) else same & (last | ~hidden(system, y, factors))
 
 

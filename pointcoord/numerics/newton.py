@@ -48,8 +48,6 @@ class Converged:
         converged: whether the last step was noise, or what it leaves is below the tolerance, shape (...,).
         iterations: steps taken by each member, shape (...,).
         first_step: largest component of the first step, shape (...,).
-        noise: largest component of the rounding error of the last step, shape (...,); zero where the step was
-            far above it, or where one start ended by the tolerance (see `rounding_of`).
         left: proven distance to the solution, rounding apart, of members that ended by the tolerance,
             shape (...,); zero of those that ended in noise.
         last_step: largest component of the last step, shape (...,).
@@ -63,7 +61,6 @@ class Converged:
     converged: NDArray[np.bool_]
     iterations: NDArray[np.int64]
     first_step: Array
-    noise: Array
     left: Array
     last_step: Array
     work: Work
@@ -96,7 +93,7 @@ def newton_refine(
         allowed = np.broadcast_to(allowed, batch).reshape(members)
     asked = np.count_nonzero(allowed) > 0
     converged, iterations = np.zeros(members, dtype=bool), np.zeros(members, dtype=np.int64)
-    first_step, last_noise, left = np.zeros(members), np.zeros(members), np.zeros(members)
+    first_step, left = np.zeros(members), np.zeros(members)
     previous, lipschitz = np.full(members, np.inf), np.full(members, np.nan)
     # All members, of whatever dimensions, and from where the first of them ends the others by number.
     active: EllipsisType | NDArray[np.intp] = ...
@@ -115,7 +112,7 @@ def newton_refine(
             if count == 0:
                 first_step = np.asarray(size)
             # What ends in noise has no more left than that, whatever a step before it left.
-            rest = noise = np.zeros(size.shape)
+            rest = np.zeros(size.shape)
             done = np.zeros(size.shape, dtype=bool)
             if asked:
                 lipschitz[active] = omega = system.lipschitz(local.preconditioner)
@@ -126,10 +123,10 @@ def newton_refine(
                 # Below the square root of the rounding unit the error of the next step would be noise as
                 # well, so a step that no longer shrinks there is noise that the bound above judged too low.
                 stalled = (size < 1e-8) & (size >= 0.5 * previous[active])
-                rest, noise = np.where(done, rest, 0.0), np.where(done, 0.0, rounding.max(axis=-1))
+                rest = np.where(done, rest, 0.0)
                 done = done | (usable & (stalled | (sizes <= rounding).all(axis=-1)))
             iterations[active], converged[active], previous[active] = count + 1, done, size
-            left[active], last_noise[active] = rest, noise
+            left[active] = rest
             going = usable & ~done
             if not np.count_nonzero(going):
                 break
@@ -143,7 +140,6 @@ def newton_refine(
         converged=converged.reshape(batch),
         iterations=iterations.reshape(batch),
         first_step=first_step.reshape(batch),
-        noise=last_noise.reshape(batch),
         left=left.reshape(batch),
         last_step=previous.reshape(batch),
         work=Work(residuals=taken, factorisations=taken),

@@ -23,7 +23,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import comb, factorial
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,22 +83,11 @@ class Solved:
         return [state[places] for state in self.states]
 
 
-class InstantSolver(Protocol):
-    """A way to solve for poses and their rates at instants; see `solve_instants` for what it is given."""
-
-    def __call__(
-        self,
-        mechanism: Mechanism,
-        functions: Mapping[str, TimeFunction],
-        pose: Pose,
-        times: Array,
-        derivative: int,
-        square_term: SquareVelocityTerm,
-        tolerance: float,
-        /,
-    ) -> Solved:
-        """The states, up to the first instant that cannot be reached."""
-        ...
+InstantSolver = Callable[
+    [Mechanism, Mapping[str, TimeFunction], Pose, Array, int, SquareVelocityTerm, float], Solved
+]
+"""A way to solve for poses and their rates at instants: the states, up to the first instant that cannot be
+reached; see `solve_instants` for what it is given."""
 
 
 def square_velocity_term(system: QuadraticMap, velocity: Array) -> Array:

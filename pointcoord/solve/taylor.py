@@ -41,7 +41,7 @@ from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import Pose, blocked
-from pointcoord.solve.place import starting_place, whole_place
+from pointcoord.solve.place import Place, starting_place, whole_place
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
@@ -205,19 +205,14 @@ def order_for(tolerance: float) -> int:
 
 
 @dataclass(frozen=True)
-class _Joint:
+class _Joint(Place):
     """An assembled pose from which a segment starts.
 
     Attributes:
-        y: coordinates, shape (..., size). factors: of C_u there.
-        left: proven distance of y to the exact assembly, rounding apart, shape (...,).
         scale: a unit of time for the segment, s, as long as the one before it.
     """
 
     instant: float
-    y: Array
-    factors: Factors
-    left: Array
     scale: float
 
     @property
@@ -265,7 +260,7 @@ class _Course:
         """
         course, start, stop, tolerance = self, self.start, self.stop, self.settings.tolerance
         here = starting_place(self.part, pose)
-        joint = _Joint(start, here.y, here.factors, here.left, power_of_two(stop - start))
+        joint = _Joint(here.y, here.factors, here.left, here.work, start, power_of_two(stop - start))
         segments: list[Segment] = []
         work = here.work
         kept = np.arange(joint.members)
@@ -417,7 +412,7 @@ class _Course:
                 good = good & ~hidden(system, reached.y, ahead)
             if good.all() and ahead is not None:
                 scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
-                return _Joint(end, reached.y, ahead, reached.left, scale), good, work
+                return _Joint(reached.y, ahead, reached.left, work, end, scale), good, work
             if leaving and good.any():
                 break
             length = 0.5 * (end - joint.instant)

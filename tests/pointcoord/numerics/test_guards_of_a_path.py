@@ -42,7 +42,6 @@ def ends_on_branch(first_step: float, last_but_one: float, last: float, u: float
         converged=np.array(True),
         iterations=np.array(2),
         first_step=np.array(first_step),
-        noise=np.array(0.0),
         left=np.array(0.0),
         last_step=np.array(first_step),
         work=Work(),
