@@ -19,7 +19,7 @@ from pointcoord.patches.jet import Jet
 Array = NDArray[np.float64]
 
 
-@pytest.mark.parametrize("pairs_at_once", [1, 7, 30, 8192])
+@pytest.mark.parametrize("pairs_at_once", [1, 30])
 @pytest.mark.parametrize("inputs", [1, 2, 3])
 def test_a_product_of_series_is_the_product_of_their_sums(
     monkeypatch: pytest.MonkeyPatch, inputs: int, pairs_at_once: int

@@ -154,11 +154,10 @@ def test_a_motion_that_cannot_go_on_names_the_input_that_moves(
     assert all("tie_rod" in name or "strut_lower" in name for name in error.limits[:3])
 
 
-@pytest.mark.parametrize("batch", [(), (3,), (2, 3)])
-@pytest.mark.parametrize("size", [1, 9])
+@pytest.mark.parametrize("batch", [(), (2, 3)])
 @pytest.mark.parametrize("ordered", [True, False])
-def test_sums_are_those_of_the_polynomials(batch: tuple[int, ...], size: int, ordered: bool) -> None:
-    rng = np.random.default_rng(5)
+def test_sums_are_those_of_the_polynomials(batch: tuple[int, ...], ordered: bool) -> None:
+    rng, size = np.random.default_rng(5), 4
     ends, scales, orders = (0.0, 0.5, 0.75, 2.0), (1.0, 0.25, 2.0), (6, 3, 7)
     segments = tuple(
         Segment(start, stop, scale, rng.normal(size=(*batch, order + 1, size)))
