@@ -34,11 +34,10 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange, SingularConfiguration
 from pointcoord.numerics.chebyshev import binomials, interpolation, shares_beyond
-from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.numerics.rounding import EPS, UNIT_ROUNDOFF
 from pointcoord.results.readout import BLOCK, ENOUGH
 from pointcoord.results.solved_scene import SolvedScene
-from pointcoord.solve.dense_output import derivative_tables
+from pointcoord.solve.dense_output import derivative_tables, narrow_product
 from pointcoord.solve.taylor import Chain
 
 Array = NDArray[np.float64]

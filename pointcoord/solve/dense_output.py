@@ -12,13 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.narrow_product import narrow_product
 from pointcoord.solve.taylor import Chain
 
 Array = NDArray[np.float64]
 
 # Instants per matrix product: the powers and the results of a block stay in a second-level cache.
 BLOCK = 1024
+# Multiplications of a part of a product: OpenBLAS shares products of 2^20 out among threads, none of 2^19.
+# They wait for each other most of the time; one does as well by parts, to a tenth. Columns of one, at least.
+MOST, FEWEST = 2**19, 64
 
 
 @dataclass(frozen=True)
@@ -112,3 +114,11 @@ def derivative_tables(coefficients: Array, scale: float, derivatives: int) -> li
         lower[..., :-1, :] = (tables[-1] * powers)[..., 1:, :] / scale
         tables.append(lower)
     return tables
+
+
+def narrow_product(matrix: Array, columns: Array, out: Array) -> None:
+    """Write a product, shapes (..., m, k), (k, N) and (..., m, N), where it belongs, by parts."""
+    step = max(MOST // max(matrix.shape[-2] * matrix.shape[-1], 1), FEWEST)
+    for low in range(0, columns.shape[-1], step):
+        here = slice(low, low + step)
+        np.matmul(matrix, columns[:, here], out=out[..., here])

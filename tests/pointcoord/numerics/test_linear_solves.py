@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from pointcoord.numerics import block_inverse
-from pointcoord.numerics import narrow_product as module
 from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.linear import (
     factorise,
     null_directions,
 )
-from pointcoord.numerics.narrow_product import FEWEST, narrow_product
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import scene_mechanism
+from pointcoord.solve import dense_output
 from pointcoord.solve.assembly import assemble, close_drawing
+from pointcoord.solve.dense_output import FEWEST, narrow_product
 from pointcoord.solve.taylor import Settings, build_chain
 from validate.cost.chain import SWING, FourBarChain
 
@@ -245,7 +245,7 @@ def test_no_part_is_larger_than_what_one_thread_takes(monkeypatch: pytest.Monkey
         sizes.append(left.shape[-2] * left.shape[-1] * right.shape[-1])
         product(left, right, out=out)
 
-    monkeypatch.setattr(module.np, "matmul", counted)
+    monkeypatch.setattr(dense_output.np, "matmul", counted)
     rng = np.random.default_rng(2)
     for rows, inner in ((1, 10), (60, 10), (500, 10), (10, 600)):
         sizes.clear()
