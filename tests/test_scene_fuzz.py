@@ -17,7 +17,7 @@ from program import complaints
 import pointcoord
 
 FILES = 10_000 if os.environ.get("HYPOTHESIS_PROFILE") == "deep" else 300
-BLOCK = 25
+BLOCK = 60
 # Every so many files are solved by all formulations as well.
 COMPARED = 10
 # Processor time, s, so that a busy machine changes nothing: a scene may take ten. A motion of the most
@@ -30,17 +30,18 @@ def run(*arguments: str) -> Run:
     return run_within(LIMIT[arguments[0]], *arguments)
 
 
-def fault(number: int, folder: Path) -> str:
-    """What is wrong with how a mutated file is met; nothing if it is met as it should be."""
-    path, target = folder / f"{number}.toml", folder / f"{number}.npz"
+def fault(number: int, folder: Path) -> tuple[int, str]:
+    """The status of a mutated file, and what is wrong with how it is met; nothing if nothing is."""
+    path, target, seen = folder / f"{number}.toml", folder / f"{number}.npz", Run(-1, "", "")
     path.write_bytes(mutated_scene(number))
     try:
-        found = _wrong_motion(run("simulate", str(path), "-o", str(target)), target)
+        seen = run("simulate", str(path), "-o", str(target))
+        found = _wrong_motion(seen, target)
         if not found and number % COMPARED == 0:
             found = wrong_words(run("validate", str(path)))
     except (Exception, TooLong):
-        return traceback.format_exc()
-    return found
+        found = traceback.format_exc()
+    return seen.status, found
 
 
 def _wrong_motion(seen: Run, target: Path) -> str:
@@ -55,23 +56,11 @@ def _wrong_motion(seen: Run, target: Path) -> str:
 
 @pytest.mark.parametrize("first", range(0, FILES, BLOCK))
 def test_every_mutated_file_gives_a_finite_motion_or_one_line(first: int, tmp_path: Path) -> None:
-    faults = {number: fault(number, tmp_path) for number in range(first, first + BLOCK)}
-    assert not {number: found for number, found in faults.items() if found}
-
-
-def test_a_number_always_means_the_same_file() -> None:
-    files = [mutated_scene(number) for number in range(200)]
-    assert files == [mutated_scene(number) for number in range(200)]
-    assert len(set(files)) > 190
-
-
-def test_the_files_are_not_all_refused_and_not_all_solved(tmp_path: Path) -> None:
-    statuses = []
-    for number in range(60):
-        path = tmp_path / "scene.toml"
-        path.write_bytes(mutated_scene(number))
-        statuses.append(run("simulate", str(path), "-o", str(tmp_path / "motion.npz")).status)
-    assert 6 <= statuses.count(0) <= 54
+    seen = {number: fault(number, tmp_path) for number in range(first, first + BLOCK)}
+    assert not {number: found for number, (_, found) in seen.items() if found}
+    # They are not all refused and not all solved.
+    solved = [status for status, _ in seen.values()].count(0)
+    assert 0.1 * BLOCK <= solved <= 0.9 * BLOCK
 
 
 BOUNCE = (Path(pointcoord.__file__).parent / "scenes" / "bounce.toml").read_text(encoding="utf-8")
@@ -165,13 +154,3 @@ def test_a_strut_that_lies_flat_defeats_the_printed_formulas_only(tmp_path: Path
     assert (seen.status, len(seen.err.splitlines())) == (3, 1)
     assert "; refused by printed (" in seen.err
     assert seen.err.endswith("; solved by pointcoord\n")
-
-
-@pytest.mark.parametrize("command", ["simulate", "validate"])
-def test_hardpoints_that_make_no_mechanism_are_told_with_the_name_of_the_file(
-    command: str, tmp_path: Path
-) -> None:
-    path = _bounce_with(tmp_path, {"[450, -330, -40]": "[452, -320, 20]"})
-    seen = run(command, path)
-    assert (seen.status, len(seen.err.splitlines())) == (2, 1)
-    assert seen.err.startswith(f"pointcoord: {path}: mechanism.points: link ")

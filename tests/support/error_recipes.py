@@ -26,17 +26,14 @@ from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
 from validate import assert_agrees, cli, compare
 from validate.assemblies.legs import forms
-from validate.ci.baseline import read_baseline
 from validate.cost.errors import errors_of, truth_of
 from validate.cost.table import Store as RowStore
 from validate.cost.table import measured_here
 from validate.cost.way import Answer
 from validate.cost.ways.registry import ways_named
 from validate.cost.ways.scipy_solvers import WAYS as SCIPY
-from validate.fitting.fit import free_coordinates
 from validate.formulations.protocol import Accuracy, FormulationError
 from validate.formulations.registry import formulation
-from validate.hardpoint_files.axes import Axes
 from validate.measured.reading import columns_of_text
 from validate.output.columns import write_motion
 from validate.peers.in_pinocchio import InPinocchio
@@ -167,10 +164,6 @@ def in_no_step(patch: pytest.MonkeyPatch) -> object:
 
 
 RECIPES: dict[str, Recipe] = {
-    "validate.errors.UsageError: axes": Recipe(
-        lambda *_: Axes.of("forward,rearward,up"),
-        ("'forward,rearward,up'", "allowed", "forward,left,up", "rearward"),
-    ),
     "pointcoord.errors.SceneError": Recipe(
         lambda *_: changed(time={"stop": -1.0}),
         ("mine: time:", "-1.0", "allowed: start < stop"),
@@ -292,14 +285,6 @@ RECIPES: dict[str, Recipe] = {
         ("mine.csv: line 3, column 'camber'", "'l.3' is no finite number", "allowed: a number"),
         {"source": "mine.csv", "place": "line 3, column 'camber'", "problem": bool, "allowed": bool},
     ),
-    "validate.errors.UsageError: a coordinate": Recipe(
-        lambda *_: free_coordinates(BOUNCE, ["strut_top", "strut_top.z"]),
-        ("--free", "strut_top.z is there twice", "allowed: each coordinate once"),
-    ),
-    "validate.errors.UsageError: a baseline": Recipe(
-        lambda folder, _: read_baseline(str(folder / "none.npz")),
-        ("none.npz", "No such file", "--save-baseline"),
-    ),
     "validate.peers.errors.HardpointsError": Recipe(
         lambda *_: linkage_of(HINGE_OF_ONE_POINT),
         ("lower_arm_front is where lower_arm_rear is", "allowed: points apart"),
@@ -372,7 +357,7 @@ RECIPES: dict[str, Recipe] = {
         {"instant": None, "condition": lambda number: number > 1e12, "inputs": bool},
     ),
     "validate.cli.Answer": Recipe(lambda *_: cli._parsed(["--version"]), ("pointcoord ",)),
-    "validate.errors.UsageError: a command": Recipe(
+    "validate.errors.UsageError": Recipe(
         lambda *_: cli._parsed(["simulat", "bounce"]),
         ("simulat", "did you mean 'simulate'?", "pointcoord --help"),
     ),
@@ -412,9 +397,6 @@ RECIPES: dict[str, Recipe] = {
         lambda *_: assert_agrees({"camber": np.zeros(len(BOUNCE.instants))}, BOUNCE, accuracy=1e3),
         ("not tested in", "camber", "an accuracy of 1000 mm says nothing", "state a finer accuracy"),
         {"accuracy": 1e3, "scene": BOUNCE.title, "numbers": ("camber",)},
-    ),
-    "validate.errors.UsageError: a formulation": Recipe(
-        lambda *_: formulation("adams"), ("'adams'", "there are: pointcoord, ")
     ),
     "validate.extras.MissingPackage": Recipe(
         lambda _, pretend: (

@@ -84,20 +84,6 @@ def test_lotus_means_the_contact_point_by_travel_and_the_offset_by_scrub_radius(
     assert "scrub_radius" not in names
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (("--convention", "bmw"), "no convention named 'bmw'; there are: iso, paper, lotus, optimumk, adams"),
-        (("--convention", "adams", "--all"), "--all is every number by our names"),
-    ],
-)
-def test_what_is_no_convention_is_said(
-    words: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["table", "double-wishbone", *words]) == 2
-    assert told in capsys.readouterr().err
-
-
 def test_a_scene_says_what_names_mean_in_its_tables_sensitivities_pictures_and_files(tmp_path: Path) -> None:
     text = (
         (SCENES / "double-wishbone.toml")

@@ -21,35 +21,38 @@ TAKES = re.compile(
 
 
 @pytest.mark.parametrize("name", built_in_scenes())
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-12])
-def test_the_effort_that_is_planned_is_the_work_of_the_solved_motion(name: str, tolerance: float) -> None:
-    scene = Scene.load(name).model_copy(update={"tolerance": tolerance})
-    planned, motion = effort(scene), simulate(scene)
-    work = motion.work
-    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
-    assert (planned.work.factorisations, planned.work.residuals) == (work.factorisations, work.residuals)
-    assert planned.start.factorisations == motion.start.work.factorisations
-    assert (planned.stop, planned.status.complete) == (scene.time.stop, True)
-    # The tolerance is what was asked for, or the finest that a series holds, and then the motion says so.
-    noted = [note for note in motion.notes if note.startswith("the tolerance of ")]
-    assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12, abs=0.0)) == (not noted)
-    assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
-    # Nothing is summed at the instants.
-    assert planned.work.coordinates_evaluated == 0 < work.coordinates_evaluated
-
-
-@pytest.mark.parametrize("name", built_in_scenes())
-def test_plan_prints_the_effort(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_effort_that_is_planned_and_printed_is_the_work_of_the_solved_motion(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert main(["plan", name]) == 0
     told = TAKES.search(capsys.readouterr().out)
     assert told is not None
     scene = Scene.load(name)
-    work = simulate(scene).work
-    assert int(told["segments"]) == work.segments
-    assert int(told["orders"]) == work.series_orders
-    assert int(told["all"]) == work.factorisations
-    assert float(told["tolerance"]) == scene.tolerance
+    planned, motion = effort(scene), simulate(scene)
+    work = motion.work
+    assert (len(planned.orders), sum(planned.orders)) == (work.segments, work.series_orders)
+    assert (int(told["segments"]), int(told["orders"])) == (work.segments, work.series_orders)
+    assert planned.work.factorisations == work.factorisations == int(told["all"])
+    assert planned.work.residuals == work.residuals
+    assert planned.start.factorisations == motion.start.work.factorisations == int(told["start"])
+    assert (planned.stop, planned.status.complete) == (scene.time.stop, True)
+    assert planned.tolerance == scene.tolerance == float(told["tolerance"])
+    assert planned.part == pytest.approx(planned.tolerance / motion.unit, rel=1e-12)
     assert int(told["few"]) <= work.series_orders / work.segments <= int(told["many"] or told["few"])
+    # Nothing is summed at the instants.
+    assert planned.work.coordinates_evaluated == 0 < work.coordinates_evaluated
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-15])
+def test_the_tolerance_that_is_planned_is_the_asked_one_or_the_finest_and_the_motion_says_so(
+    tolerance: float,
+) -> None:
+    scene = Scene.load("five-link").model_copy(update={"tolerance": tolerance})
+    planned, motion = effort(scene), simulate(scene)
+    assert sum(planned.orders) == motion.work.series_orders
+    noted = [note for note in motion.notes if note.startswith("the tolerance of ")]
+    assert (planned.tolerance == pytest.approx(tolerance, rel=1e-12, abs=0.0)) == (not noted)
+    assert bool(noted) == (tolerance < 1e-13)
 
 
 def test_a_long_table_is_planned_by_a_map_and_says_why(

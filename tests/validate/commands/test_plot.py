@@ -220,13 +220,3 @@ def test_plot_draws_the_columns_of_a_file(
     assert main(("plot", str(swept / "sweep.csv"), *words, "-o", str(target))) == status
     assert target.exists() == (status == 0)
     assert told in capsys.readouterr().err
-
-
-def test_a_file_without_angles_asks_for_its_columns(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "lengths.csv"
-    file.write_text("time [s],damper [mm]\n0,1\n1,2\n", encoding="utf-8")
-    assert main(("plot", str(file), "-o", str(tmp_path / "a.svg"))) == 2
-    assert "has no angle of a wheel; say --y NAME of its columns: time, damper" in capsys.readouterr().err
-    assert main(("plot", str(file), "--y", "damper", "-o", str(tmp_path / "a.svg"))) == 0

@@ -23,11 +23,13 @@ HARD = {
     "broken": ("{", "is no JSON"),
     "deep": ("[" * 100_000, "is no JSON"),
     "list": ("[]", "holds no hard cases"),
+    "other": ('{"kind": "validate"}', "holds no hard cases"),
     "newer": ('{"kind": "hard", "schema_version": 99, "complete": true}', "schema_version: "),
     "cut": ('{"kind": "hard", "schema_version": 2, "complete": false}', "complete: "),
     "odd": ('{"kind": "hard", "schema_version": 2, "complete": true, "cases": [1]}', "holds no hard cases ("),
 }
-WISHBONE = ("plot", "double-wishbone")
+FITTED = "bounce --data CURVES"
+CAR = "double-wishbone"
 # Command lines, their status, and parts of what is said. ROWS is a file of measured rows, SCENE a scene file,
 # FILE a file that is there, FOREIGN a folder with somebody's page, OUT nothing yet.
 REFUSED: list[tuple[str, int, list[str]]] = [
@@ -52,6 +54,7 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     ("validate steer --junit OUT --summary ./OUT", 2, ["--junit and --summary are both", "of its own"]),
     ("validate steer --json - --summary -", 2, ["--json and --summary are both -", "of its own"]),
     ("validate steer --save-baseline -", 2, ["is not text"]),
+    ("validate steer --baseline none.npz", 2, ["none.npz", "No such file", "--save-baseline"]),
     ("validate steer --baseline FILE --json FILE", 2, ["would overwrite"]),
     ("validate SCENE --junit SCENE", 2, ["would overwrite"]),
     ("validate steer --summary none/x", 4, ["there is no folder"]),
@@ -59,8 +62,15 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     ("validate steer --report ''", 2, ["--report '' names no folder"]),
     ("validate steer --solver pathlib:nope --report OUT", 2, ["has no 'nope'"]),
     ("validate steer --data x --save-baseline OUT", 2, ["--save-baseline does not go with --data"]),
-    ("validate --tables bounce", 2, ["SCENE does not go with --tables"]),
-    ("validate --tables --first absolute", 2, ["--first does not go with --tables"]),
+    *(
+        (f"validate --tables {words}", 2, [f"{option} does not go with --tables"])
+        for option, words in {
+            "SCENE": "bounce",
+            "--first": "--first absolute",
+            "--tolerance-factor": "--tolerance-factor 2",
+            "--fail-fast": "--fail-fast",
+        }.items()
+    ),
     ("report '' steer", 2, ["names no folder"]),
     ("report FILE steer", 2, ["is a file; allowed: a folder"]),
     ("report FOREIGN steer", 2, ["is no report of this program"]),
@@ -70,6 +80,13 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     ("report OUT steer --data x --hard h", 2, ["--hard does not go with --data"]),
     *((f"report OUT steer --hard {name}.json", 2, [said]) for name, (_, said) in HARD.items()),
     ("hard --list --report OUT", 2, ["leave it out with --list"]),
+    ("hard arm-higest", 2, ["no hard case is called 'arm-higest'", "near names: ", "--list"]),
+    (
+        f"fit {FITTED} --free strut_top strut_top.z",
+        2,
+        ["--free: strut_top.z is there twice", "each coordinate once"],
+    ),
+    (f"fit {FITTED} --free strut_tip", 2, ["did you mean 'strut_top'?"]),
     ("simulate bounce -o x.xlsx", 2, ["x.xlsx", ".csv", ".npz"]),
     ("simulate bounce -o ''", 2, ["-o ''", "names no file"]),
     ("simulate bounce --method euler", 2, ["euler", "newton"]),
@@ -77,16 +94,40 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     ("simulate steer --instants 0", 2, ["allowed: 1 or more"]),
     ("draw no-such-scene", 2, ["bounce"]),
     ("draw steer -o x.png", 2, ["allowed: .svg"]),
+    ("plot LENGTHS.csv -o a.svg", 2, ["has no angle of a wheel; say --y NAME of its columns: time, damper"]),
     ("plot bounce --x toe", 2, ["--x", "was not computed", "add 'toe' to the scene's effects"]),
-    (f"{' '.join(WISHBONE)} --y cambr", 2, ["--y 'cambr'", "did you mean 'camber'", "there are: time"]),
-    (f"{' '.join(WISHBONE)} --y velocity", 2, ["more than one number", "velocity.wheel_centre"]),
-    (f"{' '.join(WISHBONE)} --x camber --x toe --y camber --y toe", 2, ["several of one of them"]),
-    (f"{' '.join(WISHBONE)} -o a.gif", 2, ["no known ending", ".svg, .png"]),
+    (f"plot {CAR} --y cambr", 2, ["--y 'cambr'", "did you mean 'camber'", "there are: time"]),
+    (f"plot {CAR} --y velocity", 2, ["more than one number", "velocity.wheel_centre"]),
+    (f"plot {CAR} --x camber --x toe --y camber --y toe", 2, ["several of one of them"]),
+    (f"plot {CAR} -o a.gif", 2, ["no known ending", ".svg, .png"]),
     ("table bricard", 2, ["there is no number of a wheel"]),
     ("table wheel-travel --number tow", 2, ["did you mean 'toe'?"]),
     ("table five-link --number caster", 2, ["needs the role steering_axis"]),
     ("table bmw-e90-strut --number scrub_radius", 2, ["wheel_radius = 300.0"]),
     ("table wheel-travel -o t.pdf", 2, ["allowed: .csv, .md"]),
+    (
+        "table wheel-travel --grid wheel_travl=1,2",
+        2,
+        ["no input that the scene drives (did you mean 'wheel_travel'?)"],
+    ),
+    ("table wheel-travel --grid rack=1:2", 2, ["is no range; allowed: START:STOP:COUNT"]),
+    ("table wheel-travel --grid rack=1,two", 2, ["has 'two' for a number"]),
+    ("table wheel-travel --grid rack=1,2", 2, ["wheel_travel moves in the scene; give its values too"]),
+    ("table wheel-travel --grid rack=1 --grid rack=2", 2, ["is given twice"]),
+    ("table wheel-travel --grid rack=1 --rows 3", 2, ["--rows is about a way of the inputs"]),
+    (
+        "table axle-steer --number tooe",
+        2,
+        ["no number of a car is called tooe", "and 160 more (--all shows every one)"],
+    ),
+    (
+        f"table {CAR} --convention bmw",
+        2,
+        ["no convention named 'bmw'; there are: iso, paper, lotus, optimumk, adams"],
+    ),
+    (f"table {CAR} --convention adams --all", 2, ["--all is every number by our names"]),
+    (f"sensitivity {CAR} --point tie_rod_outr", 2, ["tie_rod_outr"]),
+    (f"sensitivity {CAR} --number toes", 2, ["no number of a car is called toes (did you mean 'toe'?)"]),
     ("sweep steer", 2, ["nothing varies", "--vary POINT.AXIS=START:STOP:COUNT"]),
     ("sweep steer --vary lower_bal_joint.z=0:1:2", 2, ["did you mean 'lower_ball_joint'?"]),
     ("sweep steer --vary strut_top.w=0:1:2", 2, ["no axis of strut_top named 'w'", "x, y, z"]),
@@ -138,7 +179,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     short_scene(tmp_path, "SCENE")
     for name in ("EMPTY", "FOREIGN"):
         (tmp_path / name).mkdir()
-    texts = {"FILE": "mine", "FOREIGN/index.html": "<p>mine</p>"}
+    texts = {
+        "FILE": "mine",
+        "FOREIGN/index.html": "<p>mine</p>",
+        "CURVES": "time [s],camber [deg]\n0,1\n1,2\n",
+        "LENGTHS.csv": "time [s],damper [mm]\n0,1\n",
+    }
     texts |= {f"{name}.csv": text for name, (text, _) in DESIGNS.items()}
     texts |= {f"{name}.json": text for name, (text, _) in HARD.items()}
     for name, text in texts.items():
@@ -182,12 +228,15 @@ def test_a_wrong_scene_ends_with_2_and_one_line_that_says_where(
     old: str, new: str, words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert old in BOUNCE
-    (tmp_path / "mine.toml").write_text(BOUNCE.replace(old, new))
-    assert main(["simulate", str(tmp_path / "mine.toml"), "-o", str(tmp_path / "out.csv")]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (said,) = err.splitlines()
-    assert [word for word in words if word not in said] == [], said
+    path = tmp_path / "mine.toml"
+    path.write_text(BOUNCE.replace(old, new))
+    for command in (["simulate", str(path), "-o", str(tmp_path / "out.csv")], ["validate", "-q", str(path)]):
+        assert main(command) == 2
+        out, err = capsys.readouterr()
+        assert out == ""
+        (said,) = err.splitlines()
+        assert said.startswith(f"pointcoord: {path}: ")
+        assert [word for word in words if word not in said] == [], said
 
 
 @pytest.mark.parametrize(

@@ -146,17 +146,6 @@ def test_a_row_at_another_place_than_its_first_column_says_is_refused_in_a_line(
     assert len(error.splitlines()) == 1
 
 
-@pytest.mark.parametrize(
-    "words", [["steer"], ["--first", "absolute"], ["--tolerance-factor", "2"], ["--fail-fast"]]
-)
-def test_what_is_about_scenes_is_refused_beside_tables(
-    words: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["validate", "--tables", *words]) == 2
-    option = "SCENE" if words == ["steer"] else words[0]
-    assert f"{option} does not go with --tables" in capsys.readouterr().err
-
-
 def test_every_column_has_a_meaning_and_every_table_a_source_and_a_licence() -> None:
     every = {number for table in TABLES.values() for number in table.columns.values()}
     assert set(RULES) <= every
