@@ -6,7 +6,7 @@ import pytest
 
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
-from validate.output.report import heading, outcome_parts
+from validate.output.report import HEAD, heading, outcome_parts
 from validate.output.table import text_of
 from validate.tables.units import degrees_of
 
@@ -28,16 +28,7 @@ def lines_of(outcome: Outcome) -> dict[str, list[str]]:
             break
         cells = [line[start:end].strip() for start, end in zip(starts, ends, strict=True)]
         rows[cells[0]] = cells[1:]
-    assert [head[start:end].strip() for start, end in zip(starts, ends, strict=True)] == [
-        "quantity",
-        "where",
-        "largest difference",
-        "tolerance",
-        "at",
-        "share",
-        "limited by",
-        "verdict",
-    ]
+    assert [head[start:end].strip() for start, end in zip(starts, ends, strict=True)] == [*HEAD]
     return rows
 
 

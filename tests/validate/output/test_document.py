@@ -68,11 +68,8 @@ def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixtu
 
 def test_numbers_that_do_not_exist_and_bytes_that_are_no_text_have_a_place_in_json() -> None:
     text = json_text({"a": [float("nan"), float("inf"), 1.0], "b": ({"c": -float("inf")},), "d": "\udcff"})
-    assert document_part(text) == {"a": [None, None, 1.0], "b": [{"c": None}], "d": "\\udcff"}
-
-
-def document_part(text: str) -> Any:
-    return json.loads(text, parse_constant=no_constant)
+    data = json.loads(text, parse_constant=no_constant)
+    assert data == {"a": [None, None, 1.0], "b": [{"c": None}], "d": "\\udcff"}
 
 
 def test_every_ending_of_a_comparison_keeps_to_the_schema(
@@ -106,7 +103,7 @@ def test_hard_cases_keep_to_the_schema(words: list[str], capsys: pytest.CaptureF
 
 @pytest.mark.parametrize(
     "study",
-    [random_cars(2), bounds(1, motions=0), claims(1), hard(["link-twice"])],
+    [random_cars(1), bounds(1, motions=0), claims(1), hard(["link-twice"])],
     ids=lambda study: study.name,
 )
 def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:

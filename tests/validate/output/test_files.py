@@ -56,6 +56,12 @@ def test_what_a_kill_left_half_written_goes_when_the_file_is_written_again(tmp_p
     require_writable(str(target))
     write_whole(str(target), put(b"new"))
     assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
+    # To ask whether a file can be written changes nothing.
+    before = target.stat().st_mtime_ns
+    for one in (target, tmp_path / "y.json"):
+        require_writable(str(one))
+    assert target.stat().st_mtime_ns == before
+    assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
 
 
 def test_the_content_is_on_the_disk_before_it_has_its_name(
@@ -119,13 +125,3 @@ def test_a_target_that_cannot_be_written_is_told_before_and_when_it_is_written(
         with pytest.raises(OutputError, match=rf"cannot be written \(.*{words}"):
             attempt(f"{tmp_path}/{name}")
     assert len(list(tmp_path.iterdir())) == 2
-
-
-def test_asking_whether_a_file_can_be_written_changes_nothing(tmp_path: Path) -> None:
-    target = tmp_path / "x.json"
-    require_writable(str(target))
-    assert not list(tmp_path.iterdir())
-    target.write_bytes(b"old")
-    before = target.stat()
-    require_writable(str(target))
-    assert target.stat().st_mtime_ns == before.st_mtime_ns
