@@ -59,7 +59,7 @@ class Page:
             UsageError: the folder has no name, or cannot be a report's.
             OutputError: it cannot be written.
         """
-        from validate.html.folder import require_folder
+        from validate.html.page import require_folder
 
         if not self.folder.strip():
             raise UsageError(
@@ -75,7 +75,7 @@ class Page:
         Raises:
             OutputError: it cannot be written.
         """
-        from validate.html.folder import write_report
+        from validate.html.page import write_report
 
         whole = self.with_more(run)
         write_report(self.folder, whole)

@@ -217,7 +217,7 @@ def _told(report: Report, options: argparse.Namespace, console: Console) -> Exit
         console.put(options.csv, report.csv(), "the rows")
     if options.report:
         # Most runs write no page.
-        from validate.html.folder import make_folder
+        from validate.html.page import make_folder
         from validate.html.run import Run
 
         make_folder(options.report)

@@ -13,14 +13,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Scene
-from pointcoord.simulation import scene_mechanism
-from pointcoord.solve.assembly import close_drawing
+from validate.closed_drawing import closed_drawing
 from validate.paper.tables import TABLE_2, TABLE_3, PaperRow
 
-Array = NDArray[np.float64]
 Table3 = list[PaperRow]
 
 _KNOWN = tomllib.loads(Path(__file__).with_name("errata.toml").read_text(encoding="utf-8"))["errata"]
@@ -72,36 +69,24 @@ def errata(rows: Iterable[PaperRow]) -> tuple[Erratum, ...]:
     )
 
 
-def _points() -> dict[str, Array]:
-    return {name: np.array(place) for name, place in Scene.load("bounce").mechanism.points.items()}
-
-
 def _table_1(_: Table3) -> str:
-    points = _points()
+    points = {name: np.array(place) for name, place in Scene.load("bounce").mechanism.points.items()}
     low = points["strut_lower"] - points["lower_ball_joint"]
     high = points["strut_top"] - points["strut_rod_end"]
     cosine = low @ high / (np.linalg.norm(low) * np.linalg.norm(high))
-    mechanism = scene_mechanism(Scene.load("bounce"))
-    places = mechanism.places(close_drawing(mechanism).y)
-    moved = {
-        name: float(np.linalg.norm(mechanism.origin + float(mechanism.unit) * places[name] - place))
-        for name, place in points.items()
-        if name in places
-    }
-    name = max(moved, key=lambda one: moved[one])
+    moved = closed_drawing(Scene.load("bounce")).closing
+    assert moved is not None  # the paper's car closes
     return (
-        f"5-7 and 8-4 are {math.degrees(math.acos(cosine)):.2f} degrees apart; closing them moves {name} by "
-        f"{moved[name]:.1f} mm"
+        f"5-7 and 8-4 are {math.degrees(math.acos(cosine)):.2f} degrees apart; closing them moves "
+        f"{moved.point} by {moved.largest:.1f} mm"
     )
 
 
 def _law(_: Table3) -> str:
     times, printed = np.array([(row.time, row.input) for row in TABLE_3]).T
-    apart = {
-        factor: np.abs(150.0 * times + 1000.0 * factor * times**2 - printed).max()
-        for factor in (0.0025, 0.025)
-    }
-    wrong, right = apart.values()
+    wrong, right = (
+        np.abs(150.0 * times + 1000.0 * factor * times**2 - printed).max() for factor in (0.0025, 0.025)
+    )
     return f"up to {wrong:.2f} mm from the column; the law with 0.025 up to {right:.3f} mm"
 
 
@@ -121,19 +106,11 @@ def _sign(rows: Table3) -> str:
 
 
 def _noise(rows: Table3) -> str:
-    printed, ours = (np.linalg.norm([of(row) for row in rows], axis=1) for of in (_printed_omega, _our_omega))
+    printed, ours = np.linalg.norm([(row.printed.omega, row.omega) for row in rows], axis=2).T
     return (
         f"printed |omega| between {printed.min():.2f} and {printed.max():.2f} rad/s; computed from "
         f"{ours.min():.2f} to {ours.max():.2f} rad/s"
     )
-
-
-def _printed_omega(row: PaperRow) -> tuple[float, float, float]:
-    return row.printed.omega
-
-
-def _our_omega(row: PaperRow) -> tuple[float, float, float]:
-    return row.omega
 
 
 def _rank(_: Table3) -> str:

@@ -46,49 +46,42 @@ class Rule:
     of: Callable[[Solved], Array]
 
 
-def _damper_ratio(solved: Solved) -> Array:
-    """Wheel over damper, by the travel of the contact point: -dz_c / dl."""
+def _drawn_length(solved: Solved, role: str) -> float:
+    part = solved.scene.mechanism
+    first, second = (np.array(part.points[name]) for name in part.structure.roles[role])
+    return float(np.linalg.norm(second - first))
+
+
+def _ratio(solved: Solved) -> Array:
     numbers = solved.numbers
     return -numbers["contact_travel_by_travel"] / numbers["damper_length_by_travel"]
 
 
-def _damper_travel(solved: Solved) -> Array:
-    """The damper's length less its drawn one."""
-    part = solved.scene.mechanism
-    first, second = (np.array(part.points[name]) for name in part.structure.roles["damper"])
-    return np.asarray(solved.numbers["damper_length"] - np.linalg.norm(second - first))
-
-
-def _trail_at_the_axis(solved: Solved) -> Array:
-    """At right angles to the steering axis in side view."""
-    return solved.numbers["castor_offset"] * np.cos(solved.numbers["caster"])
-
-
-def _roll_centre_to_body(solved: Solved) -> Array:
-    return solved.numbers["roll_centre_height"] + solved.numbers["contact_travel"]
-
-
-def _wheel_centre_outward(solved: Solved) -> Array:
+def _outward(solved: Solved) -> Array:
     part = solved.scene.mechanism
     centre = part.topology.wheel_centre
-    moved = solved.numbers[centre] - np.array(part.points[centre])
-    return np.asarray(moved @ part.outboard)
+    return np.asarray((solved.numbers[centre] - np.array(part.points[centre])) @ part.outboard)
 
 
-def _turning_circle(solved: Solved) -> Array:
-    """The turning radius, printed as 0 straight ahead."""
-    return np.where(solved.over == 0.0, 0.0, solved.numbers["turning_radius"])
+def _length(of: Callable[[Solved], Array]) -> Rule:
+    return Rule("dimension", "mm", of)
 
 
 RULES: Mapping[str, Rule] = {
-    "damper_ratio": Rule("dimension_gradient", "mm/mm", _damper_ratio),
-    "damper_travel": Rule("dimension", "mm", _damper_travel),
+    # Wheel over damper, by the travel of the contact point: -dz_c / dl.
+    "damper_ratio": Rule("dimension_gradient", "mm/mm", _ratio),
+    # The damper's length less its drawn one.
+    "damper_travel": _length(lambda car: car.numbers["damper_length"] - _drawn_length(car, "damper")),
     # Of a front axle.
-    "wheelbase_change": Rule("dimension", "mm", lambda solved: -solved.numbers["recession"]),
-    "trail_at_the_axis": Rule("dimension", "mm", _trail_at_the_axis),
-    "roll_centre_to_body": Rule("dimension", "mm", _roll_centre_to_body),
-    "wheel_centre_outward": Rule("dimension", "mm", _wheel_centre_outward),
-    "turning_circle": Rule("dimension", "mm", _turning_circle),
+    "wheelbase_change": _length(lambda car: -car.numbers["recession"]),
+    # At right angles to the steering axis in side view.
+    "trail_at_the_axis": _length(lambda car: car.numbers["castor_offset"] * np.cos(car.numbers["caster"])),
+    "roll_centre_to_body": _length(
+        lambda car: car.numbers["roll_centre_height"] + car.numbers["contact_travel"]
+    ),
+    "wheel_centre_outward": _length(_outward),
+    # The turning radius, printed as 0 straight ahead.
+    "turning_circle": _length(lambda car: np.where(car.over == 0.0, 0.0, car.numbers["turning_radius"])),
 }
 """Columns that are none of our numbers."""
 

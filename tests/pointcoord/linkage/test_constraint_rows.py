@@ -22,7 +22,7 @@ from pointcoord.linkage.constraints.scalar_product import KeptTurn, ScalarProduc
 from pointcoord.linkage.constraints.turn import Turn
 from pointcoord.linkage.layout import Layout
 from pointcoord.numerics.quadratic import quadratic_map
-from validate.paper.printed_parallel import PrintedParallel
+from validate.paper.printed import PrintedParallel
 
 Array = NDArray[np.float64]
 U = np.finfo(float).eps / 2

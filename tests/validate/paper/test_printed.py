@@ -13,8 +13,13 @@ from pointcoord.mechanism import mechanism_file
 from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.solve.pointwise import square_velocity_term
 from validate.cars.paper_car import PAPER
-from validate.paper.printed import PRINTED, TOPOLOGY, PrintedQuotients, printed_square_velocity_term
-from validate.paper.printed_parallel import PrintedParallel
+from validate.paper.printed import (
+    PRINTED,
+    TOPOLOGY,
+    PrintedParallel,
+    PrintedQuotients,
+    printed_square_velocity_term,
+)
 
 COLLINEAR = mechanism_file("macpherson").topology("collinear", points=PAPER)
 

@@ -13,8 +13,7 @@ from validate.html.section import Block, Paragraph, Section
 from validate.output.report import paper_sentence, paper_tables, printed_parts
 from validate.output.table import Table
 from validate.paper.errata import errata
-from validate.paper.figures import Figure, figures
-from validate.paper.tables import WHY_NOT_EQUAL, PaperRow
+from validate.paper.tables import WHY_NOT_EQUAL, Figure, PaperRow, figures
 
 FIGURES = (
     "What the paper's Figures 5 to 8 show, computed from its hardpoints and its laws of the inputs; crosses "
