@@ -1,6 +1,5 @@
 """The rules of the house: who may import whom, and how the modules of a package are stacked."""
 
-import ast
 import subprocess
 import sys
 
@@ -63,15 +62,9 @@ def test_an_arrow_that_leads_up_is_seen() -> None:
 
 
 def test_the_first_lines_of_the_program_need_nothing_but_python() -> None:
-    for name in ("pointcoord/__main__.py", "validate/exit_status.py"):
-        for node in ast.walk(ast.parse((ROOT / name).read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Import):
-                roots = {alias.name.split(".")[0] for alias in node.names}
-            elif isinstance(node, ast.ImportFrom):
-                roots = {(node.module or "").split(".")[0]}
-            else:
-                continue
-            assert roots <= set(sys.stdlib_module_names), name
+    found = modules(ROOT, "pointcoord") | modules(ROOT, "validate")
+    for name in ("pointcoord.__main__", "validate.exit_status"):
+        assert {one.partition(".")[0] for one in found[name]} <= set(sys.stdlib_module_names), name
     program = "import pointcoord, sys; raise SystemExit('numpy' in sys.modules)"
     subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT)
 

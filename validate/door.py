@@ -9,12 +9,12 @@ from validate.exit_status import ExitStatus, of_interruption
 from validate.output.console import Console
 
 
-def guarded(action: Callable[[Console], ExitStatus], program: str = "pointcoord") -> int:
+def guarded(action: Callable[[Console], ExitStatus]) -> int:
     """Run an action; whatever ends it, one line on standard error says so, and the status is documented.
 
     A defect is told in one line too; `python -X dev` shows where it came from.
     """
-    console = Console(program)
+    console = Console()
     try:
         status = action(console)
         console.flush()

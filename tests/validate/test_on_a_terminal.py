@@ -15,12 +15,8 @@ from program import ENVIRONMENT, PROGRAM, ROOT, run
 
 from validate.output import table
 from validate.output.console import Console
-from validate.output.progress import progress
 
-SLOW = (
-    "import time\nfrom validate.output.console import Console\n"
-    "from validate.output.progress import progress\nconsole = Console()\n{more}\n"
-)
+SLOW = "import time\nfrom validate.output.console import Console\nconsole = Console()\n{more}\n"
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
 
 
@@ -62,8 +58,12 @@ def validated(
     return on_terminal([*PROGRAM, "validate", "-v", scene], columns, both, folder, **more)
 
 
-def test_a_dumb_terminal_shows_what_a_pipe_has() -> None:
-    piped = run("validate", "-v", "double-wishbone").stdout
+@pytest.fixture(scope="module")
+def piped() -> str:
+    return run("validate", "-v", "double-wishbone").stdout
+
+
+def test_a_dumb_terminal_shows_what_a_pipe_has(piped: str) -> None:
     assert validated(both=True, TERM="dumb").replace("\r\n", "\n") == piped
     assert "\x1b" not in piped
 
@@ -73,15 +73,15 @@ def cells(text: str) -> list[str]:
     return re.sub(r"-{3,}", " ", COLOURS.sub("", text)).split()
 
 
-def test_a_terminal_shows_the_same_words_in_colours() -> None:
-    piped, shown = run("validate", "-v", "double-wishbone").stdout, validated()
+def test_a_terminal_shows_the_same_words_in_colours(piped: str) -> None:
+    shown = validated()
     assert "\x1b[32magrees" in shown
     assert cells(shown) == cells(piped)
     assert "\x1b[3" not in validated(NO_COLOR="1")
 
 
-def test_a_narrow_terminal_shows_every_cell_in_full() -> None:
-    piped, shown = run("validate", "-v", "double-wishbone").stdout, validated(columns=40)
+def test_a_narrow_terminal_shows_every_cell_in_full(piped: str) -> None:
+    shown = validated(columns=40)
     # The name of the first column is left out: each row begins with what it is about.
     assert {*cells(piped)} - {"quantity"} <= {*cells(shown.replace(": ", " ")), *cells(shown)}
     assert "---" not in shown
@@ -100,7 +100,7 @@ def test_a_terminal_of_eighty_columns_shows_a_table_of_whole_words_within_them()
 
 
 def test_progress_comes_after_two_seconds_and_goes_away() -> None:
-    work = "with progress(console, 'cases', total=3) as told:\n    told('first', 1)\n    time.sleep({0})\n"
+    work = "with console.progress('cases', total=3) as told:\n    told('first', 1)\n    time.sleep({0})\n"
     work += "    console.say('a result')\n    time.sleep(0.6)\nconsole.say('the end')"
     program = [sys.executable, "-c"]
     long = on_terminal([*program, SLOW.format(more=work.format(2.6))])
@@ -113,7 +113,7 @@ def test_progress_comes_after_two_seconds_and_goes_away() -> None:
 
 
 def test_progress_goes_to_no_pipe(capsys: pytest.CaptureFixture[str]) -> None:
-    with progress(Console(), "cases", total=3, lines=False) as told:
+    with Console().progress("cases", total=3, lines=False) as told:
         told("first", 1)
     assert capsys.readouterr() == ("", "")
 

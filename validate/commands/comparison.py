@@ -36,7 +36,6 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import NAMES, WORDS, formulation, second_there
 from validate.output import report
 from validate.output.console import Console
-from validate.output.progress import progress
 from validate.output.report import counted_as
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 from validate.paper.tables import compare_with_paper
@@ -158,7 +157,7 @@ def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | 
     with (
         _solver(options) as own,
         comparing(options, console, record, page) as compared,
-        progress(console, "scenes", total=len(names), lines=page is not None and page.brief) as told,
+        console.progress("scenes", total=len(names), lines=page is not None and page.brief) as told,
     ):
         loaded = _loaded(names, console)
         told_pairs = "; ".join(" and ".join(pair) for pair in pairs)

@@ -32,7 +32,6 @@ from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.files import write_content
-from validate.output.progress import progress
 from validate.output.report import counted_as
 
 if TYPE_CHECKING:
@@ -174,7 +173,7 @@ def _measured(study: Study, store: Store, options: argparse.Namespace, console: 
 
     with _journal(options, console, report).closing() as ending:
         try:
-            with progress(console, "what accuracy costs") as told:
+            with console.progress("what accuracy costs") as told:
                 rows += needed("cost", "validate.cost.study").measure(study, store, told)
         except BaseException:
             # What was kept before it stopped is in the file only.

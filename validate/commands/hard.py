@@ -10,7 +10,6 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.progress import progress
 from validate.output.report import counted_as
 
 DESCRIPTION = """\
@@ -73,7 +72,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
 
     with (
         journal.closing() as ending,
-        progress(console, "cases", total=len(cases), lines=False) as working,
+        console.progress("cases", total=len(cases), lines=False) as working,
     ):
         hard_run.run(cases, tell)
         if options.times:
@@ -107,7 +106,7 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
         lambda: found,
     )
     names = options.cases or scenes.SHIPPED
-    with journal.closing() as ending, progress(console, "scenes", total=len(names), lines=False) as working:
+    with journal.closing() as ending, console.progress("scenes", total=len(names), lines=False) as working:
         for done, name in enumerate(names, start=1):
             found.extend(scenes.counts(name))
             working(f"scenes, {name} done", done)

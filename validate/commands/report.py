@@ -21,7 +21,6 @@ from validate.exit_status import ExitStatus
 from validate.html.hard_cases import HardCases, read_hard_cases
 from validate.html.run import Run
 from validate.output.console import Console
-from validate.output.progress import progress
 from validate.plain_text import shown
 from validate.published.tables import compare_published
 
@@ -86,7 +85,7 @@ def _some_hard_cases(run: Run, console: Console) -> HardCases:
     from validate.hard.catalogue import chosen
 
     cases = chosen(HARD)
-    with progress(console, "hard cases", total=len(cases)) as at:
+    with console.progress("hard cases", total=len(cases)) as at:
         done: list[str] = []
 
         def tell(one: hard_run.Examined) -> None:
@@ -108,7 +107,7 @@ def _first_look_at_cost(run: Run, console: Console) -> Report:
 
     command = shlex.join(run.head.command)
     study = Study(("accuracy",), (study_scene(SCENE, own_scene(SCENE)),), ways_named(WAYS), quick=True)
-    with progress(console, "a first look at cost") as told:
+    with console.progress("a first look at cost") as told:
         rows = measure(study, Store(None, measured_here(command)), told)
     return Report("in this run", command, True, tuple(rows))
 

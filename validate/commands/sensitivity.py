@@ -19,7 +19,6 @@ from validate.curves.numbers import Number, asking_for, by_path
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
-from validate.output.progress import progress
 from validate.output.table import Table, csv_of
 from validate.tables.units import degrees_of
 
@@ -73,7 +72,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         "samples": min(SAMPLES, scene.time.samples),
     }
     scene = asking_for(scene.model_copy(update={"effects": (), "time": time}), chosen)
-    with told_as(name), progress(console, f"solving {name}", total=None, lines=False):
+    with told_as(name), console.progress(f"solving {name}", total=None, lines=False):
         found = sensitivity(scene, chosen, options.point)
         random = _by_designs(scene, found, options.tolerance, options.seed)
     for coordinate, why in found.failures.items():

@@ -29,7 +29,6 @@ from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.columns import ENDINGS, require_table, write_csv, write_motion
 from validate.output.console import STANDARD_OUTPUT, Console
-from validate.output.progress import progress
 from validate.paper.printed import PRINTED
 from validate.plain_text import some_of
 
@@ -181,7 +180,7 @@ def solved(
     name = name_of(options.scene)
     problem: PointcoordError | None = None
     try:
-        with told_as(name), progress(console, f"solving {name}", total=None, lines=False):
+        with told_as(name), console.progress(f"solving {name}", total=None, lines=False):
             motion = simulate(scene, method)
     except SceneError:
         raise

@@ -16,7 +16,6 @@ from validate.extras import needed
 from validate.formulations.registry import NAMES
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.progress import progress
 from validate.output.report import counted_as
 from validate.plain_text import shown
 
@@ -200,9 +199,7 @@ def _worked_out(
             told(f"{study.noun}s, {who}", there, len(study.tasks))
 
         if missing:
-            told = stack.enter_context(
-                progress(console, f"{who} start" if local else f"{who} is asked", SOON)
-            )
+            told = stack.enter_context(console.progress(f"{who} start" if local else f"{who} is asked", SOON))
             client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
         console.note(f"{where} holds {held()}; a study that is stopped goes on with the same command")
         journal = Journal(options.json, head, console, lambda: found().data, held, lambda: there)

@@ -42,7 +42,7 @@ from validate.exit_status import ExitStatus
 from validate.output.columns import ENDINGS, require_table, write_sweep, write_sweep_csv
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.progress import Told, progress
+from validate.output.progress import Told
 from validate.output.sweep_summary import Summary
 from validate.plain_text import shown
 from validate.tables.cells import joined, lines_of, text_of
@@ -113,7 +113,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     )
     with journal.closing() as ending:
         try:
-            with progress(console, "designs", total=designs.count, lines=False) as told:
+            with console.progress("designs", total=designs.count, lines=False) as told:
                 blocks = _seen(sweep_blocks(designs, memory=1e6 * options.memory), summary, told)
                 if target == "-":
                     write_sweep_csv(console, blocks)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 
 from validate.output.files import OutputError, unwritable, write_content
-from validate.output.progress import Progress
+from validate.output.progress import OFTEN, PATIENCE, PAUSE, Progress, Told, rewrite
 from validate.output.table import Part, is_terminal, laid_out, text_of
 from validate.plain_text import one_line
 
@@ -23,16 +23,14 @@ class Console:
     Attributes:
         quiet: whether only results that were asked for and errors are said.
         mute: whether standard output belongs to a result, so that nothing else is said there.
-        progress: what says how far the run is, while something does.
         written: the files that the run has written, and what they hold, for the one who interrupts it.
     """
 
-    def __init__(self, program: str = "pointcoord") -> None:
-        self.program = program
+    def __init__(self) -> None:
         self.quiet = False
         self.mute = False
         self.written: dict[str, str] = {}
-        self.progress: Progress | None = None
+        self._progress: Progress | None = None
         self._reader_gone = False
 
     @property
@@ -83,8 +81,8 @@ class Console:
         Once the reader of a pipe has gone, such as `head`, the text is dropped: the work and its verdict
         are wanted all the same.
         """
-        if self.progress is not None:
-            self.progress.stand_aside()
+        if self._progress is not None:
+            self._progress.stand_aside()
         if not self._reader_gone:
             try:
                 code = getattr(sys.stdout, "encoding", None) or "utf-8"
@@ -121,12 +119,12 @@ class Console:
 
     def complain(self, message: str) -> None:
         """One line on standard error."""
-        if self.progress is not None:
-            self.progress.stand_aside()
+        if self._progress is not None:
+            self._progress.stand_aside()
         # Without a standard error `print` would take standard output.
         if sys.stderr is not None:
             with suppress(OSError, ValueError):
-                print(f"{self.program}: {one_line(message)}", file=sys.stderr, flush=True)
+                print(f"pointcoord: {one_line(message)}", file=sys.stderr, flush=True)
 
     def note(self, message: str) -> None:
         """One line on standard error of what was taken for granted; nothing if the run is quiet."""
@@ -137,3 +135,32 @@ class Console:
         """One line on standard error that does not change the status; nothing if the run is quiet."""
         if not self.quiet:
             self.complain(f"warning: {message}")
+
+    @contextmanager
+    def progress(
+        self, message: str, first: float = PAUSE, total: int | None = 0, lines: bool = True
+    ) -> Iterator[Told]:
+        """Says how far the block is, unless the run is quiet; inside of another such block, in its place.
+
+        Args:
+            message: what is done, until something else is told. first: seconds before the first line in a
+                pipe. total: of how much, 0 or None until it is told. lines: whether a pipe has lines too.
+        """
+        outer, terminal = self._progress, is_terminal(sys.stderr)
+        if outer is not None:
+            outer.told(message, 0, total)
+            yield outer.told
+            return
+        if self.quiet or sys.stderr is None or not (terminal or lines):
+            yield lambda message, done, total=None: None
+            return
+        self._progress = said = (
+            Progress(rewrite, message, total, PATIENCE, OFTEN, lambda: rewrite(""))
+            if terminal
+            else Progress(self.note, message, total, first)
+        )
+        try:
+            yield said.told
+        finally:
+            self._progress = None
+            said.end()

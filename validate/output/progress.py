@@ -6,11 +6,9 @@ import shutil
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
-from typing import Protocol
+from collections.abc import Callable
+from contextlib import suppress
 
-from validate.output.table import is_terminal
 from validate.plain_text import shown
 
 # Seconds that a run is given before a terminal is told how far it is, and how often; the same of a pipe.
@@ -20,50 +18,8 @@ Told = Callable[..., None]
 """Takes what is done now, how much has been done, and of how much where that is another total than before."""
 
 
-class Says(Protocol):
-    """What a run says on standard error: the console, or whoever stands in for it."""
-
-    quiet: bool
-    progress: Progress | None
-
-    def note(self, message: str) -> None:
-        """One line."""
-        ...
-
-
-@contextmanager
-def progress(
-    console: Says, message: str, first: float = PAUSE, total: int | None = 0, lines: bool = True
-) -> Iterator[Told]:
-    """Says how far the block is, unless the run is quiet; inside of another such block, in its place.
-
-    Args:
-        message: what is done, until something else is told. first: seconds before the first line in a pipe.
-        total: of how much, 0 or None until it is told. lines: whether a pipe has lines too.
-    """
-    outer, terminal = console.progress, is_terminal(sys.stderr)
-    if outer is not None:
-        outer.told(message, 0, total)
-        yield outer.told
-        return
-    if console.quiet or sys.stderr is None or not (terminal or lines):
-        yield lambda message, done, total=None: None
-        return
-    said = (
-        Progress(_rewrite, message, total, PATIENCE, OFTEN, lambda: _rewrite(""))
-        if terminal
-        else Progress(console.note, message, total, first)
-    )
-    console.progress = said
-    try:
-        yield said.told
-    finally:
-        console.progress = None
-        said.end()
-
-
-def _rewrite(line: str) -> None:
-    """Put a line in the place of the one before; the terminal may be gone."""
+def rewrite(line: str) -> None:
+    """Put a line of a terminal in the place of the one before; the terminal may be gone."""
     with suppress(OSError, ValueError):
         print(end=WIPE + shown(line)[: shutil.get_terminal_size().columns - 1], file=sys.stderr, flush=True)
 

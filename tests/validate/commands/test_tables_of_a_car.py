@@ -4,6 +4,7 @@ import csv
 import io
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -127,40 +128,36 @@ def test_a_number_of_both_wheels_is_asked_for_by_its_own_name(tmp_path: Path) ->
     assert [*rows_of(path)[0]] == ["rack [mm]", "left.toe [deg]", "right.toe [deg]"]
 
 
-def loaded(folder: Path) -> Path:
-    """A strut with a spring and a load that asks for forces, over travel."""
-    text = (SCENES / "off-axis-strut.toml").read_text(encoding="utf-8")
-    points = text[text.index("[mechanism.points]") :].partition("\n[inputs]")[0]
-    path = folder / "loaded.toml"
-    path.write_text(
-        f"""effects = ["camber", "loads"]
-[mechanism]
-type = "macpherson"
-side = "left"
-wheel_radius = 300.0
-[mechanism.car]
-spring_rate = 30.0
-spring_free_length = 500.0
-[mechanism.loads]
-force = [0.0, -3000.0, 4000.0]
-{points}
-[inputs]
-wheel_travel = {{ sweep = [-50.0, 50.0] }}
-rack = {{ constant = 5.0 }}
-[time]
-start = 0.0
-stop = 1.0
-samples = 3
-""",
-        encoding="utf-8",
-    )
+LOAD = {"force": [100.0, -3000.0, 4000.0], "moment": [0.0, 0.0, 5000.0]}
+WHOLE_CAR = {
+    "axle": "front",
+    "wheelbase": 2600.0,
+    "centre_of_gravity_height": 500.0,
+    "brake_share": 0.6,
+    "drive_share": 0.3,
+    "spring_rate": 30.0,
+    "spring_free_length": 500.0,
+}
+
+
+def loaded(folder: Path, name: str, samples: int, effects: list[str] | None = None, **more: Any) -> Path:
+    """A scene's car with loads, springs and a car about it, that asks for every number if none is said."""
+    content = Scene.load(name).model_dump(exclude_none=True, exclude={"points"}) | more
+    sides = Scene.load(name).mechanism.topology.sides
+    content["mechanism"] |= {"loads": dict.fromkeys(sides or [""], LOAD), "car": WHOLE_CAR}
+    content["mechanism"].setdefault("wheel_radius", 300.0)
+    content["time"]["samples"] = samples
+    every = Scene.from_mapping(content | {"effects": []}, name).mechanism.effects
+    path = folder / "car.toml"
+    path.write_text("\n".join(written(content | {"effects": effects or list(every)})), encoding="utf-8")
     return path
 
 
 def test_forces_that_a_scene_asks_for_stand_in_its_tables(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    scene = loaded(tmp_path)
+    inputs = {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": 5.0}}
+    scene = loaded(tmp_path, "off-axis-strut", 3, ["camber", "loads"], inputs=inputs)
     motion = simulate(str(scene))
     forces = {f"rod_force.{name} [N]": of for name, of in motion.rod_force.items()}
     for point, of in motion.joint_force.items():
@@ -203,18 +200,6 @@ def test_a_table_in_text_knows_how_many_digits_each_unit_has(name: str) -> None:
     assert {one.unit_shown() for one in every if one.of_the_car} <= {*DIGITS}
 
 
-LOAD = {"force": [100.0, -3000.0, 4000.0], "moment": [0.0, 0.0, 5000.0]}
-WHOLE_CAR = {
-    "axle": "front",
-    "wheelbase": 2600.0,
-    "centre_of_gravity_height": 500.0,
-    "brake_share": 0.6,
-    "drive_share": 0.3,
-    "spring_rate": 30.0,
-    "spring_free_length": 500.0,
-}
-
-
 @pytest.mark.parametrize(
     ("name", "convention", "said"),
     [
@@ -231,15 +216,7 @@ WHOLE_CAR = {
 def test_a_table_of_all_that_a_car_has_agrees_with_the_car(
     name: str, convention: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    content = Scene.load(name).model_dump(exclude_none=True, exclude={"points"})
-    content["convention"] = convention
-    sides = Scene.load(name).mechanism.topology.sides
-    content["mechanism"] |= {"loads": dict.fromkeys(sides or [""], LOAD), "car": WHOLE_CAR}
-    content["mechanism"].setdefault("wheel_radius", 300.0)
-    content["time"]["samples"] = 7
-    asked = Scene.from_mapping(content | {"effects": []}, name).mechanism.effects
-    scene, table = tmp_path / "car.toml", tmp_path / "table.csv"
-    scene.write_text("\n".join(written(content | {"effects": list(asked)})), encoding="utf-8")
+    scene, table = loaded(tmp_path, name, 7, convention=convention), tmp_path / "table.csv"
     every = () if convention == "optimumk" else ("--all",)
     assert printed(capsys, "table", str(scene), *every, "-o", str(table))[0] == 0
     status, out, err = printed(capsys, "validate", str(scene), "--data", str(table))

@@ -179,18 +179,6 @@ def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> No
     assert all(cell.startswith(("agrees", "not asked for")) for row in cells for cell in row[2:])
 
 
-def test_one_disagreement_is_in_the_sentence_in_a_colour_and_in_a_word(bounce: Drawn) -> None:
-    other = replace(bounce, examined=replace(bounce.examined, name="other"))
-    run = run_of(replace(bounce, examined=spoiled(bounce.examined)), other)
-    shown = read(run)
-    assert shown.verdict[1] == run.sentence == "1 of 2 scenes agree; disagrees: bounce."
-    coloured = [given for tag, given in shown.tags if tag == "td" and given.get("class") == "disagrees"]
-    # The quantity's own cell, and that of the scene.
-    assert len(coloured) == 2
-    assert sum(cell.startswith("disagrees") for row in shown.cells for cell in row) == 2
-    assert run.document["verdict"] == "disagree"
-
-
 def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(solver: Path) -> None:
     words = ["validate", "-q", "--solver", "made_solver:off_by_a_bit", "steer", "--report", str(solver)]
     assert main([*words, "--json", str(solver.parent / "run.json")]) == 1

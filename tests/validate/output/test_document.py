@@ -52,18 +52,28 @@ def test_the_schema_is_one_and_is_printed(capsys: pytest.CaptureFixture[str]) ->
 
 def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixture[str]) -> None:
     before = datetime.now(UTC).replace(microsecond=0)
-    words = ["validate", "steer", "--timings", "--json", "-"]
+    words = ["validate", "steer", "--timings", "--json", "-", "--quiet"]
     assert main(words) == 0
-    data = document(capsys.readouterr().out)
+    out, err = capsys.readouterr()
+    data = document(out)
+    assert err == ""
     assert (data["schema_version"], data["kind"], data["complete"]) == (SCHEMA_VERSION, "validate", True)
     assert (data["exit_status"], data["verdict"]) == (0, "agree")
     assert data["program"] == {"name": "pointcoord", "version": metadata.version("pointcoord")}
     assert data["command"] == ["pointcoord", *words]
-    assert data["command_line"] == "pointcoord validate steer --timings --json -"
+    assert data["command_line"] == "pointcoord validate steer --timings --json - --quiet"
     assert before <= datetime.fromisoformat(data["started"]) <= datetime.fromisoformat(data["written"])
     assert data["machine"]["packages"]["numpy"] == np.__version__
     assert data["machine"]["packages"]["pin"] == metadata.version("pin")
     assert "OMP_NUM_THREADS" in data["machine"]["threads"]
+    comparison, further = data["scenes"][0]["comparisons"]
+    assert further["formulations"] == ["pointcoord-newton", "absolute"]
+    rows = {(row["quantity"], row["name"]): row for row in comparison["rows"]}
+    assert {("acceleration", "wheel_centre"), ("angular_velocity", "knuckle")} <= rows.keys()
+    assert all(row["difference"] <= row["tolerance"] for row in rows.values())
+    assert {row["rests_on"] for row in rows.values()} <= set(comparison["formulations"])
+    # The steering scene's printed omega is 0/0: JSON has no such number.
+    assert data["printed_formulas"][0]["worst"]["difference"] is None
 
 
 def test_numbers_that_do_not_exist_and_bytes_that_are_no_text_have_a_place_in_json() -> None:

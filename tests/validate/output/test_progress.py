@@ -48,8 +48,8 @@ def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
 ) -> None:
     console = Console()
     with (
-        progress.progress(console, "scenes", total=2, first=0.05),
-        progress.progress(console, "cost") as told,
+        console.progress("scenes", total=2, first=0.05),
+        console.progress("cost") as told,
     ):
         # What is done inside is said in the same lines.
         told("series", 60, 150)
@@ -61,6 +61,6 @@ def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
             assert out == ""
     assert re.fullmatch(r"pointcoord: note: after \d+ s: series, 60 of 150 done(, \d+ s left)?\n", err)
     console.quiet = True
-    with progress.progress(console, "processes start", first=0.05):
+    with console.progress("processes start", first=0.05):
         time.sleep(0.3)
     assert capsys.readouterr() == ("", "")
