@@ -19,7 +19,7 @@ ROOMS = {
     "validate": """
         errors extras exit_status plain_text tables toml_written closed_drawing reference paper spanning_tree
         peers formulations comparison diagnosis solvers cars strategies adjudication measured fitting
-        published output ci assemblies hard testing cost curves hardpoint_files html studies commands door
+        published output ci assemblies hard testing cost curves hardpoint_files html studies commands
         cli __main__""",
 }
 

@@ -63,7 +63,11 @@ def svg(drawing: ClosedDrawing) -> str:
     points = {name: np.array(scene.mechanism.points[name]) for name in topology.points}
     numbers = {name: str(i) for i, name in enumerate(points, 1)}
     width, top = 3 * VIEW + 4 * MARGIN, 2 * LINE + MARGIN
-    lines = _legend(points, numbers, topology)
+    lines = [
+        f"{numbers[name]}  {name}: {', '.join(f'{c:.6g}' for c in place)} mm"
+        f"{' (on the chassis)' if name in topology.chassis else ''}"
+        for name, place in points.items()
+    ]
     rows, below_lines = -(-len(lines) // 2), wrap(drawing.words, LETTERS)
     height = top + VIEW + MARGIN + (rows + len(below_lines) + 3) * LINE
     parts = [
@@ -99,18 +103,6 @@ def _named(direction: Array) -> str:
     if len(along) == 1:
         return f"{'+' if direction[along[0]] > 0.0 else '-'}{'xyz'[along[0]]}"
     return f"({', '.join(f'{c:.3g}' for c in direction)})"
-
-
-def _legend(points: Places, numbers: Mapping[str, str], topology: Topology) -> list[str]:
-    held = dict.fromkeys(topology.chassis, "on the chassis")
-    return [
-        f"{numbers[name]}  {name}: {', '.join(f'{c:.6g}' for c in place)} mm{_aside(held.get(name))}"
-        for name, place in points.items()
-    ]
-
-
-def _aside(word: str | None) -> str:
-    return f" ({word})" if word else ""
 
 
 def _view(

@@ -1,6 +1,7 @@
 """`pointcoord cost` as its users meet it: options, files, interruptions and endings."""
 
 import json
+import shlex
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -68,16 +69,8 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
 
 def test_the_same_rows_give_the_same_bytes_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     few = [row for row in ROWS if row.quantity == "position" and row.scene == "double-wishbone"]
-    words = [
-        "cost",
-        "--from-rows",
-        "--rows",
-        kept(tmp_path / "rows.parquet", few),
-        "--csv",
-        str(tmp_path / "x.csv"),
-        "--report",
-        str(tmp_path / "r"),
-    ]
+    rows = kept(tmp_path / "rows.parquet", few)
+    words = f"cost --from-rows --rows {rows} --csv {tmp_path}/x.csv --report {tmp_path}/r".split()
     found = []
     for _ in range(2):
         assert main(words) == 0
@@ -103,30 +96,20 @@ def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
 @pytest.mark.parametrize(
     ("words", "ways", "scenes", "parts"),
     [
-        (["bounce"], None, {"bounce"}, {"accuracy", "growth"}),
-        (
-            ["--ways", "series,mujoco"],
-            {"series", "mujoco"},
-            {"bounce", "double-wishbone", "chain"},
-            {"accuracy", "growth"},
-        ),
-        (["--parts", "growth"], None, {"bounce", "chain"}, {"growth"}),
-        (["--parts", "growth, accuracy", "double-wishbone"], None, {"double-wishbone"}, {"accuracy"}),
+        ("bounce", "", "bounce", "accuracy growth"),
+        ("--ways series,mujoco", "series mujoco", "bounce double-wishbone chain", "accuracy growth"),
+        ("--parts growth", "", "bounce chain", "growth"),
+        ("--parts 'growth, accuracy' double-wishbone", "", "double-wishbone", "accuracy"),
     ],
 )
 def test_scenes_ways_and_parts_choose_rows(
-    words: list[str],
-    ways: set[str] | None,
-    scenes: set[str],
-    parts: set[str],
-    store: str,
-    capsys: pytest.CaptureFixture[str],
+    words: str, ways: str, scenes: str, parts: str, store: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["cost", *words, "--from-rows", "--rows", store, "--json", "-"]) == 0
+    assert main(["cost", *shlex.split(words), "--from-rows", "--rows", store, "--json", "-"]) == 0
     rows = document(capsys.readouterr().out)["rows"]
-    assert {row["scene"] for row in rows} == scenes
-    assert {row["part"] for row in rows} == parts
-    assert ways is None or {row["way"] for row in rows} == ways
+    assert {row["scene"] for row in rows} == {*scenes.split()}
+    assert {row["part"] for row in rows} == {*parts.split()}
+    assert not ways or {row["way"] for row in rows} == {*ways.split()}
 
 
 def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -201,28 +184,19 @@ def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
 @pytest.mark.parametrize(
     ("words", "scenes", "parts"),
     [
-        ([], STUDY_SCENES, PARTS),
-        (["--quick"], ("bounce-and-steer",), ("accuracy",)),
-        (["--quick", "--parts", "growth"], ("bounce-and-steer",), ("growth",)),
-        (["steer", "near-toggle", "steer"], ("steer", "near-toggle"), PARTS),
-        (["--parts", "growth,accuracy", "steer"], ("steer",), ("accuracy", "growth")),
+        ("", STUDY_SCENES, PARTS),
+        ("--quick", ("bounce-and-steer",), ("accuracy",)),
+        ("--quick --parts growth", ("bounce-and-steer",), ("growth",)),
+        ("steer near-toggle steer", ("steer", "near-toggle"), PARTS),
+        ("--parts growth,accuracy steer", ("steer",), ("accuracy", "growth")),
     ],
 )
 def test_what_is_measured_is_what_the_options_say(
-    words: list[str],
-    scenes: tuple[str, ...],
-    parts: tuple[str, ...],
-    tmp_path: Path,
-    fake: Callable[..., None],
+    words: str, scenes: tuple[str, ...], parts: tuple[str, ...], tmp_path: Path, fake: Callable[..., None]
 ) -> None:
     asked: list[Study] = []
-
-    def measure(study: Study, store: Store, progress: Any) -> list[Row]:
-        asked.append(study)
-        return [ONE]
-
-    fake(measure)
-    assert main(["cost", *words, "--rows", str(tmp_path / "rows.parquet"), "--quiet"]) == 0
+    fake(lambda study, store, progress: asked.append(study) or [ONE])
+    assert main(["cost", *words.split(), "--rows", str(tmp_path / "rows.parquet"), "--quiet"]) == 0
     (study,) = asked
     assert (tuple(scene.name for scene in study.scenes), study.parts) == (scenes, parts)
     assert study.quick == ("--quick" in words)

@@ -33,41 +33,21 @@ def test_a_grid_has_each_cell_and_says_why_one_is_out_of_reach(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "grid.csv"
-    grid = ("--grid", "wheel_travel=-50:50:3", "--grid", "rack=-30,500")
-    status, _, err = printed(
-        capsys,
-        "table",
-        "wheel-travel",
-        *grid,
-        "--number",
-        "toe",
-        "--number",
-        "toe_by_travel",
-        "-o",
-        str(path),
-    )
+    words = "table wheel-travel --grid wheel_travel=-50:50:3 --grid rack=-30,500 --number toe"
+    status, _, err = printed(capsys, *words.split(), "--number", "toe_by_travel", "-o", str(path))
     assert status == 3
     assert "3 of 6 poses are out of reach, the first in row 2: the mechanism cannot be assembled" in err
     rows = rows_of(path)
-    assert [row["wheel_travel [mm]"] for row in rows] == [
-        *("-50.0", "-50.0"),
-        *("0.0", "0.0"),
-        *("50.0", "50.0"),
-    ]
-    motion = simulate(
-        Scene.load("wheel-travel").model_copy(
-            update={
-                "inputs": {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": -30.0}},
-                "time": {"start": 0.0, "stop": 1.0, "samples": 3},
-                "effects": ("toe", "toe_by_travel"),
-            }
-        )
-    )
-    reached = rows[::2]
+    assert [float(row["wheel_travel [mm]"]) for row in rows] == [-50.0, -50.0, 0.0, 0.0, 50.0, 50.0]
+    changes = {
+        "inputs": {"wheel_travel": {"sweep": [-50.0, 50.0]}, "rack": {"constant": -30.0}},
+        "time": {"start": 0.0, "stop": 1.0, "samples": 3},
+        "effects": ("toe", "toe_by_travel"),
+    }
+    motion = simulate(Scene.load("wheel-travel").model_copy(update=changes))
+    reached, gains = rows[::2], motion.angle_gradient["toe_by_travel"]
     assert all(row["why there is none"] == "" for row in reached)
-    for row, toe, gain in zip(
-        reached, motion.wheel["toe"], motion.angle_gradient["toe_by_travel"], strict=True
-    ):
+    for row, toe, gain in zip(reached, motion.wheel["toe"], gains, strict=True):
         # Two ways to one pose, each within 1e-13 mm of it; a line of 60 mm.
         assert abs(float(row["toe [deg]"]) - math.degrees(toe)) <= 1e-12
         assert abs(float(row["toe_by_travel [deg/mm]"]) - math.degrees(gain)) <= 1e-13
