@@ -7,7 +7,6 @@ points, inputs, times), or both; a few are TOML that never was a scene.
 from __future__ import annotations
 
 import copy
-import json
 import math
 import re
 import sys
@@ -18,6 +17,7 @@ from random import Random
 from typing import Any
 
 from pointcoord.scene.scene_file import MOST_SAMPLES
+from validate.toml_written import key_of, value_of
 
 Content = dict[str, Any]
 
@@ -82,17 +82,7 @@ def _with_fewer_samples(data: bytes) -> bytes:
 
 def _written(content: Content) -> str:
     """Content as TOML, every table inline."""
-    return "".join(f"{json.dumps(key)} = {_value(value)}\n" for key, value in content.items())
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{json.dumps(key)} = {_value(item)}" for key, item in value.items()) + " }"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_value, value)) + "]"
-    if isinstance(value, bool | str):
-        return json.dumps(value)
-    return repr(value)
+    return "".join(f"{key_of(key)} = {value_of(value)}\n" for key, value in content.items())
 
 
 def _flip_bits(random: Random, data: bytes) -> bytes:

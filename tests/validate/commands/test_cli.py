@@ -18,6 +18,7 @@ from pointcoord import Samples, Scene, built_in_scenes, simulate
 from pointcoord.results.named_columns import columns
 from validate import cli
 from validate.cli import main
+from validate.exit_status import MEANINGS, ORDER, ExitStatus
 from validate.output.columns import write_csv
 from validate.paper.scenes import DEFAULT_SCENES, PAPER_SCENES
 
@@ -27,9 +28,17 @@ def test_every_command_has_its_help_and_the_overview_names_it(
     name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([name, "--help"]) == 0
-    assert capsys.readouterr().out.startswith(f"usage: pointcoord {name} ")
+    told = capsys.readouterr().out
+    assert told.startswith(f"usage: pointcoord {name} ")
     assert main(["--help"]) == 0
-    assert re.search(rf"^  {name} +{re.escape(cli.COMMANDS[name][1])}$", capsys.readouterr().out, flags=re.M)
+    overview = capsys.readouterr().out
+    assert re.search(rf"^  {name} +{re.escape(cli.COMMANDS[name][1])}$", overview, flags=re.M)
+    # Every status is explained where a user looks.
+    for status in ExitStatus:
+        line = rf"^ +{status.value}  {re.escape(MEANINGS[status])}$"
+        assert re.search(line, told, flags=re.M)
+        assert re.search(line, overview, flags=re.M)
+    assert {*ORDER, ExitStatus.INTERRUPTED, ExitStatus.TERMINATED} == set(ExitStatus)
 
 
 @pytest.mark.parametrize(

@@ -55,6 +55,10 @@ def test_the_verdicts_of_the_page_are_those_of_the_json(folder: Path) -> None:
     assert shown["camber"][2] == f"{WRONG:.1e} deg"
     assert comparison["rows"][0]["place"] == "line 4"
     assert {"velocity", "position"} <= {row[0] for row in read.words if row[1:2] == ["not given"]}
+    # Names of a file show as text.
+    assert "b" not in {tag for tag, _ in read.tags}
+    assert not [script for script in read.scripts if "alert(1)" in script]
+    assert "Drawn are 0" not in read.text
 
 
 def test_what_is_drawn_is_the_file_and_the_car_at_the_files_own_travel(folder: Path) -> None:
@@ -80,14 +84,6 @@ def test_the_numbers_beside_the_page_are_the_files_and_those_it_was_held_to(fold
     off = [line for line in lines if float(line["difference"]) > float(line["held_to"])]
     assert [(line["row"], line["is"]) for line in off] == [("line 4", "wheel.camber")]
     assert np.degrees(float(off[0]["difference"])) == pytest.approx(WRONG, abs=1e-4)
-
-
-def test_names_of_a_file_show_as_text(folder: Path) -> None:
-    text = (folder / "page" / "index.html").read_text(encoding="utf-8")
-    read = Read(text)
-    assert not {"b"} & {tag for tag, _ in read.tags}
-    assert not [script for script in read.scripts if "alert(1)" in script]
-    assert "Drawn are 0" not in text
 
 
 def test_a_file_over_time_that_agrees_has_a_page_by_either_command(

@@ -1,7 +1,6 @@
 """The JSON of every command keeps to the JSON Schema that is shipped, and says where it comes from."""
 
 import json
-import re
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -14,7 +13,7 @@ from counted_study import worked_out
 from program import PAST_ITS_END, short_scene
 
 from validate.cli import main
-from validate.exit_status import HELP, MEANINGS, ORDER, ExitStatus, combined
+from validate.exit_status import ExitStatus, combined
 from validate.output.console import Console
 from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.studies.bounds import bounds
@@ -120,19 +119,6 @@ def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:
     findings = study.summary(worked_out(study))
     text = json_text(Head.of(study.name, ("pointcoord",)).document(findings.data, findings.status, True))
     assert document(text)["kind"] == study.name
-
-
-@pytest.mark.parametrize("words", [["--help"], ["validate", "--help"], ["simulate", "-h"]])
-def test_every_status_is_explained_where_a_user_looks(
-    words: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(words) == 0
-    said = capsys.readouterr().out
-    assert HELP in said
-    assert set(MEANINGS) == set(ExitStatus)
-    for status in ExitStatus:
-        assert re.search(rf"^ +{status.value}  {re.escape(MEANINGS[status])}$", said, flags=re.M)
-    assert {*ORDER, ExitStatus.INTERRUPTED, ExitStatus.TERMINATED} == set(ExitStatus)
 
 
 def test_writing_on_the_way_takes_a_small_part_of_the_time(
