@@ -35,7 +35,7 @@ from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.results.named_columns import number_columns
 from validate.cost.chain import TOLERANCE as OF_CHAIN
 from validate.cost.chain import FourBarChain
-from validate.cost.parts.growth import CHAIN_INSTANTS
+from validate.cost.growth import CHAIN_INSTANTS
 from validate.cost.scenes import study_instants
 from validate.cost.ways.absolute import in_bodies
 from validate.cost.ways.registry import ways_named

@@ -1,14 +1,28 @@
-"""The study: a race for each scene, and what grows; what is kept is not measured again."""
+"""The study: error and time of every way with every setting on each scene, and what grows.
+
+A race for each scene. It is solved for its positions alone and, where it asks for more, for everything.
+Positions are judged by the first and all else by the second, so that nobody's positions wait for rates. What
+is kept is not measured again.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
-from validate.cost.parts import accuracy, growth
-from validate.cost.race import FULL, QUICK, Progress, race, silent
-from validate.cost.scenes import StudyScene
+import numpy as np
+
+from pointcoord import Scene
+from validate.cost import growth
+from validate.cost.errors import Judge
+from validate.cost.race import FULL, QUICK, Progress, Runner, race, silent
+from validate.cost.scenes import StudyScene, study_instants
 from validate.cost.table import Part, Row, Store
 from validate.cost.way import Way
+
+SETTINGS_QUICK = 3  # of a way, the first and the last among them
 
 
 @dataclass(frozen=True)
@@ -32,7 +46,7 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
     """
     lines: set[tuple[object, ...]] = set()
     for scene in study.scenes if "accuracy" in study.parts else ():
-        runners = accuracy.runners_of(scene, study.ways, study.quick)
+        runners = runners_of(scene, study.ways, study.quick)
         lines |= {runner.row.line for runner in runners}
         missing = [runner for runner in runners if not store.has(runner.row)]
         if missing:
@@ -45,3 +59,35 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
             store.write(rows)
     lines |= {line.row.line for line in growing}
     return [row for row in store.rows if row.line in lines]
+
+
+def runners_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Runner]:
+    """Every way with every setting, for positions and for everything."""
+    scene, instants = study.scene, study_instants(study.scene, quick=quick)
+    asked = [study.positions_only(), *([scene] if scene.effects else [])]
+    judge = Judge(scene, instants)
+
+    def runner(way: Way, value: float | None, part: Scene) -> Runner:
+        row = Row(
+            *("accuracy", study.name, way.name, way.says(value), value, way.dense),
+            poses=len(instants),
+            quantity="" if part.effects else "position",
+            digest=study.digest,
+            quick=quick,
+        )
+        ready = partial(way.ready, part, value, instants)
+        return Runner(row, ready, partial(judge, positions=not part.effects))
+
+    return [
+        runner(way, value, part)
+        for way in ways
+        for value in chosen(way.values, SETTINGS_QUICK if quick else None)
+        for part in asked
+    ]
+
+
+def chosen(values: Sequence[Any], most: int | None) -> list[Any]:
+    """Some of the values, evenly from the first to the last."""
+    if most is None or len(values) <= most:
+        return list(values)
+    return [values[place] for place in np.linspace(0, len(values) - 1, most).round().astype(int)]

@@ -32,8 +32,8 @@ PARTS: tuple[Part, ...] = get_args(Part)
 MEASURED = (
     *("pointcoord", "absolute"),
     *(f"validate/{room}" for room in ("formulations", "paper", "peers", "spanning_tree")),
-    *(f"validate/cost/{name}" for name in ("ways", "parts", "apart.py", "chain.py", "errors.py", "race.py")),
-    "validate/cost/scenes.py",
+    "validate/cost/ways",
+    *(f"validate/cost/{n}.py" for n in ("apart", "chain", "errors", "growth", "race", "scenes", "study")),
 )
 PACKAGES = ("numpy", "scipy", "pin", "mujoco", "exudyn")
 WHERE = ("program", "machine", "python", "packages")

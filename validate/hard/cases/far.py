@@ -22,7 +22,7 @@ from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import SQUARE
 from validate.hard.case import RIGHT, Expected, decades, family
 from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, WISHBONE, Content, Subject
-from validate.hard.trial import Trial, Tried, solved
+from validate.hard.trial import Trial, solved
 
 Array = NDArray[np.float64]
 
@@ -60,28 +60,29 @@ def far_from_the_origin(subject: Subject, value: float) -> Content:
 
 def as_at_home(subject: Subject, value: float, trial: Trial) -> Trial:
     """The trial of a moved car, each rate held to what the car at home may be off by."""
-    tried = trial.tried
-    if tried is None or tried.known is None:
-        return trial
-    answers = (_as_at_home(a, tried, subject) if a.outcome == "right" else a for a in trial.answers)
+    answers = (_as_at_home(a, trial, subject) if a.outcome == "right" else a for a in trial.answers)
     return replace(trial, answers=tuple(answers))
 
 
-def _as_at_home(answer: Answer, tried: Tried, subject: Subject) -> Answer:
+def _as_at_home(answer: Answer, trial: Trial, subject: Subject) -> Answer:
     """An answer that is right by its own bounds, compared by those that the car has at home as well.
 
     Positions are allowed one rounding of a far coordinate more; then they are taken as true, and rates and
     angles are allowed nothing more than at home.
     """
-    solution, home = tried.solutions[answer.formulation], at_home(answer.formulation, subject)
-    assert tried.known is not None  # else nothing is right
+    scene, solution, reference = trial.scene, trial.came[answer.formulation], trial.reference
+    home = at_home(answer.formulation, subject)
+    # Else it would not be right.
+    assert scene is not None
+    assert isinstance(solution, Solution)
+    assert isinstance(reference, Solution)
     places, near = solution.position, home.position
     farthest, nearest = (max(float(np.abs(p).max()) for p in q.values()) for q in (places, near))
-    for away, position in ((farthest, places), (nearest, tried.known.position)):
+    for away, position in ((farthest, places), (nearest, reference.position)):
         strict = replace(
             solution.with_numbers({"position": position}), accuracy=_held_to(home.accuracy, EPS * away)
         )
-        judged = judged_answer(tried.scene, strict, tried.known)
+        judged = judged_answer(scene, strict, reference)
         if judged.outcome != "right":
             reason = f"by the bounds of the car at home: {judged.reason}"
             return replace(answer, outcome="wrong", reason=reason)

@@ -101,12 +101,11 @@ class End:
 
 def refused(trial: Trial, facts: Mapping[str, float], judge: Callable[[FormulationError], Answer]) -> Trial:
     """The trial of what no solver can reach, each refusal judged; others find nothing to answer there."""
-    tried = trial.tried
-    if tried is None:
+    if trial.scene is None:
         return trial
 
     def answer(one: Answer) -> Answer:
-        came = tried.came[one.formulation]
+        came = trial.came[one.formulation]
         if isinstance(came, FormulationError):
             return judge(came)
         lost = "the overshoot was lost in rounding: there is a pose"
@@ -130,9 +129,8 @@ def _does_not_say(refusal: FormulationError) -> Answer:
 
 def judged(end: End, _: Subject, overshoot: float, trial: Trial) -> Trial:
     """The trial of a value beyond the end."""
-    if trial.tried is None:
+    if (scene := trial.scene) is None:
         return trial
-    scene = trial.tried.scene
     facts = {"end [mm or rad]": float(end.last.value)}
     return refused(trial, facts, lambda refusal: refusal_held(refusal, scene, end))
 
