@@ -13,15 +13,11 @@ from validate.cars.near_singular import NearPose, approach, near_pose
 from validate.exit_status import ExitStatus
 from validate.output.table import text_of
 from validate.strategies import cars
-from validate.studies.bounds import (
-    bounds,
-    held_pose,
-    measured,
-)
+from validate.studies.bounds import bounds, held_pose, measured
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # An end and its pose take a second, so the short profile searches briefly and the deep one as long as any.
-searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 5)
+searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 3)
 
 
 @st.composite

@@ -8,6 +8,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,7 +21,7 @@ from program import ENVIRONMENT, PROGRAM
 from validate.cli import main
 from validate.errors import UsageError
 from validate.studies import cluster
-from validate.studies.random_cars import random_cars
+from validate.studies.hard_cases import hard
 from validate.studies.store import adding_to, look
 from validate.studies.study import StudyStopped, made_by
 
@@ -207,8 +208,10 @@ def test_a_mistake_of_the_command_line_is_one_line(
 
 
 def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(tmp_path: Path) -> None:
-    words = ["study", "random", "--count", "80", "--workers", "1", "--records", "kept"]
-    folder, seen = tmp_path / "kept", dict[Path, bytes]()
+    # So many that no machine is through with them, a tenth of a second each.
+    names = ("at-rest", "slow-inputs", "fast-inputs", "kink-of-a-table", "come-to-rest", "far-in-time")
+    words = ["study", "hard", *names, "far-in-time-wishbone", "--workers", "1", "--records", "kept"]
+    folder, seen, every = tmp_path / "kept", dict[Path, bytes](), len(hard(words[2:-4]).tasks)
     for end in (signal.SIGINT, signal.SIGKILL):
         process = subprocess.Popen(
             [*PROGRAM, *words],
@@ -228,22 +231,22 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
         assert {file: file.read_bytes() for file in seen} == seen
         seen = {file: file.read_bytes() for file in look(folder).files()}
         count = len(look(folder).tasks())
-        assert 0 < count < 80
+        assert 0 < count < every
         if end == signal.SIGINT:
             assert process.returncode == 130
             # Before it may stand how far the study was.
             *_, line = err.splitlines()
-            told = f"kept holds {count} of 80 scenes; the same command goes on"
+            told = f"kept holds {count} of {every} scenes; the same command goes on"
             assert line == f"pointcoord: interrupted; {told}"
             assert out == ""
-    # How many are asked for may change: some more than there are.
-    last = count + 4
-    words[words.index("80")] = str(last)
-    assert main([*words[:-1], str(folder), "--quiet"]) == 0
+    # What is asked for may change.
+    few = hard(["at-rest", "far-in-time-wishbone"])
+    again = ["study", "hard", "at-rest", "far-in-time-wishbone", "--workers", "1", "--records", str(folder)]
+    assert main([*again, "--quiet"]) == 0
     assert {file: file.read_bytes() for file in seen} == seen
     table = pandas.read_parquet(folder)
-    assert len(set(table["number"])) == len(table), "nothing is recorded twice"
-    assert set(range(last)) <= set(table["number"])
-    study = random_cars(2)
-    found = without_who_and_how_long(look(folder).rows(study.tasks))
-    assert found == without_who_and_how_long(worked_out(study))
+    assert len(table.drop_duplicates(["part", "number", "formulation"])) == len(table), "recorded twice"
+    assert set(few.tasks) <= look(folder).tasks()
+    some = replace(few, tasks=few.tasks[:2])
+    found = without_who_and_how_long(look(folder).rows(some.tasks))
+    assert found == without_who_and_how_long(worked_out(some))
