@@ -108,15 +108,14 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
     with ctx.workprec(BITS):
         matrices = [acb_mat([[acb(float(x)) for x in row] for row in form]) for form in quadratic]
         while not found.agreed and len(found.candidates) < MOST_RUNS:
-            run = solve_quadratic(quadratic, len(found.candidates))
-            ends = _poses(run.ends)
+            ends = _poses(solve_quadratic(quadratic, len(found.candidates)))
             proven = [one for one in (_certified(matrices, end) for end in ends) if one is not None]
             distinct = list(found.assemblies)
             for one in proven:
                 if all(_apart(one.box, other.box) for other in distinct):
                     distinct.append(one)
             found = Counted(
-                run.paths,
+                2 ** len(quadratic),
                 (*found.candidates, len(ends)),
                 (*found.certified, len(proven)),
                 tuple(distinct),

@@ -33,26 +33,13 @@ SINGULAR = 1e9  # condition number at which an end is not told from one on a cur
 MOST = 5000
 
 
-@dataclass(frozen=True)
-class Tracked:
-    """The ends of all paths.
-
-    Attributes:
-        paths: how many there were.
-        ends: regular ones, unit vectors, (ends, n + 1).
-        singular: paths that ended at a solution that is singular or not isolated.
-    """
-
-    paths: int
-    ends: Complex
-    singular: int
-
-
-def solve_quadratic(forms: Array, seed: int = 0) -> Tracked:
-    """Follow all paths to the solutions of n quadratic forms, (n, n + 1, n + 1).
+def solve_quadratic(forms: Array, seed: int = 0) -> Complex:
+    """Follow all 2^n paths to the solutions of n quadratic forms, (n, n + 1, n + 1).
 
     Args:
         seed: of the random lines and factors.
+    Returns:
+        Ends of paths, unit vectors, (ends, n + 1); none at a solution that is singular or not isolated.
     """
     random = np.random.default_rng(seed)
     count = len(forms)
@@ -76,8 +63,7 @@ def solve_quadratic(forms: Array, seed: int = 0) -> Tracked:
         step[grown] *= 2.0
         good[grown] = 0
         active = active[(t[active] < END) & (step[active] > SHORTEST)]
-    arrived = paths.ends(x[t >= END])
-    return Tracked(len(x), arrived, len(x) - len(arrived))
+    return paths.ends(x[t >= END])
 
 
 def _start(count: int, random: np.random.Generator) -> tuple[Complex, Complex]:

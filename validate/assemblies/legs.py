@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.assemblies.study import STUDY, at_distance, on_plane, on_plane_of_body
+from validate.cars.car import direction
 
 Array = NDArray[np.float64]
 
@@ -83,15 +84,9 @@ def _conditions(mechanism: Mapping[str, Any], knuckle: str, at: Mapping[str, Arr
                 yield on_plane_of_body(at[fixed], normal)
     for one in inputs:
         if one.get("height") in body:
-            yield on_plane(at[one["height"]], _direction(mechanism, one["along"]))
+            normal = direction(mechanism["up"], mechanism["right"], one["along"])
+            yield on_plane(at[one["height"]], normal)
 
 
 def _listed(names: Any) -> tuple[str, ...]:
     return (names,) if isinstance(names, str) else tuple(names)
-
-
-def _direction(mechanism: Mapping[str, Any], name: str) -> Array:
-    up, right = np.array(mechanism["up"]), np.array(mechanism["right"])
-    forward = np.cross(up, right)
-    ways = {"up": up, "right": right, "forward": forward, "down": -up, "left": -right, "rearward": -forward}
-    return np.asarray(ways[name])

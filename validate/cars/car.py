@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -104,17 +104,19 @@ class Car:
 
     def direction(self, name: str) -> Array:
         """A direction of the car, unit vector: up, right, down, left, forward (up x right) or rearward."""
-        up, right = np.array(self.up), np.array(self.right)
-        forward = np.cross(up, right)
-        return np.asarray(
-            {"up": up, "right": right, "forward": forward, "down": -up, "left": -right, "rearward": -forward}[
-                name
-            ]
-        )
+        return direction(self.up, self.right, name)
 
     def drawn_as(self, points: Mapping[str, Array]) -> Car:
         """The car with other hardpoints."""
         return replace(self, points=as_tuples(points))
+
+
+def direction(up: Sequence[float], right: Sequence[float], name: str) -> Array:
+    """A direction by its name from a car's axes, see `Car.direction`."""
+    u, r = np.array(up), np.array(right)
+    forward = np.cross(u, r)
+    ways = {"up": u, "right": r, "forward": forward, "down": -u, "left": -r, "rearward": -forward}
+    return np.asarray(ways[name])
 
 
 def other_side(car: Car) -> Car:

@@ -1,4 +1,4 @@
-"""The paper's strut, Table 1, and the effects that its scenes ask for."""
+"""The paper's strut, Table 1."""
 
 from __future__ import annotations
 
@@ -16,4 +16,3 @@ PAPER: Points = {
     "tie_rod_inner": (570.0, 60.0, 90.0),
     "wheel_centre": (452.0, -410.0, 20.0),
 }
-EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles")

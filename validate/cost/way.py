@@ -74,15 +74,6 @@ class Way:
         Raises:
             LeftOut: its package is not installed, or it does not apply; and whatever it refuses a scene with.
         """
-        require(self.package)
+        if self.package and find_spec(self.package) is None:
+            raise LeftOut(f"needs the package {self.package!r}, which is not installed")
         return partial(self.prepare(scene, value), instants)
-
-
-def require(package: str) -> None:
-    """See that an optional package is there.
-
-    Raises:
-        LeftOut: it is not.
-    """
-    if package and find_spec(package) is None:
-        raise LeftOut(f"needs the package {package!r}, which is not installed")

@@ -12,7 +12,7 @@ from validate.hard.cars import drawn_angle
 from validate.reference import NoReferenceError, pose_exists
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
-searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 10)  # an end takes 0.1 s
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 4)  # an end takes 0.1 s
 # Of the range: beside what the inputs of the car that is drawn anew are rounded by.
 NEAR = 1e-11
 

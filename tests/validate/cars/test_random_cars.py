@@ -20,14 +20,14 @@ from validate.cars.scene_content import content_of
 NUMBERS = st.integers(0, 2**32 - 1)
 EXAMPLES = settings.default.max_examples if settings.default else 100
 DEEP = EXAMPLES > 100
-searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 20)
+searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 15)
 # Each looks for ends of inputs, half a second of work for one.
-searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 6)
+searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 3)
 
 
 @searched
 @given(NUMBERS)
-def test_a_random_car_is_solved_at_its_drawing_and_its_points_do_not_move_far(number: int) -> None:
+def test_a_random_car_is_solved_where_it_is_drawn_and_what_slides_is_drawn_on_its_line(number: int) -> None:
     drawn = random_car(np.random.default_rng(number))
     home = drawn_inputs(drawn.car, drawn.inputs)
     assert set(home) == set(drawn.inputs)
@@ -37,14 +37,9 @@ def test_a_random_car_is_solved_at_its_drawing_and_its_points_do_not_move_far(nu
     # What is drawn off its line is moved onto it, and the others by what follows from that.
     for name, place in drawn.car.array.items():
         assert np.abs(motion.position[name][0] - place).max() <= 0.05 * drawn.car.size, name
-
-
-@searched
-@given(NUMBERS)
-def test_what_slides_is_drawn_on_its_line_or_beside_it_by_no_more_than_is_left_over(number: int) -> None:
-    drawn = random_car(np.random.default_rng(number))
+    # On its line, or beside it by no more than is left over.
     p, structure = drawn.car.array, drawn.car.structure
-    for slide in structure.slides.values() if drawn.car.closure == "drawn" else ():
+    for slide in structure.slides.values():
         if slide.through not in p:
             continue
         along = (
@@ -81,11 +76,12 @@ def test_a_near_pose_is_as_near_to_its_end_as_is_asked(number: int, decades: flo
 
 
 def test_a_number_names_one_scene_and_one_pose() -> None:
-    for number in range(8):
-        assert random_scene(number) == random_scene(number)
-    assert random_scene(1).scene != random_scene(2).scene
-    assert near_pose(7, seed=3) == near_pose(7, seed=3)
-    assert near_pose(7, seed=3).car != near_pose(8, seed=3).car
+    scenes, poses = ([make(number) for number in (7, 7, 8)] for make in (random_scene, near_pose))
+    assert scenes[0] == scenes[1]
+    assert scenes[1].scene != scenes[2].scene
+    assert poses[0] == poses[1]
+    assert poses[1].car != poses[2].car
+    assert near_pose(7, seed=3).car != poses[1].car
 
 
 def test_random_scenes_are_of_every_mechanism_kind_set_of_inputs_and_law() -> None:
