@@ -12,6 +12,7 @@ from pointcoord import Scene, simulate
 from validate.measured.comparing import DataOutcome, compare_results
 from validate.measured.mapping import Measured, understood
 from validate.measured.reading import columns_of_text
+from validate.measured.tolerances import Held, held_of
 
 Array = NDArray[np.float64]
 
@@ -36,6 +37,20 @@ def compared(text: str, content: Mapping[str, Any], scene: Scene, **more: Any) -
     """What comes of a file by a map as plain data."""
     columns = columns_of_text(text, "mine.csv")
     return compare_results(understood(columns, content, scene, "map.toml"), scene, "car", **more)
+
+
+def held(text: str, content: Mapping[str, Any], scene: Scene, accuracy: float | None = None) -> list[Held]:
+    """The same before anything is judged or explained: every column beside ours."""
+    return held_of(
+        understood(columns_of_text(text, "mine.csv"), content, scene, "map.toml"), scene, accuracy
+    )[0]
+
+
+def disagreeing(
+    text: str, content: Mapping[str, Any], scene: Scene, accuracy: float | None = None
+) -> list[str]:
+    """What a column that disagrees is."""
+    return [h.series.meaning.words for h in held(text, content, scene, accuracy) if np.nanmax(h.share) > 1.0]
 
 
 def verdicts(found: DataOutcome) -> dict[str, str]:

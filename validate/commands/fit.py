@@ -24,8 +24,7 @@ from validate.commands.usage import (
 )
 from validate.exit_status import ExitStatus
 from validate.fitting.fit import BOUNDS, PRIOR, fit_hardpoints, free_coordinates, require_limits
-from validate.fitting.record import corrected_text, data_of, table_of
-from validate.fitting.words import text_of, warnings_of_fit
+from validate.fitting.words import corrected_text, data_of, table_of, text_of, warnings_of_fit
 from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text

@@ -74,7 +74,7 @@ class Curves:
         if all(of_a_pose(s.meaning) for s in numbers):
             driven = self.driven.redrawn(design, self.design(amounts, self.driven.scene))
             return driven.poses(values, numbers, TIGHT)
-        return poses_of(design, self.measured).at(values)
+        return poses_of(design, self.measured).at(values, [s.values for s in self.measured.rates])
 
     def numbers(self, found: Found) -> Array:
         """Every column one after the other, (columns * rows,), in our units; NaN where there is no pose."""

@@ -273,9 +273,24 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         {name: value for name, value in map.held.items() if (map.meanings[name].kind == "rate") is rate}
         for rate in (False, True)
     )
-    measured = Measured(columns.source, independent, numbers, held, map.said.rolling_radius, map.solve_for)
-    more = replace(measured, rows=columns.rows, notes=tuple(notes), rates=rates, held_rates=held_rates)
-    return _with_poses(more)
+    lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in independent]).any(axis=0))
+    if lost.all():
+        raise FileError(columns.source, "", "no row says at which pose it is", "at least one")
+    if lost.any():
+        first = columns.rows[int(np.argmax(lost))]
+        notes.append(f"rows that do not say at which pose they are: {int(lost.sum())}, from {first} on")
+    return Measured(
+        source=columns.source,
+        independent=independent,
+        numbers=numbers,
+        held=held,
+        rolling_radius=map.said.rolling_radius,
+        solve_for=map.solve_for,
+        rows=columns.rows,
+        notes=tuple(notes),
+        rates=rates,
+        held_rates=held_rates,
+    ).taken(~lost)
 
 
 def map_to_fill_in(file: str, scene: Scene) -> str:
@@ -560,17 +575,3 @@ def _unit_at_the_end(column: str) -> str:
     """The unit of a name such as camber_deg; empty if there is none."""
     end = column.rpartition("_")[2]
     return end if end != column and is_unit(end) else ""
-
-
-def _with_poses(measured: Measured) -> Measured:
-    """The rows that say at which pose they are.
-
-    Raises:
-        FileError: none does.
-    """
-    lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in measured.independent]).any(axis=0))
-    if lost.all():
-        raise FileError(measured.source, "", "no row says at which pose it is", "at least one")
-    first = measured.rows[int(np.argmax(lost))]
-    note = f"rows that do not say at which pose they are: {int(lost.sum())}, from {first} on"
-    return replace(measured.taken(~lost), notes=(*measured.notes, note)) if lost.any() else measured

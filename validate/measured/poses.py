@@ -113,19 +113,14 @@ class Driven:
             problem = f"{' and '.join(travels)} are travels of the same rows"
             raise FileError(measured.source, "", problem, "one travel, given or held")
         driven = _driven_by(scene, travels[0], given, measured) if travels else scene
-        required = driven.mechanism.topology.required_inputs
-        as_drawn = tuple(name for name in required if name not in given)
-        return cls(driven, columns, said, as_drawn).redrawn(scene, driven)._as_the_scene_rests()
-
-    def _as_the_scene_rests(self) -> Driven:
-        """The same with inputs of which nothing is said where the scene holds them all the time."""
-        held = {}
-        for name in self.as_drawn:
-            law = self.scene.functions[name].series(self.scene.instants, 0)[:, 0]
-            if (law == law[0]).all() and law[0] != self.drawn[name]:
-                held[name] = float(law[0])
-        left = tuple(name for name in self.as_drawn if name not in held)
-        return replace(self, said={**self.said, **held}, as_drawn=left, by_scene=tuple(held))
+        car = cls(driven, columns, said, ()).redrawn(scene, driven)
+        rests, left = {}, [name for name in driven.mechanism.topology.required_inputs if name not in given]
+        for name in left:
+            law = driven.functions[name].series(driven.instants, 0)[:, 0]
+            if (law == law[0]).all() and law[0] != car.drawn[name]:
+                rests[name] = float(law[0])
+        as_drawn = tuple(name for name in left if name not in rests)
+        return replace(car, said={**said, **rests}, as_drawn=as_drawn, by_scene=tuple(rests))
 
     def redrawn(self, drawn: Scene, driven: Scene) -> Driven:
         """A design of the same car, driven by the same.
@@ -388,7 +383,7 @@ def _gives(effect: Effect, meaning: Meaning, scene: Scene) -> bool:
     return bool(meaning.per and SPEED in numbers) or names is None or meaning.name in names
 
 
-def spread(numbers: Mapping[str, Mapping[str, Any]], rows: Any, reached: Bools) -> Numbers:
+def spread(numbers: Mapping[str, Mapping[str, Any]], reached: Bools, rows: Any = slice(None)) -> Numbers:
     """Numbers of some rows put where they belong, NaN elsewhere."""
     found: Numbers = {}
     for quantity, part in numbers.items():
@@ -420,8 +415,8 @@ class OverTime:
         samples = self.motion.at(instants)
         proven = self.motion.proof_of(samples, rates=True).proven
         found = Found(
-            spread(samples.numbers, rows, reached),
-            spread({quantity: proven[quantity] for quantity in samples.numbers}, rows, reached),
+            spread(samples.numbers, reached, rows),
+            spread({quantity: proven[quantity] for quantity in samples.numbers}, reached, rows),
             reached,
             reasons,
         )
@@ -434,24 +429,20 @@ class OverMap:
 
     Attributes:
         map: of the driven car, about all of the file's poses.
-        sloped: the columns that derivatives are asked by, in words.
-        rated: the rates that rows give, likewise. rates: those that every row has.
+        measured: the file, which says what rates there are and by what derivatives are asked.
         by_pose: the scene with the effects of the file's columns that a map does not give and a pose does,
             such as gradients and roll centres; None if there are none.
     """
 
     driven: Driven
+    measured: Measured
     map: KinematicMap
-    sloped: tuple[str, ...] = ()
-    rated: tuple[str, ...] = ()
-    rates: Mapping[str, float] = field(default_factory=dict)
-    by_pose: Scene | None = None
+    by_pose: Scene | None
 
     @classmethod
     def of(cls, driven: Driven, measured: Measured) -> OverMap:
         """Makes a map that reaches from the drawing to all that a file asks for and the car has."""
-        rated = tuple(s.meaning.words for s in measured.rates)
-        sloped = tuple(dict.fromkeys(s.meaning.per for s in measured.numbers if s.meaning.per))
+        rates = (*(s.meaning.words for s in measured.rates), *measured.held_rates)
         sides = [[s.values + side * s.off for s in measured.independent] for side in (-1.0, 0.0, 1.0)]
         solved = [driven.poses(side) for side in sides]
         required = driven.scene.mechanism.topology.required_inputs
@@ -462,7 +453,7 @@ class OverMap:
                 there = np.append(there, driven.drawn[name])
             low, high = float(there.min()), float(there.max())
             # A map takes no rate of an input that it holds.
-            moving = any(f"{words_of(name)}.{word}" in (*rated, *measured.held_rates) for word in RATES)
+            moving = any(f"{words_of(name)}.{word}" in rates for word in RATES)
             # Every row may have the same pose, by a heave or by held inputs alone; a map wants a free input.
             alone = name == required[0] and not any(n in driven.columns for n in required)
             if low == high and (name in driven.columns or moving or alone):
@@ -479,7 +470,7 @@ class OverMap:
         by_pose = scene.model_copy(update={"effects": effects}) if (effects := tuple(told)) else None
         mapped = tuple(name for name in scene.effects if EFFECTS[name] not in others)
         map = kinematic_map(scene.model_copy(update={"effects": mapped}), ranges)
-        return cls(driven, map, sloped, rated, measured.held_rates, by_pose)
+        return cls(driven, measured, map, by_pose)
 
     def at(self, values: Sequence[Array], rates: Sequence[Array] = ()) -> Found:
         """Where the map is proven; each number with its proven bound."""
@@ -502,7 +493,7 @@ class OverMap:
         if self.by_pose is not None:
             found = _with_poses(found, self.by_pose, mine)
         slopes = {}
-        for words in self.sloped:
+        for words in dict.fromkeys(s.meaning.per for s in self.measured.numbers if s.meaning.per):
             law = {n: np.full(covered.sum(), float(n == input_of(words))) for n in mine if n in self._free}
             slopes[words] = self._found(mine, [law], covered)
         return replace(found, reasons=reasons, inputs=inputs, slopes=slopes, unrated=unrated)
@@ -516,16 +507,13 @@ class OverMap:
         for order, law in enumerate(laws):
             for name, rate in law.items():
                 known[name][covered, order] = rate
-        every = slice(None)
-        return Found(
-            spread(computed, every, covered), spread(poses.bounds, every, covered), covered, laws=known
-        )
+        return Found(spread(computed, covered), spread(poses.bounds, covered), covered, laws=known)
 
     def _laws(self, here: Mapping[str, Array], rates: Sequence[Array]) -> tuple[list[dict[str, Array]], str]:
         """Time derivatives of what the map takes as far as they are known, and why there are no more."""
         count = len(next(iter(here.values())))
-        told = {name: np.full(count, value) for name, value in self.rates.items()}
-        told |= dict(zip(self.rated, rates, strict=True))
+        told = {name: np.full(count, value) for name, value in self.measured.held_rates.items()}
+        told |= {s.meaning.words: rate for s, rate in zip(self.measured.rates, rates, strict=True)}
         found: list[dict[str, Array]] = []
         for word in RATES:
             known = {n: told[f"{words_of(n)}.{word}"] for n in here if f"{words_of(n)}.{word}" in told}
@@ -562,10 +550,7 @@ def _with_poses(found: Found, scene: Scene, here: Mapping[str, Array]) -> Found:
         for q, channel in poses.numbers.items()
         if QUANTITIES[q].of in OF_A_POSE and channel.computed
     }
-    every = slice(None)
-    numbers, bounds = (
-        spread(part, every, rows) for part in (given, {q: claims[q] for q in given if q in claims})
-    )
+    numbers, bounds = spread(given, rows), spread({q: claims[q] for q in given if q in claims}, rows)
     return replace(
         found,
         numbers={q: found.numbers.get(q, {}) | numbers.get(q, {}) for q in {**found.numbers, **numbers}},

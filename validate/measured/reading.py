@@ -104,21 +104,19 @@ def _parquet(path: str, source: str) -> Columns:
         holds = ", ".join(f"{shown(name)} ({kind})" for name, kind in words.items())
         problem = f"has no column of numbers: {holds}" if table.num_rows else "has no rows"
         raise FileError(source, "", problem, "a column of numbers for each quantity, and at least one row")
-    nothing = np.full(table.num_rows, np.nan)
-    found = {head: nothing if head[0] in words else column for head, column in found.items()}
-    values = np.stack([column.astype(float) for column in found.values()])
-    for column, row in np.argwhere(np.isinf(values))[:1].tolist():
-        place = f"row {row + 1}, column {shown([*found][column][0])!r}"
-        raise FileError(source, place, f"is {values[column, row]}", "finite numbers, or NaN for none")
-    # Single precision rounds to half of the distance to the next number.
-    coarse = [c.dtype.kind == "f" and c.dtype.itemsize < 8 for c in found.values()]
-    steps = [
-        np.spacing(np.abs(c)).astype(float) if rounded else np.zeros(len(c))
-        for c, rounded in zip(found.values(), coarse, strict=True)
-    ]
+    values, steps = (np.full((len(found), table.num_rows), fill) for fill in (np.nan, 0.0))
+    for i, ((name, _), column) in enumerate(found.items()):
+        if name not in words:
+            # Single precision rounds to half of the distance to the next number.
+            single = column.dtype.kind == "f" and column.dtype.itemsize < 8
+            values[i] = column
+            steps[i] = np.spacing(np.abs(column)) if single else 0.0
+        for row in np.flatnonzero(np.isinf(values[i]))[:1].tolist():
+            place = f"row {row + 1}, column {shown(name)!r}"
+            raise FileError(source, place, f"is {values[i, row]}", "finite numbers, or NaN for none")
     names, units = zip(*found, strict=True)
     rows = tuple(f"row {i + 1}" for i in range(table.num_rows))
-    return Columns(source, names, units, values, np.stack(steps), rows, words)
+    return Columns(source, names, units, values, steps, rows, words)
 
 
 def columns_of_text(text: str, source: str) -> Columns:

@@ -9,7 +9,7 @@ Poses are solved at some rows; what leaves little there is held to the whole fil
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -25,7 +25,7 @@ from validate.measured.meanings import CONTACT, INPUT, TIME, Meaning
 from validate.measured.poses import Driven, of_a_pose, ours_of
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
-from validate.tables.units import ANGLES, KINDS
+from validate.tables.units import ANGLES, KINDS, named
 
 Array = NDArray[np.float64]
 
@@ -194,36 +194,21 @@ def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Ite
 
 def _other_held(measured: Measured, driven: Driven) -> Iterator[Supposed]:
     """Each input that is the same in every row, at the value that least squares find."""
-    some = _some(measured)
+    some, units = _some(measured), driven.scene.mechanism.topology.input_units
     if measured.independent[0].meaning.kind == TIME or not some.numbers:
         return
     held = {name: driven.drawn[name] for name in driven.as_drawn} | dict(driven.said)
-    for name in driven.scene.mechanism.topology.inputs:
-        if name in held and (value := _found_held(driven, some, name, held[name])) is not None:
-            unit = driven.scene.mechanism.topology.input_units[name]
-            words = f"{name} is {value:.6g} {unit} in every row, not {held[name]:.6g}"
+    for name in (name for name in driven.scene.mechanism.topology.inputs if name in held):
+
+        def gaps(value: float, name: str = name) -> Array:
+            return _gaps(replace(driven, said={**driven.said, name: value}), some, {})
+
+        best, least = _least_squares(gaps, [held[name]], STEP[units[name]])
+        if math.isfinite(least):
+            value = _rounded(gaps, best, NEARLY * least, ANGLES["deg"] if units[name] == "rad" else 1.0)
+            words = f"{name} is {value:.6g} {units[name]} in every row, not {held[name]:.6g}"
             other = replace(measured, held={**measured.held, f"{INPUT}.{name}": value})
             yield Supposed(words, other, found=True)
-
-
-def _found_held(driven: Driven, some: Measured, name: str, begin: float) -> float | None:
-    unit = driven.scene.mechanism.topology.input_units[name]
-
-    def gaps(sets: Array) -> Array:
-        others = tuple(one for one in driven.as_drawn if one != name)
-        cars = [replace(driven, said={**driven.said, name: float(v)}, as_drawn=others) for (v,) in sets]
-        found = [_gaps(car, some, {}).ravel() for car in cars]
-        return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
-
-    def left(value: Array) -> float:
-        return float(np.linalg.norm(gaps(value[None])))
-
-    best = fitted(gaps, [begin], STEP[unit], np.zeros(len(some.numbers) * len(some.rows)))
-    if best is None:
-        return None
-    enough = NEARLY * left(best)
-    near = roundest(best, 7, lambda one: left(one) <= enough, ANGLES["deg"] if unit == "rad" else 1.0)
-    return float(near[0])
 
 
 def _travels(scene: Scene) -> dict[str, str]:
@@ -246,8 +231,8 @@ def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
         return
     some = _some(measured)
     try:
-        before = _left(driven, some, {})
-        tried = [(_left(driven, some, changes), changes) for changes in _changes(driven, some)]
+        before = _rms(_gaps(driven, some, {}))
+        tried = [(_rms(_gaps(driven, some, changes)), changes) for changes in _changes(driven, some)]
     except PointcoordError:
         return
     kept = [(left, changes) for left, changes in tried if left <= PROMISING and left < before]
@@ -274,8 +259,9 @@ def _changes(driven: Driven, some: Measured) -> Iterator[Changes]:
         yield from ({i: change} for change in changes if change != _Change())
     yield {i: _Change(-1.0) for i in range(len(some.independent))}
     for i in range(len(some.independent)):
-        yield from ({i: one} for sign in (1.0, -1.0) if (one := _other_zero(driven, some, i, sign)))
-        yield from ({i: one} for one in [_other_size(driven, some, i)] if one)
+        for sign in (1.0, -1.0):
+            yield from _other_zero(driven, some, i, sign)
+        yield from _other_size(driven, some, i)
 
 
 def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
@@ -314,56 +300,58 @@ def _gaps(driven: Driven, some: Measured, changes: Changes) -> Array:
     return gap if enough else np.full_like(gap, np.nan)
 
 
-def _left(driven: Driven, some: Measured, changes: Changes) -> float:
+def _rms(gap: Array) -> float:
     """What is left of the differences, of their numbers' spread; infinite where rows are out of reach."""
-    gap = _gaps(driven, some, changes)
     return float(np.sqrt(np.nanmean(gap**2))) if np.isfinite(gap).any() else math.inf
 
 
-def _other_zero(driven: Driven, some: Measured, i: int, factor: float) -> _Change | None:
-    """The zero that least squares find for a column, as round as it may be; None if none comes near."""
-    s = some.independent[i]
+def _least_squares(
+    gaps: Callable[[float], Array], begins: Iterable[float], step: float
+) -> tuple[float, float]:
+    """The number that makes gaps least, and what it leaves; infinite where that is much of them."""
 
-    def left(more: float) -> float:
-        return _left(driven, some, {i: _Change(factor, more)})
-
-    def gaps(sets: Array) -> Array:
-        found = [_gaps(driven, some, {i: _Change(factor, float(more))}).ravel() for (more,) in sets]
+    def read(sets: Array) -> Array:
+        found = [gaps(float(one)).ravel() for (one,) in sets]
         # Rows out of reach say nothing of it.
         return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
 
-    nothing = np.zeros(len(some.numbers) * len(some.rows))
-    starts = (fitted(gaps, [begin], STEP[s.meaning.unit], nothing) for begin in {0.0, _drawn(driven, s)})
-    best = min((float(one[0]) for one in starts if one is not None), key=left, default=math.nan)
-    if math.isnan(best) or not (least := left(best)) <= PROMISING:
-        return None
-    more = float(roundest(best, 7, lambda near: left(float(near)) <= CLOSE * least, s.factor))
-    return _Change(factor, more, found=True)
+    ends = (fitted(read, [begin], step, np.zeros(1)) for begin in begins)
+    found = [(float(end[0]), _rms(gaps(float(end[0])))) for end in ends if end is not None]
+    return min(found, key=lambda one: one[1], default=(math.nan, math.inf))
 
 
-def _other_size(driven: Driven, some: Measured, i: int) -> _Change | None:
-    """The factor that least squares find for a column, a unit's own where it is nearly one; None of none."""
+def _rounded(gaps: Callable[[float], Array], found: float, enough: float, unit: float) -> float:
+    """A found number as round as it may be."""
+    return float(roundest(found, 7, lambda near: _rms(gaps(float(near))) <= enough, unit))
 
+
+def _other_zero(driven: Driven, some: Measured, i: int, factor: float) -> Iterator[Changes]:
+    """The zero that least squares find for a column, as round as it may be, if one comes near."""
     s = some.independent[i]
 
-    def left(times: float) -> float:
-        return _left(driven, some, {i: _Change(1.0 / times)})
+    def gaps(more: float) -> Array:
+        return _gaps(driven, some, {i: _Change(factor, more)})
 
-    def gaps(sets: Array) -> Array:
-        found = [_gaps(driven, some, {i: _Change(float(factor))}).ravel() for (factor,) in sets]
-        return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
+    best, least = _least_squares(gaps, {0.0, _drawn(driven, s)}, STEP[s.meaning.unit])
+    if least <= PROMISING:
+        yield {i: _Change(factor, _rounded(gaps, best, CLOSE * least, s.factor), found=True)}
 
-    best = fitted(gaps, [1.0], 1e-4, np.zeros(len(some.numbers) * len(some.rows)))
-    if best is None or abs(float(best[0])) < 1e-6:
-        return None
-    times = 1.0 / float(best[0])
-    if not (least := left(times)) <= PROMISING:
-        return None
-    ratios = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
-    near = [one for one in ratios if abs(one - times) <= NEARLY_UNIT * abs(one)]
-    round_ = roundest(times, 7, lambda one: abs(float(one) - times) <= NEAR * abs(times))
-    fitting = [one for one in (*near, float(round_)) if left(one) <= CLOSE * least]
-    return _Change(1.0 / (fitting or [times])[0], found=True)
+
+def _other_size(driven: Driven, some: Measured, i: int) -> Iterator[Changes]:
+    """The factor that least squares find for a column, a unit's own where it is nearly one."""
+    s = some.independent[i]
+
+    def gaps(factor: float) -> Array:
+        return _gaps(driven, some, {i: _Change(factor)})
+
+    best, least = _least_squares(gaps, [1.0], 1e-4)
+    if least <= PROMISING and abs(best) >= 1e-6:
+        times = 1.0 / best
+        ratios = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
+        near = [one for one in ratios if abs(one - times) <= NEARLY_UNIT * abs(one)]
+        near.append(float(roundest(times, 7, lambda one: abs(float(one) - times) <= NEAR * abs(times))))
+        fitting = (one for one in near if _rms(gaps(1.0 / one)) <= CLOSE * least)
+        yield {i: _Change(1.0 / next(fitting, times), found=True)}
 
 
 def _sizes(s: Series) -> list[float]:
@@ -373,5 +361,4 @@ def _sizes(s: Series) -> list[float]:
 
 def _unit_of(s: Series) -> str:
     """The unit that a column is said to be in, by its first name."""
-    units = KINDS[s.meaning.unit].items()
-    return next((name for name, size in units if math.isclose(size, s.factor)), s.meaning.unit)
+    return named(s.factor, s.meaning.unit) or s.meaning.unit

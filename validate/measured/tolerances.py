@@ -201,7 +201,7 @@ def _taken_for_granted(measured: Measured, driven: Driven, here: Found) -> Found
         stated = accuracy_at(scene, scene.tolerance, places, going)
         blind = np.zeros(len(rows), dtype=bool)
         blind[rows] = False if stated.blind is None else stated.blind
-        found = spread(stated.claims, slice(None), rows)
+        found = spread(stated.claims, rows)
         for claim in (claim for part in found.values() for claim in part.values()):
             claim[blind] = np.nan
         return found

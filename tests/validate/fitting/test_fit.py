@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from curve_files import at_inputs, measured, table
 from numpy.typing import NDArray
+from scipy.stats import norm, t
 
 from pointcoord import Scene, designs_of, simulate
 from validate import paper
@@ -34,14 +35,11 @@ TOLD = ("camber", "toe")
 ROWS = len(ANGLES)
 
 
-def wheel_table(car: Scene, digits: int, noise: float = 0.0, seed: int = 5) -> str:
+def wheel_table(car: Scene, digits: int) -> str:
     """Camber and toe (deg) over the arm's angle."""
     wheel = at_inputs(car, {"arm_angle": (ANGLES[0], ANGLES[-1]), "rack": (0.0, 0.0)}, ROWS)["wheel"]
-    random = np.random.default_rng(seed)
     columns = {"input.arm_angle [rad]": ANGLES, "input.rack [mm]": np.zeros(ROWS)}
-    for name in TOLD:
-        columns[f"wheel.{name} [deg]"] = np.degrees(wheel[name]) + noise * random.standard_normal(ROWS)
-    return table(columns, digits)
+    return table(columns | {f"wheel.{name} [deg]": np.degrees(wheel[name]) for name in TOLD}, digits)
 
 
 FREE = ("upper_ball_joint.z", "tie_rod_outer.z")
@@ -156,6 +154,9 @@ def test_a_wrong_command_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixtu
 MISREAD = {"upper_ball_joint.y": 5.0, "tie_rod_outer.z": 0.0, "lower_arm_rear.z": 0.0}
 
 
+AXES = ((0, "x"), (1, "y"), (2, "z"))
+
+
 def other_car() -> Scene:
     return designs_of(CAR, offsets=MISREAD).design(0)
 
@@ -177,11 +178,22 @@ def of_the_other_car() -> Mapping[str, tuple[str, Mapping[str, object]]]:
     return {
         "angle": (degrees({"input.arm_angle [rad]": angles}, held["wheel"]), {"held": {"rack": 0.0}}),
         "rack": (degrees({"input.rack [mm]": racks}, steered["wheel"]), {"held": {"arm_angle": 1.5}}),
+        "angle with its rate": (
+            table(
+                {"input.arm_angle [rad]": angles, "input.arm_angle.rate [rad/s]": np.full(7, 0.25)}
+                | {
+                    f"velocity.wheel_centre.{a} [mm/s]": held["velocity"]["wheel_centre"][:, i]
+                    for i, a in AXES
+                },
+                4,
+            ),
+            {"held": {"rack": 0.0}},
+        ),
         "travel": (degrees({"travel.wheel_centre [mm]": travels}, over), {}),
         "time": (
             table(
                 {"time [s]": motion.times[some]}
-                | {f"velocity.wheel_centre.{a} [mm/s]": speed[some, i] for i, a in enumerate("xyz")},
+                | {f"velocity.wheel_centre.{a} [mm/s]": speed[some, i] for i, a in AXES},
                 3,
             ),
             {},
@@ -193,7 +205,7 @@ def degrees(over: Mapping[str, Array], wheel: Mapping[str, Array]) -> str:
     return table({**over, **{f"wheel.{name} [deg]": np.degrees(wheel[name]) for name in TOLD}}, 4)
 
 
-@pytest.mark.parametrize("over", ["angle", "rack", "travel", "time"])
+@pytest.mark.parametrize("over", ["angle", "rack", "angle with its rate", "travel", "time"])
 def test_a_hardpoint_misread_by_5_mm_is_found_to_the_noise(over: str) -> None:
     text, content = of_the_other_car()[over]
     fit = fit_hardpoints(CAR, measured(text, CAR, **content), [*MISREAD])
@@ -202,25 +214,6 @@ def test_a_hardpoint_misread_by_5_mm_is_found_to_the_noise(over: str) -> None:
         # Digits are spread evenly: their sums are within four deviations but for one in 10^4.
         assert abs(fit.coordinates[name].correction - right) < 4.0 * fit.coordinates[name].deviation, name
     assert fit.coordinates["upper_ball_joint.y"].deviation < 0.1
-
-
-def test_intervals_hold_the_right_car_as_often_as_they_say() -> None:
-    """Forty files with noise of 0.02 deg; two corrections each, and 95 % intervals of Student's t.
-
-    Of 40 intervals that hold with 95 %, more than 7 fail with a chance of 1e-3. The mean of 40 squares of
-    t(16), by its 16 / 14, has a standard deviation of 0.25: it is within 0.4 and 2 but for one in a thousand.
-    """
-    held, squares = np.zeros((40, 2), dtype=bool), np.zeros((40, 2))
-    for seed in range(40):
-        fit = fit_hardpoints(CAR, measured(wheel_table(CAR, 6, noise=0.02, seed=seed), CAR), FREE)
-        for i, name in enumerate(FREE):
-            one = fit.coordinates[name]
-            held[seed, i] = one.low <= 0.0 <= one.high
-            squares[seed, i] = (one.correction / one.deviation) ** 2
-    assert fit.freedom == 16
-    assert (held.sum(axis=0) >= 33).all()
-    mean = squares.mean(axis=0) / (16.0 / 14.0)
-    assert ((mean > 0.4) & (mean < 2.0)).all()
 
 
 def test_what_angles_cannot_see_is_what_moves_no_angle_in_closed_form() -> None:
@@ -314,27 +307,41 @@ def test_what_a_prior_knows_better_than_the_file_is_not_known_from_the_file(
     assert ("settle every combination" in text_of(fit, "x", "y")) is settled
 
 
-def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not() -> None:
-    """The normal equations by hand: columns that contradict each other, of other accuracies, with gaps."""
+@pytest.mark.parametrize("noise", [0.0, 4.0])
+def test_columns_weigh_as_they_are_known_and_missing_numbers_do_not(noise: float) -> None:
+    """The normal equations by hand: columns that contradict each other, of other accuracies, with gaps.
+
+    Noise of 4 standard deviations is estimated from what is left: deviations are so much larger, and 95 in
+    100 intervals that hold are Student's t of the degrees of freedom wide.
+    """
     turns, moved = linear_case()
     off = np.array([0.4, -0.3, 0.2])
-    places = moved["wheel_centre"] + off
+    accuracies = np.array([0.1, 1.0, 3.0])
+    random = np.random.default_rng(5).standard_normal((ROWS, 3))
+    right = off + noise / math.sqrt(3.0) * accuracies * random
     gaps = np.zeros((ROWS, 3), dtype=bool)
     gaps[[1, 4, 4, 7], [0, 1, 2, 2]] = True
-    lines = [line.split(",") for line in centre_table(places).splitlines()]
+    lines = [line.split(",") for line in centre_table(moved["wheel_centre"] + right).splitlines()]
     for row, axis in np.argwhere(gaps).tolist():
         lines[row + 1][2 + axis] = ""
-    accuracies = (0.1, 1.0, 3.0)
     columns = {f"position.wheel_centre.{a}": {"accuracy": x} for a, x in zip("xyz", accuracies, strict=True)}
     text = "\n".join(map(",".join, lines))
     fit = fit_hardpoints(CAR, measured(text, CAR, columns=columns), CENTRE, prior=2.0)
     weights = np.where(gaps, 0.0, 3.0 / np.square(accuracies))
     by_file = np.einsum("nij,ni,nik->jk", turns, weights, turns)
-    normal = by_file + np.eye(3) / 2.0**2  # Tikhonov's: a prior of 2 mm draws corrections back
-    expected = np.linalg.solve(normal, np.einsum("nij,ni,i->j", turns, weights, off))
-    assert [one.correction for one in fit.coordinates.values()] == pytest.approx(expected.tolist(), rel=1e-6)
-    deviations = np.sqrt(np.diag(np.linalg.inv(normal)))
-    assert [one.deviation for one in fit.coordinates.values()] == pytest.approx(deviations.tolist(), rel=1e-6)
+    prior = np.eye(3) / 2.0**2  # Tikhonov's: a prior of 2 mm draws corrections back
+    expected = np.linalg.solve(by_file + prior, np.einsum("nij,ni,ni->j", turns, weights, right))
+    left = float(np.sum(weights * (right - turns @ expected) ** 2))
+    freedom = 3 * ROWS - 4 - 3
+    factor = max(1.0, math.sqrt(left / freedom))
+    found = [*fit.coordinates.values()]
+    assert [one.correction for one in found] == pytest.approx(expected.tolist(), rel=1e-6)
+    assert (fit.factor, fit.freedom) == (pytest.approx(factor, rel=1e-6), freedom)
+    assert (factor > 2.0) == (noise > 0.0)
+    deviations = np.sqrt(np.diag(np.linalg.inv(by_file / factor**2 + prior)))
+    assert [one.deviation for one in found] == pytest.approx(deviations.tolist(), rel=1e-6)
+    wide = 2.0 * deviations * (t.ppf(0.975, freedom) if noise else norm.ppf(0.975))
+    assert [one.high - one.low for one in found] == pytest.approx(wide.tolist(), rel=1e-6)
     singular = np.sqrt(np.linalg.eigvalsh(by_file)[::-1])
     assert [one.singular_value for one in fit.combinations] == pytest.approx(singular.tolist(), rel=1e-6)
     assert [column.count for column in fit.columns] == [ROWS - 1, ROWS - 1, ROWS - 2]

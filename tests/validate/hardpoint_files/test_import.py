@@ -12,7 +12,7 @@ from pointcoord import PointcoordError, Scene, simulate, standing
 from pointcoord.mechanism import mechanism_file
 from validate.cli import main
 from validate.errors import UsageError
-from validate.hardpoint_files.axes import DIRECTIONS, Axes
+from validate.hardpoint_files.axes import Axes
 from validate.hardpoint_files.format import FORMS, MJCF, formats
 from validate.hardpoint_files.importing import import_hardpoints
 from validate.tables.errors import FileError
@@ -34,28 +34,31 @@ def curves(scene: Scene) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize(
     ("text", "choices"),
     [
-        (lotus_report(), {}),
         (table(), {}),
         (table(per_unit="1000", titles="Point Name,X (m),Y (m),Z (m)\n"), {}),
-        (table(per_unit="25.4", titles=""), {"unit": "in"}),
         (table(ending="_FR"), {}),
-        (LEFT_CHRONO, {"mirror": True}),
+        (table(order=(2, 1, 0), signs=(1, -1, 1)), {"axes": "up,left,rearward"}),
     ],
-    ids=["lotus", "optimumk", "metres", "inches", "ending", "chrono"],
+    ids=["optimumk", "metres", "ending", "axes"],
 )
-def test_the_built_in_wishbone_comes_back_with_its_digits_and_its_curves(
+def test_the_built_in_wishbone_comes_back_with_its_digits(
     text: str, choices: Mapping[str, object], tmp_path: Path
 ) -> None:
     found = imported(tmp_path, text, **choices)
-    same = {name for name in CAR if name != "wheel_axis_inner"} if text is LEFT_CHRONO else {*CAR}
-    if choices.get("unit") == "in":
-        # A mm is no finite number of inches: 28 digits of them are printed here, and a double holds 16.
-        for name, place in drawn(found).items():
-            assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-24)
-    else:
-        assert {name: place for name, place in drawn(found).items() if name in same} == {
-            name: CAR[name] for name in same
-        }
+    assert drawn(found) == CAR
+    assert found.scene.mechanism.side == "right"
+
+
+def test_a_table_in_inches_comes_back_to_rounding(tmp_path: Path) -> None:
+    # A mm is no finite number of inches: 28 digits of them are printed here, and a double holds 16.
+    for name, place in drawn(imported(tmp_path, table(per_unit="25.4", titles=""), unit="in")).items():
+        assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-24)
+
+
+def test_a_mirrored_wishbone_of_chrono_has_the_curves_of_ours(tmp_path: Path) -> None:
+    found = imported(tmp_path, LEFT_CHRONO, mirror=True)
+    # The file gives no inner point of the spin axis, only its direction.
+    assert {**drawn(found), "wheel_axis_inner": CAR["wheel_axis_inner"]} == CAR
     assert found.scene.mechanism.side == "right"
     motion = {"inputs": found.scene.inputs, "time": found.scene.time, "effects": found.scene.effects}
     expected, got = curves(WISHBONE.model_copy(update=motion)), curves(found.scene)
@@ -77,7 +80,8 @@ def test_the_scene_that_is_written_is_the_one_that_is_returned_and_validates(
     assert "no point of ours: Part 1 C of G, line 19" in out
     told = "no points of ours: Part 1 C of G, line 19, Bracket of our own, line 20"
     assert err.splitlines() == [f"pointcoord: note: {source}: {told}"]
-    assert Scene.load(target) == import_hardpoints(source).scene
+    found = import_hardpoints(source)
+    assert (Scene.load(target), drawn(found)) == (found.scene, CAR)
     text = target.read_text()
     assert "lower_arm_front  = [-110, 257, 69]     # Lower wishbone front pivot, line 9" in text
     assert "# not used: Bracket of our own, line 20" in text
@@ -171,8 +175,7 @@ def test_exchanged_columns_are_refused_with_the_axes_that_they_have(tmp_path: Pa
     assert any("left-handed" in doubt for doubt in found.doubts)
 
 
-@pytest.mark.parametrize("car", [STRUT, WISHBONE], ids=["strut", "wishbone"])
-@pytest.mark.parametrize("ending", ["", "_own"])
+@pytest.mark.parametrize(("car", "ending"), [(STRUT, "_own"), (WISHBONE, "")], ids=["strut", "wishbone"])
 def test_a_table_under_our_own_names_has_our_own_axes(car: Scene, ending: str, tmp_path: Path) -> None:
     points = car.mechanism.points
     own = {name: name + ending.replace("own", car.mechanism.side) for name in points}
@@ -197,26 +200,6 @@ def test_a_strut_under_any_names_is_held_to_its_axes_as_well(tmp_path: Path) -> 
     assert drawn(imported(tmp_path, table(points, names=theirs))) == points
     with pytest.raises(FileError, match="--axes rearward,right,up of a left wheel"):
         imported(tmp_path, table(points, signs=(1, 1, 1), names=theirs))
-
-
-@pytest.mark.parametrize(
-    "axes",
-    [
-        "rearward,left,up",
-        "up,right,forward",
-        "down,left,rearward",
-    ],
-)
-def test_any_axes_are_turned_and_any_others_than_the_format_s_are_noticed(axes: str, tmp_path: Path) -> None:
-    words = axes.split(",")
-    order = tuple(DIRECTIONS[word][0] for word in words)
-    signs = [0, 0, 0]
-    for word in words:
-        signs[DIRECTIONS[word][0]] = DIRECTIONS[word][1]
-    text = table(order=order, signs=(signs[0], signs[1], signs[2]))
-    with pytest.raises(FileError, match="--axes"):
-        imported(tmp_path, text)
-    assert drawn(imported(tmp_path, text, axes=axes)) == CAR
 
 
 def test_a_tie_rod_through_the_middle_of_the_car_is_warned_of(
@@ -305,15 +288,8 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     text = table().replace("CHAS_TiePnt", "Rack End").replace("Wheel Center", "Hub")
     with pytest.raises(FileError) as caught:
         imported(tmp_path, text)
-    words = str(caught.value)
-    for part in (
-        "lacks tie_rod_inner",
-        "wheel_centre",
-        "'CHAS_TiePnt'",
-        "'Rack End' on line",
-        "'Hub' on line",
-    ):
-        assert part in words
+    parts = ("lacks tie_rod_inner", "wheel_centre", "'CHAS_TiePnt'", "'Rack End' on line", "'Hub' on line")
+    assert [part for part in parts if part not in str(caught.value)] == []
     names = tmp_path / "names.toml"
     names.write_text('[names]\ntie_rod_inner = "rack end"\nwheel_centre = [0, -718.0, 210]\n')
     found = imported(tmp_path, text, names=str(names))
@@ -348,7 +324,6 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
         ),
         (lotus_report().split("POINT")[0], "has no points"),
         (lotus_report().replace("Double Wishbone", "Trailing arm"), "called 'Trailing arm, damper"),
-        (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,"), "line 3: x of 'CHAS_LowAft' is ''"),
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,nan"), "line 3: x of 'CHAS_LowAft' is 'nan'"),
         (
             table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,-5e9999999999999"),
@@ -364,15 +339,8 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
         ),
         (table(names=EXCHANGED), "lower_arm_front seen from lower_arm_rear"),
         ("", "has no points"),
-        ("only words", "has no points"),
         ("PK\x03\x04\x00\x00", "is no text"),
         (LEFT_CHRONO.replace("]", ",", 1), "is no JSON"),
-        (
-            LEFT_CHRONO.replace('"Suspension"', '"Steering"'),
-            "is a file of Chrono's of Type 'Steering'",
-        ),
-        (LEFT_CHRONO.replace("DoubleWishbone", "SolidAxle"), "called 'SolidAxle'"),
-        (LEFT_CHRONO.replace("0.718", '"x"'), "y of 'Spindle: COM' is 'x'"),
         (LEFT_CHRONO.replace("0.718", "NaN"), "y of 'Spindle: COM' is 'NaN'"),
         (LEFT_CHRONO.replace('"Tierod"', '"Rod"'), "lacks tie_rod_outer .*not known in it: .*'Rod: Location"),
     ],
@@ -387,32 +355,6 @@ def test_a_broken_file_is_told_in_one_line_with_its_place(
     assert out == ""
     assert len(err.splitlines()) == 1
     assert not (tmp_path / "car.toml").exists()
-
-
-@pytest.mark.parametrize("text", [lotus_report(), table(), LEFT_CHRONO], ids=["lotus", "csv", "chrono"])
-def test_a_file_with_random_damage_is_imported_or_refused_in_one_line(
-    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    random = np.random.default_rng(11)
-    refused = 0
-    for _ in range(20):
-        damaged = text
-        for _ in range(random.integers(1, 4)):
-            at = int(random.integers(len(damaged)))
-            new = ["", "\n", ",", '"', "-", "9", "e", "\t", "\x07", "NaN"][random.integers(10)]
-            damaged = damaged[:at] + new + damaged[at + int(random.integers(4)) :]
-        (tmp_path / "car.txt").write_text(damaged, encoding="utf-8")
-        (tmp_path / "car.toml").unlink(missing_ok=True)
-        status = main(["import", str(tmp_path / "car.txt"), "-o", str(tmp_path / "car.toml")])
-        complaints = [line for line in capsys.readouterr().err.splitlines() if ": note: " not in line]
-        refused += status == 2
-        if status == 2:
-            assert len(complaints) == 1
-            assert complaints[0].startswith(f"pointcoord: {tmp_path / 'car.txt'}: ")
-        else:
-            assert status in (0, 1)
-            Scene.load(tmp_path / "car.toml")
-    assert refused > 1
 
 
 def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> None:
@@ -440,6 +382,3 @@ def test_axes_are_three_directions_at_right_angles() -> None:
     for words in ("forward,left", "forward,left,down,up", "forward,rearward,up", "north,left,up", ""):
         with pytest.raises(UsageError, match="axes are "):
             Axes.of(words)
-    assert Axes.of("forward,left,up").right_handed
-    assert Axes.of("rearward,right,up").right_handed
-    assert not Axes.of("forward,right,up").right_handed

@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 EPSILON = float(np.finfo(float).eps)
 # mm: what simulate may leave out of a place, of every scene here.
 TOLERANCE = 1e-9
-CARS = ("double-wishbone", "off-axis-strut", "bounce", "five-link", "pushrod", "semi-trailing-arm")
+CARS = ("off-axis-strut", "bounce", "five-link", "pushrod", "semi-trailing-arm")
 LINKAGES = ("spatial-four-bar", "slider-crank", "n-four-bar", "andrews-squeezer", "bricard")
 
 

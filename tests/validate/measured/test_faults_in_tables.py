@@ -69,6 +69,11 @@ def toe_out(table: Table) -> Table:
     return table | {"toe": -table["toe"]}
 
 
+def shuffled(table: Table) -> Table:
+    order = np.random.default_rng(2).permutation(ROWS)
+    return {name: values[order] for name, values in table.items()}
+
+
 def late(table: Table) -> Table:
     first, *angles = table
     return {first: table[first]} | {n: np.concatenate([table[n][:1], table[n][:-1]]) for n in angles}
@@ -77,13 +82,6 @@ def late(table: Table) -> Table:
 @pytest.mark.parametrize(
     ("name", "coordinate", "amount", "over", "words"),
     [
-        (
-            "double-wishbone",
-            "upper_arm_front__y",
-            -3.0,
-            "wheel_travel",
-            "upper_arm_front.y drawn 3 mm too far in",
-        ),
         ("double-wishbone", "tie_rod_inner__z", 5.0, "rack", "tie_rod_inner.z drawn 5 mm too high"),
         ("bmw-e90-strut", "strut_top__x", 6.0, "wheel_travel", "strut_top.x drawn 6 mm too far back"),
         ("five-link", "toe_inner__z", 2.0, "wheel_travel", "toe_inner.z drawn 2 mm too high"),
@@ -109,20 +107,11 @@ def test_a_constant_that_was_added_is_found_amid_what_the_digits_leave_open() ->
         assert "does not explain" not in said
 
 
-@pytest.mark.parametrize(
-    ("name", "coordinate", "amount", "words"),
-    [
-        ("double-wishbone", "lower_arm_rear__y", 3.1, "lower_arm_rear.y drawn 3.1 mm too far out"),
-        ("five-link", "lower_rear_inner__z", 2.1, "lower_rear_inner.z drawn 2.1 mm too high"),
-    ],
-)
-def test_few_digits_make_no_second_hardpoint_of_what_least_squares_round_away(
-    name: str, coordinate: str, amount: float, words: str
-) -> None:
+def test_few_digits_make_no_second_hardpoint_of_what_least_squares_round_away() -> None:
     # Least squares leave less than the amount that was meant, and the next rounder one too much of a number.
-    scene = asked(name, "wheel_travel")
-    (said,) = explained(scene, moved(scene, **{coordinate: amount}), "wheel_travel", 3, same)
-    assert words in said
+    scene = asked("five-link", "wheel_travel")
+    (said,) = explained(scene, moved(scene, lower_rear_inner__z=2.1), "wheel_travel", 3, same)
+    assert "lower_rear_inner.z drawn 2.1 mm too high" in said
     assert " and " not in said
 
 
@@ -135,38 +124,20 @@ def test_two_misread_hardpoints_are_named_both() -> None:
 
 
 def test_a_misread_hardpoint_is_named_though_one_number_has_a_fault_of_its_own() -> None:
+    """Over rows in any order."""
     scene = asked("double-wishbone", "wheel_travel")
-    hardpoint, sign = explained(scene, moved(scene, tie_rod_inner__z=5.0), "wheel_travel", 4, toe_out)
+    moved_too = moved(scene, tie_rod_inner__z=5.0)
+    hardpoint, sign = explained(scene, moved_too, "wheel_travel", 4, lambda table: shuffled(toe_out(table)))
     assert "tie_rod_inner.z drawn 5 mm too high" in hardpoint
     assert sign == "toe: the other sign"
 
 
-def test_rows_in_any_order_have_their_misread_hardpoint() -> None:
-    scene = asked("double-wishbone", "wheel_travel")
-    order = np.random.default_rng(2).permutation(ROWS)
-
-    def shuffled(table: Table) -> Table:
-        return {name: values[order] for name, values in table.items()}
-
-    (said,) = explained(scene, moved(scene, tie_rod_outer__z=1.0), "wheel_travel", 4, shuffled)
-    assert "tie_rod_outer.z drawn 1 mm too high" in said
-
-
-@pytest.mark.parametrize(
-    ("coordinate", "amount", "words"),
-    [
-        ("tie_rod_outer__z", 5.0, "tie_rod_outer.z drawn 5 mm too high"),
-        ("upper_ball_joint__y", -3.0, "upper_ball_joint.y drawn 3 mm too far in"),
-    ],
-)
-def test_a_grid_of_travel_and_rack_has_its_misread_hardpoint(
-    coordinate: str, amount: float, words: str
-) -> None:
+def test_a_grid_of_travel_and_rack_in_any_order_has_its_misread_hardpoint() -> None:
     scene = asked("double-wishbone", "wheel_travel")
     rows = []
     for rack in (-20.0, 0.0, 20.0):
         held = scene.model_copy(update={"inputs": {**scene.inputs, "rack": {"constant": rack}}})
-        wheel = simulate(moved(held, **{coordinate: amount})).numbers["wheel"]
+        wheel = simulate(moved(held, upper_ball_joint__y=-3.0)).numbers["wheel"]
         travels = np.linspace(*RANGES["wheel_travel"], ROWS)
         rows += list(zip(travels, np.full(ROWS, rack), *map(np.degrees, wheel.values()), strict=True))
     order = np.random.default_rng(3).permutation(len(rows))
@@ -176,14 +147,13 @@ def test_a_grid_of_travel_and_rack_has_its_misread_hardpoint(
     columns |= {n: {"is": is_, "unit": "mm", "printed": 0} for n, is_ in COLUMNS.items()}
     found = compared("\n".join(lines), {"columns": columns}, scene).outcome
     (said,) = (one.words for one in found.explanations)
-    assert words in said
+    assert "upper_ball_joint.y drawn 3 mm too far in" in said
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         (late, "camber, kingpin, toe, caster: one sample late, the first one twice"),
-        (lambda t: t | {"camber": 1.03 * t["camber"]}, "camber: 1.03 times ours"),
         (lambda t: t | {"toe": t["toe"] + 0.3}, "toe: a constant offset of 0.00523599 rad (0.3 deg)"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Tables as programs and people write them: the same numbers, and how finely each is written."""
+"""Tables as programs and people write them: their numbers, how finely each is written, what is left out."""
 
 from pathlib import Path
 
@@ -7,12 +7,15 @@ import pyarrow
 import pyarrow.parquet
 import pytest
 
+from pointcoord import Scene
+from validate.measured.mapping import Measured, read_results
 from validate.measured.reading import Columns, columns_of_text, read_columns
 from validate.tables.errors import FileError
 
 VALUES = [[0.0, 0.1, 0.25], [1.5, -2.75, 3e-3]]
+TIDY = "time [s],camber [deg]\n0.0,1.5\n0.1,-2.75\n0.25,3e-3\n"
 WRITTEN = {
-    "commas": "time [s],camber [deg]\n0.0,1.5\n0.1,-2.75\n0.25,3e-3\n",
+    "commas": TIDY,
     "semicolons and decimal commas": "time;camber\ns;deg\n0,0;1,5\n0,1;-2,75\n0,25;3e-3\n",
     "tabs and a unit line in brackets": "time\tcamber\n[s]\t[deg]\n0.0\t1.5\n0.1\t-2.75\n0.25\t3e-3\n",
     "blanks and decimal commas": "time [s]  camber (deg)\n 0,0   1,5\n 0,1  -2,75\n 0,25 3e-3\n",
@@ -21,21 +24,40 @@ WRITTEN = {
         'Run 7\n# a car\n"time [s]","camber [deg]"\n0.0,1.5\n% x\n0.1,-2.75\n\n0.25,3d-3\n'
     ),
     "a delimiter at the end": "time [s],camber [deg],\n0.0,1.5,\n0.1,-2.75,\n0.25,3e-3,\n",
-    "a byte order mark and a minus sign": (
-        "\ufefftime [s],camber [deg]\r\n0.0,1.5\r\n0.1,\u22122.75\r\n0.25,3e-3\r\n"
-    ),
+    "a byte order mark and a minus sign": "\ufeff" + TIDY.replace("-2", "\u22122").replace("\n", "\r\n"),
+    "utf-16": TIDY,
+    "capitals": TIDY.replace("time", "Time").replace("camber", "Camber"),
+    "an index": ",time [s],camber [deg]\n0,0.0,1.5\n1,0.1,-2.75\n2,0.25,3e-3\n",
+    "blank columns": "time [s],,camber [deg],\n0.0,,1.5,\n0.1,,-2.75,\n0.25,,3e-3,\n",
+    "words": "time [s],who,camber [deg]\n0.0,rig,1.5\n0.1,rig,-2.75\n0.25,me,3e-3\n",
 }
+CAR = Scene.load("double-wishbone")
+
+
+def read(folder: Path, data: bytes, map: str = "") -> Measured:
+    file = folder / "mine.csv"
+    file.write_bytes(data)
+    (folder / "map.toml").write_text(map)
+    return read_results(str(file), str(folder / "map.toml") if map else None, CAR)
 
 
 @pytest.mark.parametrize("how", WRITTEN)
 def test_a_table_is_read_however_it_is_written(how: str, tmp_path: Path) -> None:
-    path = tmp_path / "table.txt"
-    path.write_text(WRITTEN[how], encoding="utf-8", newline="")
-    found = read_columns(str(path))
-    assert found.names == ("time", "camber")
-    assert found.units == ("s", "deg")
-    assert found.values.tolist() == VALUES
-    assert found.steps == pytest.approx(np.array([[0.1, 0.1, 0.01], [0.1, 0.01, 1e-3]]))
+    found = read(tmp_path, WRITTEN[how].encode("utf-16" if how == "utf-16" else "utf-8"))
+    (time,), (camber,) = found.independent, found.numbers
+    assert [time.values.tolist(), np.degrees(camber.values).tolist()] == pytest.approx(np.array(VALUES))
+    # Half a unit of the last digit as it is written.
+    assert time.off == pytest.approx([0.05, 0.05, 0.005])
+    assert np.degrees(camber.off) == pytest.approx([0.05, 0.005, 5e-4])
+    assert any("ignored: who" in note for note in found.notes) == (how == "words")
+
+
+def test_a_column_of_words_that_a_map_wants_is_refused_with_what_it_holds(tmp_path: Path) -> None:
+    data = b"rack [mm],toe,camber [deg]\n0,rig,0\n5,rig,1\n"
+    map = 'columns.rack = {}\ncolumns.camber = {}\ncolumns.toe = { unit = "deg" }\n'
+    with pytest.raises(FileError, match=r"'toe': holds 'rig' and the like; allowed: columns of numbers"):
+        read(tmp_path, data, map)
+    assert len(read(tmp_path, data, map.replace('unit = "deg"', 'is = "ignore"')).numbers) == 1
 
 
 def test_a_file_of_doubles_in_full_is_exact_where_zeros_are_left_off() -> None:
