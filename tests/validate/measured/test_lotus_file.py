@@ -96,17 +96,6 @@ def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such() -> No
     assert not any(e.kind == "travel" for e in compared(turned).outcome.explanations)
 
 
-def test_a_bump_that_may_be_rounded_widens_by_slope_times_half_its_digit() -> None:
-    columns = {**CONTENT["columns"], "bump": {"is": "travel.contact", "printed": 0.1}}
-    found = compared(CSV, CONTENT | {"columns": columns})
-    camber = next(row for row in found.outcome.rows if row.name == "camber")
-    table = np.array(BUMP)
-    slopes = np.abs(np.gradient(table[:, 1], table[:, 0]))
-    widened = np.degrees(camber.tolerance) - 0.5e-4
-    assert 0.05 * slopes.min() < widened < 0.05 * slopes.max()
-    assert not any("printed" in note for note in found.outcome.notes)
-
-
 def test_the_steering_table_agrees_with_the_contact_point_held_at_its_height() -> None:
     text = "rack;toe;camber\nmm;deg;deg\n" + "".join(
         f"{-rack:.1f};{toe:.2f};{camber:.2f}\n".replace(".", ",") for rack, toe, camber in STEERING
