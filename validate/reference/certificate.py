@@ -11,7 +11,7 @@ from flint import arb
 from validate.reference.design import Known
 from validate.reference.errors import NotDecidedError
 from validate.reference.exact import as_ball
-from validate.reference.krawczyk import Contraction, column, largest, less, middle_inverse, sizes
+from validate.reference.krawczyk import Contraction, bounds, column, largest, less, middle_inverse
 from validate.reference.vectors import minus, plus
 
 
@@ -58,13 +58,13 @@ def certify(centre: Sequence[arb], known: Known, radius: Fraction) -> Certificat
     newton = (inverse * column(known.residual(centre))).entries()
     enclosure = [
         x - step + arb(0, (reach - missed).upper())
-        for x, step, reach, missed in zip(centre, newton, image, proof.missed.entries(), strict=True)
+        for x, step, reach, missed in zip(centre, newton, image, proof.missed, strict=True)
     ]
     found = known.equations.points_of(enclosure)
     shift = largest([x for n, p in found.items() for x in minus(p, there[n])])
     if not shift < width:
         raise NotDecidedError("the points of the zero within the radius of the centre's", shift, width)
     # |D C'| |C'^-1 D^-1| with D such that the rows of D C' have unit absolute sum.
-    sums = sizes(matrix.mid()) * column([arb(1)] * len(centre))
-    condition = max(float(x.mid()) for x in (sizes(inverse) * sums).entries())
+    sums = bounds(matrix.mid() * column([arb(0, 1)] * len(centre)))
+    condition = max(float(x) for x in bounds(inverse * column([arb(0, x) for x in sums])))
     return Certificate(centre, radius, enclosure, shift, condition)

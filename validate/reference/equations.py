@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 from flint import arb, arb_mat
 
@@ -49,11 +50,16 @@ class Equations:
 
     def bend(self, change: Sequence[arb]) -> arb_mat:
         """By how much a change of y changes dC/dy, which is linear in y."""
-        moved = (
-            (row, column, [one for one in terms if one[0] and one[0][0] < self.size])
-            for row, column, terms in self.entries
+        return matrix_of(self.size, ((i, j, value_of(terms, change)) for i, j, terms in self._bending))
+
+    @cached_property
+    def _bending(self) -> list[tuple[int, int, Terms]]:
+        """Of the entries the terms that y changes."""
+        bending = (
+            (i, j, tuple(term for term in terms if term[0] and term[0][0] < self.size))
+            for i, j, terms in self.entries
         )
-        return matrix_of(self.size, ((i, j, value_of(terms, change)) for i, j, terms in moved if terms))
+        return [entry for entry in bending if entry[2]]
 
     def points_of(self, unknown: Sequence[Scalar], names: Iterable[str] | None = None) -> dict[str, Vector]:
         """Where every point is, or some are, relative to the chassis."""

@@ -3,7 +3,7 @@ r"""Newton's method for a candidate, and Krawczyk's proof that a box holds one s
 The equations F(x) = 0 are quadratic, as many as unknowns: F'(x + d) = F'(x) + F'' d. For a centre x, half
 widths r and any matrix A (here nearly the inverse Jacobian), let
 
-    eta >= |A F(x)|  and  M >= |I - A F'(x)| + |A| |F'' r|.
+    eta >= |A F(x)|  and  M r >= |(I - A F'(x)) e - A (F'' d) e|  for all d, e in +- r.
 
 If eta + M r < r then F has exactly one zero in x +- r, it lies within eta + M r of x, and F' is regular on
 the whole box (R. Krawczyk 1969; R. E. Moore 1977; Neumaier, Interval Methods, 5.1). Where x, A and F are
@@ -43,11 +43,12 @@ class Contraction:
     """What proves boxes about a centre, or along a curve.
 
     Attributes:
-        missed, defect, inverse: bounds on |A F|, a column, on |I - A F'| and on |A|, entry by entry.
+        missed: upper bounds on |A F|.
+        defect, inverse: I - A F' and A, enclosed.
         bend: F'' d.
     """
 
-    missed: arb_mat
+    missed: Sequence[arb]
     defect: arb_mat
     inverse: arb_mat
     bend: Callable[[Sequence[arb]], arb_mat]
@@ -55,9 +56,8 @@ class Contraction:
     @classmethod
     def at(cls, system: System, centre: Sequence[arb], inverse: arb_mat) -> Contraction:
         """About a centre."""
-        unit = arb_mat([[int(i == j) for j in range(len(centre))] for i in range(len(centre))])
-        missed = sizes(inverse * column(system.residual(centre)))
-        return cls(missed, sizes(unit - inverse * system.matrix(centre)), sizes(inverse), system.bend)
+        missed = bounds(inverse * column(system.residual(centre)))
+        return cls(missed, unit_matrix(len(centre)) - inverse * system.matrix(centre), inverse, system.bend)
 
     @classmethod
     def along(
@@ -73,24 +73,21 @@ class Contraction:
         """
         size = len(rows)
         inverse = moving_inverse(entries, size, span.rad())
-        missed = [reduce(arb_poly.__add__, map(arb_poly.__mul__, line, rows)) for line in inverse]
+        missed = [reduce(arb_poly.__add__, map(arb_poly.__mul__, line, rows))(span) for line in inverse]
         defect = [[arb_poly([int(i == j)]) for j in range(size)] for i in range(size)]
         for line, left in zip(inverse, defect, strict=True):
             for row, j, entry in entries:
                 left[j] -= line[row] * entry
 
-        def bound(lines: Sequence[Sequence[arb_poly]]) -> arb_mat:
-            return arb_mat([[one(span).abs_upper() for one in line] for line in lines])
-
-        return cls(bound([[one] for one in missed]), bound(defect), bound(inverse), bend)
+        defects, inverses = (arb_mat([[x(span) for x in line] for line in of]) for of in (defect, inverse))
+        return cls([x.abs_upper() for x in missed], defects, inverses, bend)
 
     def image(self, width: Sequence[arb]) -> list[arb]:
         """eta + M r."""
-        sides = column(width)
-        bend = sizes(self.bend([arb(0, r) for r in width]))
-        return [
-            x.upper() for x in (self.missed + self.defect * sides + self.inverse * (bend * sides)).entries()
-        ]
+        box = [arb(0, r) for r in width]
+        sides = column(box)
+        spread = bounds(self.defect * sides - self.inverse * (self.bend(box) * sides))
+        return [(eta + x).upper() for eta, x in zip(self.missed, spread, strict=True)]
 
     def settled(self, bits: float = 0.5) -> list[arb] | None:
         """Half widths of a box that is proven, not much wider than need be; None if none is found.
@@ -98,7 +95,7 @@ class Contraction:
         Args:
             bits: share of the arithmetic's bits that the narrowest has.
         """
-        width = [2 * x + arb(2) ** int(-bits * ctx.prec) for x in self.missed.entries()]
+        width = [2 * x + arb(2) ** int(-bits * ctx.prec) for x in self.missed]
         for _ in range(TRIES):
             image = self.image(width)
             if less(image, width):
@@ -148,7 +145,7 @@ def moving_inverse(entries: Entries, size: int, reach: arb) -> list[list[arb_pol
     terms = [middle_inverse(matrices[0])]
     for k in range(1, count):
         turn = reduce(arb_mat.__add__, (terms[i] * matrices[k - i] for i in range(k)))
-        if largest((sizes(turn) * column([reach**k] * size)).entries()) < SETTLED:
+        if largest((turn * column([arb(0, reach**k)] * size)).entries()) < SETTLED:
             break
         terms.append(-(turn * terms[0]).mid())
     flat = [arb_poly(list(one)) for one in zip(*(term.entries() for term in terms), strict=True)]
@@ -162,7 +159,7 @@ def middle_inverse(matrix: arb_mat) -> arb_mat:
         NotDecidedError: it is singular to the present precision.
     """
     try:
-        return matrix.mid().inv().mid()
+        return matrix.mid().solve(unit_matrix(matrix.nrows()), algorithm="approx").mid()
     except ZeroDivisionError:
         raise NotDecidedError("the inverse of the Jacobian", "0", "not 0") from None
 
@@ -172,9 +169,17 @@ def column(numbers: Sequence[arb]) -> arb_mat:
     return arb_mat(len(numbers), 1, list(numbers))
 
 
-def sizes(matrix: arb_mat) -> arb_mat:
-    """Upper bounds on the absolute values, entry by entry."""
-    return arb_mat(matrix.nrows(), matrix.ncols(), [x.abs_upper() for x in matrix.entries()])
+def unit_matrix(size: int) -> arb_mat:
+    """I."""
+    unit = arb_mat(size, size)
+    for i in range(size):
+        unit[i, i] = 1
+    return unit
+
+
+def bounds(matrix: arb_mat) -> list[arb]:
+    """Upper bounds on the absolute values of the entries."""
+    return [x.abs_upper() for x in matrix.entries()]
 
 
 def largest(numbers: Sequence[arb]) -> arb:

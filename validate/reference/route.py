@@ -7,7 +7,7 @@ take of them (see `drives`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -69,7 +69,9 @@ def closed(design: Design, clearness: float = CLEAR) -> Assembly:
         clear = 1.0 / bending(way, pose)
         if clear < clearness:
             raise _ambiguous(clear, clearness)
-        return Assembly({}, _led(way, pose, design, "closing the drawing"))
+        for there in _led(way, pose, design, "closing the drawing"):
+            pose = there
+        return Assembly({}, pose)
 
     return with_more_digits(attempt, DIGITS)
 
@@ -111,21 +113,26 @@ def moved(design: Design, here: Assembly, driven: Driven) -> Assembly:
         SingularPoseError: the way meets a singular pose, or one so near that 400 digits do not tell.
     """
 
+    pose, leg, gone = here.pose, 0, arb(0)
+
     def attempt(_: int) -> Assembly:
-        pose = here.pose
-        for begin, end in pairwise(_stops(design, here.driven, driven)):
+        # With more digits the way goes on where it stopped with fewer: what was proven of a pose holds.
+        nonlocal pose, leg, gone
+        for begin, end in islice(pairwise(_stops(design, here.driven, driven)), leg, None):
             way = Way(design.equations(), begin, end)
-            start = start_pose(way, pose.unknown, arb(0))
+            start = start_pose(way, pose.unknown, gone)
             if not pose.holds(start.box):
                 raise NotDecidedError("the start of the way", "another solution", "the same")
-            pose = _led(way, start, design, "the way to the inputs")
+            for pose in _led(way, start, design, "the way to the inputs"):
+                gone = pose.t
+            leg, gone = leg + 1, arb(0)
         return Assembly(driven, pose)
 
     return with_more_digits(attempt, DIGITS)
 
 
-def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
-    """Along a way to its end.
+def _led(way: Way, pose: Pose, design: Design, what: str) -> Iterator[Pose]:
+    """The poses along a way to its end.
 
     Raises:
         TooManyStepsError: it takes more than `MOST_STEPS`.
@@ -138,8 +145,9 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
         there = next_pose(way, pose, longest)
         step = float(there.t - pose.t)
         pose, longest = there, arb(4 * step)
+        yield pose
         if step < tried and pose.t < 1:
-            tried = step / 4
+            tried = step * FOLDS_FROM
             fold = fold_ahead(way, pose)
             if fold is None:
                 continue
@@ -147,8 +155,8 @@ def _led(way: Way, pose: Pose, design: Design, what: str) -> Pose:
                 raise InfeasibleError(what, float(fold.t.mid()), _inputs(design, way.numbers(fold.t)))
             if not fold.t > 1:
                 raise NotDecidedError("the fold beyond the end of the way", fold.t, "1")
-            return pose_before(way, fold, arb(1))
-    return pose
+            pose = pose_before(way, fold, arb(1))
+            yield pose
 
 
 def _stops(design: Design, begin: Driven, end: Driven) -> list[list[arb]]:

@@ -25,7 +25,7 @@ from flint import arb, arb_mat, arb_poly, ctx
 
 from validate.reference.equations import Equations, matrix_of
 from validate.reference.errors import NotDecidedError
-from validate.reference.krawczyk import Contraction, System, column, largest, less, newton, sizes, within
+from validate.reference.krawczyk import Contraction, System, column, largest, less, newton, within
 from validate.reference.vectors import Scalar
 
 LEAST_ORDER, MOST_ORDER = 7, 40  # of the series: more terms cost more than the longer steps save
@@ -153,7 +153,7 @@ def start_pose(curve: Curve, near: Sequence[arb], t: arb) -> Pose:
     # The narrowest box tells where the solution is, the widest how far it is from any other.
     proofs = []
     for share in BOXES:
-        width = [2 * x + arb(2) ** int(-ctx.prec * share) for x in proof.missed.entries()]
+        width = [2 * x + arb(2) ** int(-ctx.prec * share) for x in proof.missed]
         image = proof.image(width)
         if not less(image, width):
             break
@@ -189,9 +189,8 @@ def bending(curve: Curve, pose: Pose) -> float:
     """|A C''| at a pose, in doubles: within half of its inverse Newton's method cannot leave the solution
     (Kantorovich).
     """
-    bend = curve.bend([arb(0, 1)] * len(pose.unknown))
-    product = sizes(pose.inverse) * (sizes(bend) * column([arb(1)] * bend.ncols()))
-    return float(largest(product.entries()))
+    box = [arb(0, 1)] * len(pose.unknown)
+    return float(largest((pose.inverse * (curve.bend(box) * column(box))).entries()))
 
 
 def series_of(curve: Curve, pose: Pose, order: int, begun: Sequence[arb_poly] = ()) -> list[arb_poly]:
