@@ -55,7 +55,7 @@ class InExudyn(Program):
             for of_point, of_body in zip(MOVES[:2], MOVES[2:], strict=True)
         ]
         self.ends = []
-        for loop in linkage.loops:
+        for loop in linkage.tree.loops:
             sides = (loop.first, loop.second)
             markers = [self._marker(tree, side) for side in sides]
             system.AddObject(items.ObjectJointSpherical(markerNumbers=markers))
@@ -68,7 +68,7 @@ class InExudyn(Program):
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
         self.as_drawn = np.zeros(self.size)
-        self.driven = np.array([self.links.last[driven.body] for driven in linkage.driven])
+        self.driven = np.array([self.links.last[driven.body] for driven in linkage.tree.driven])
         self.driven_at = self.driven
         self.unknown = np.array([i for i in range(self.size) if i not in self.driven], dtype=np.intp)
 
@@ -189,9 +189,9 @@ class _Links:
 def _links(linkage: Linkage) -> _Links:
     links, car = _Links(), car_directions(linkage.plain)
     upright = np.stack([car["right"], car["forward"], car["up"]], axis=-1)
-    for joint in linkage.joints:
-        if joint.body in linkage.rods:
-            links.hang(joint, _rod_axes(linkage, linkage.rods[joint.body]), TURNS[:2])
+    for joint in linkage.tree.joints:
+        if joint.body in linkage.tree.rods:
+            links.hang(joint, _rod_axes(linkage, linkage.tree.rods[joint.body]), TURNS[:2])
         elif joint.kind == "ball":
             links.hang(joint, upright, TURNS)
         else:
@@ -202,7 +202,7 @@ def _links(linkage: Linkage) -> _Links:
 
 def _rod_axes(linkage: Linkage, rod: Array) -> Array:
     """Axes of a rod's turns as columns, the rod the third."""
-    for joint in linkage.joints:
+    for joint in linkage.tree.joints:
         beside = joint.axis - float(joint.axis @ rod) * rod
         if joint.kind == "hinge" and np.linalg.norm(beside) > 0.5:
             first = beside / np.linalg.norm(beside)

@@ -41,13 +41,13 @@ class InMujoco(Program):
         self.sites = [model.site(name).id for name in linkage.points]
         self.turns = [model.site(f"body {body}").id for body in linkage.bodies.values()]
         self.ends = [
-            tuple(model.site(f"loop {k} {end}").id for end in "ab") for k in range(len(linkage.loops))
+            tuple(model.site(f"loop {k} {end}").id for end in "ab") for k in range(len(linkage.tree.loops))
         ]
-        driven = [model.joint(driven.body) for driven in linkage.driven]
+        driven = [model.joint(driven.body) for driven in linkage.tree.driven]
         self.driven_at = np.array([joint.qposadr[0] for joint in driven])
         self.driven = np.array([joint.dofadr[0] for joint in driven])
         # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
-        idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.rods]
+        idle = [model.joint(rod).dofadr[0] + 2 for rod in linkage.tree.rods]
         self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
 
     @property
@@ -120,7 +120,7 @@ def spec_of(linkage: Linkage) -> mujoco.MjSpec:
     spec.option.gravity = np.zeros(3)
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     bodies = {CHASSIS: spec.worldbody.add_body(name=CHASSIS)}
-    for joint in linkage.joints:
+    for joint in linkage.tree.joints:
         turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
         quaternion = np.empty(4)
         mujoco.mju_mat2Quat(quaternion, (turn.T @ own).ravel())
@@ -142,7 +142,7 @@ def spec_of(linkage: Linkage) -> mujoco.MjSpec:
         site(name, at)
     for body in dict.fromkeys(linkage.bodies.values()):
         site(f"body {body}", Place(body, linkage.frames[body][0]))
-    for number, loop in enumerate(linkage.loops):
+    for number, loop in enumerate(linkage.tree.loops):
         names = [f"loop {number} {end}" for end in "ab"]
         for name, at in zip(names, (loop.first, loop.second), strict=True):
             site(name, at)

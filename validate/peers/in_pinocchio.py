@@ -40,7 +40,7 @@ class InPinocchio(Program):
         self.linkage = linkage
         self.model = model = pinocchio.Model()
         self.number = {CHASSIS: 0}
-        for joint in linkage.joints:
+        for joint in linkage.tree.joints:
             turn, own = linkage.frames[joint.parent][1], linkage.frames[joint.body][1]
             placed = pinocchio.SE3(turn.T @ own, linkage.local(Place(joint.parent, joint.at)))
             parent = self.number[joint.parent]
@@ -48,11 +48,11 @@ class InPinocchio(Program):
         self.data = model.createData()
         self.as_drawn = np.array(pinocchio.neutral(model))
         self.q, self.v = self.as_drawn, np.zeros(model.nv)
-        joints = [model.joints[self.number[driven.body]] for driven in linkage.driven]
+        joints = [model.joints[self.number[driven.body]] for driven in linkage.tree.driven]
         self.driven_at = np.array([joint.idx_q for joint in joints])
         self.driven = np.array([joint.idx_v for joint in joints])
         # A rod may turn about itself, its body's z axis, which changes nothing: that rate is held at 0.
-        idle = [model.joints[self.number[rod]].idx_v + 2 for rod in linkage.rods]
+        idle = [model.joints[self.number[rod]].idx_v + 2 for rod in linkage.tree.rods]
         self.unknown = np.array([i for i in range(model.nv) if i not in (*self.driven, *idle)], dtype=np.intp)
         self.moves = np.zeros((model.njoints, model.nv, 1))
         for number in range(1, model.njoints):
@@ -60,8 +60,8 @@ class InPinocchio(Program):
             self.moves[number] = self.moves[model.parents[number]]
             self.moves[number, joint.idx_v : joint.idx_v + joint.nv] = 1.0
         self.points = self._together(linkage.points.values())
-        self.sides = [self._together(loop.first for loop in linkage.loops)]
-        self.sides.append(self._together(loop.second for loop in linkage.loops))
+        self.sides = [self._together(loop.first for loop in linkage.tree.loops)]
+        self.sides.append(self._together(loop.second for loop in linkage.tree.loops))
         self.turns = [self.number[body] for body in linkage.bodies.values()]
 
     @property

@@ -11,18 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.peers.errors import HardpointsError, InputError
-from validate.spanning_tree.chassis import ChassisMotion
-from validate.spanning_tree.cut import (
-    CHASSIS,
-    CutError,
-    Driven,
-    Joint,
-    Loop,
-    Place,
-    SpanningTree,
-    across,
-    cut,
-)
+from validate.spanning_tree.cut import CHASSIS, CutError, Place, SpanningTree, across, cut
 from validate.spanning_tree.wheels import Wheels, knuckles
 
 Array = NDArray[np.float64]
@@ -42,22 +31,16 @@ class Inputs:
 
     Attributes:
         series: of each drive its input with two time derivatives, (N, drives, 3), rad and the linkage's unit.
-        laws: of every input, (N, 3), rad or mm per s^d. plain: the flat mechanism.
+        laws: of every input, (N, 3), rad or mm per s^d.
     """
 
     series: Array
     laws: Mapping[str, Array]
-    plain: Mapping[str, Any]
 
     @property
     def values(self) -> Array:
         """(N, drives)."""
         return self.series[..., 0]
-
-    @property
-    def chassis(self) -> ChassisMotion | None:
-        """Motion of the chassis, None if it rests."""
-        return ChassisMotion.of(self.plain, self.laws)
 
     def first(self, count: int) -> Inputs:
         """At the first instants."""
@@ -82,37 +65,12 @@ class Linkage:
     bodies: Mapping[str, str]
     wheels: Wheels
 
-    @property
-    def joints(self) -> tuple[Joint, ...]:
-        """Of the tree and of what closes and drives it, parents first."""
-        return self.tree.joints
-
-    @property
-    def rods(self) -> Mapping[str, Array]:
-        """Bodies on a ball joint whose spin about the axis changes nothing."""
-        return self.tree.rods
-
-    @property
-    def loops(self) -> tuple[Loop, ...]:
-        """Ball joints that close the tree."""
-        return self.tree.loops
-
-    @property
-    def driven(self) -> tuple[Driven, ...]:
-        """Joints that are driven."""
-        return self.tree.driven
-
-    @property
-    def unit(self) -> float:
-        """mm."""
-        return self.tree.unit
-
     @cached_property
     def frames(self) -> Mapping[str, tuple[Array, Array]]:
         """Where each body's frame is drawn, and its axes as columns: those of a rod have it as the third."""
         found = {CHASSIS: (np.zeros(3), np.eye(3))}
-        for joint in self.joints:
-            rod = self.rods.get(joint.body)
+        for joint in self.tree.joints:
+            rod = self.tree.rods.get(joint.body)
             found[joint.body] = joint.at, found[joint.parent][1] if rod is None else axes_along(rod)
         return found
 
@@ -124,17 +82,17 @@ class Linkage:
     @property
     def drawn_inputs(self) -> Array:
         """Inputs at the drawing, (drives,), rad and the unit."""
-        return np.array([driven.drawn for driven in self.driven])
+        return np.array([driven.drawn for driven in self.tree.driven])
 
     def coordinates(self, series: Array) -> Array:
         """Driven coordinates with two time derivatives, from the drives' inputs, (..., drives, 3) each."""
-        found = [driven.coordinate(series[..., k, :]) for k, driven in enumerate(self.driven)]
+        found = [driven.coordinate(series[..., k, :]) for k, driven in enumerate(self.tree.driven)]
         return np.stack(found, axis=-2)
 
     def moved(self, places: Mapping[str, Array]) -> dict[str, float]:
         """By how much each moving point lies off its place in the drawing, mm."""
         drawn = self.tree.drawn
-        return {n: self.unit * float(np.linalg.norm(place - drawn[n])) for n, place in places.items()}
+        return {n: self.tree.unit * float(np.linalg.norm(place - drawn[n])) for n, place in places.items()}
 
     def accuracy(self, last_step: Array) -> Array:
         """How exactly a program places points after such a last correction, mm.
@@ -143,7 +101,7 @@ class Linkage:
         once for each joint; Newton's method leaves the square of its last correction.
         """
         far = max(1.0, *(float(np.abs(place).max()) for place in self.tree.drawn.values()))
-        return np.asarray((CHAIN * UNIT_ROUNDOFF * far + last_step**2) * self.unit)
+        return np.asarray((CHAIN * UNIT_ROUNDOFF * far + last_step**2) * self.tree.unit)
 
     def inputs(self, laws: Mapping[str, Array]) -> Inputs:
         """What is given to a program.
@@ -156,16 +114,16 @@ class Linkage:
         for name, law in laws.items():
             _require(name, law, np.asarray(np.isfinite(law).all(axis=1)), "finite numbers and rates")
         found = []
-        for driven in self.driven:
+        for driven in self.tree.driven:
             if driven.input not in laws:
-                raise InputError(driven.input, "missing", "; ".join(one.input for one in self.driven))
+                raise InputError(driven.input, "missing", "; ".join(one.input for one in self.tree.driven))
             law = laws[driven.input]
             if driven.kind in BETWEEN:
                 least, most, words = BETWEEN[driven.kind]
                 value = law[:, 0]
                 _require(driven.input, law, np.asarray((value >= least) & (value <= most)), words)
-            found.append(law if driven.is_angle else law * (driven.per_input / self.unit))
-        return Inputs(np.stack(found, axis=1), laws, self.plain)
+            found.append(law if driven.is_angle else law * (driven.per_input / self.tree.unit))
+        return Inputs(np.stack(found, axis=1), laws)
 
 
 def _require(name: str, law: Array, right: NDArray[np.bool_], allowed: str) -> None:

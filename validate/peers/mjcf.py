@@ -48,7 +48,7 @@ def mjcf_of(plain: Mapping[str, Any], title: str) -> str:
     spec.modelname = title
     _drawn(spec, linkage)
     actuators: dict[str, str] = {}
-    for driven in linkage.driven:
+    for driven in linkage.tree.driven:
         name = driven.input if driven.input not in actuators else f"{driven.input} of {driven.body}"
         actuators[name] = driven.body
         # A spring and a damper that follow the viewer's slider.
@@ -80,8 +80,8 @@ def _z_up(plain: Mapping[str, Any]) -> dict[str, Any]:
 def _with_joints_driven(plain: Mapping[str, Any]) -> Linkage:
     """With those inputs alone that drive a joint which the mechanism has anyway."""
     bare = linkage_of({**plain, "inputs": {}})
-    own = {joint.body for joint in bare.joints}
-    kept = {driven.input for driven in linkage_of(plain).driven if driven.body in own}
+    own = {joint.body for joint in bare.tree.joints}
+    kept = {driven.input for driven in linkage_of(plain).tree.driven if driven.body in own}
     linkage = linkage_of({**plain, "inputs": {name: plain["inputs"][name] for name in kept}})
     # Points of the chassis too; no body's turn is reported.
     return replace(linkage, points=linkage.tree.points, bodies={})
@@ -110,7 +110,7 @@ def _drawn(spec: mujoco.MjSpec, linkage: Linkage) -> None:
     """Balls at points, and links from each body's origin to its points and loops; they touch nothing."""
     size = float(np.ptp([place.at for place in linkage.points.values()], axis=0).max())
     looks = {"contype": 0, "conaffinity": 0, "mass": 0.0}
-    ends = [end for loop in linkage.loops for end in (loop.first, loop.second)]
+    ends = [end for loop in linkage.tree.loops for end in (loop.first, loop.second)]
     every = {(one.body, *np.round(one.at, 9)): one for one in (*linkage.points.values(), *ends)}
     for place in linkage.points.values():
         spec.body(place.body).add_geom(

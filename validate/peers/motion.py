@@ -10,9 +10,14 @@ from numpy.typing import NDArray
 
 from validate.peers.linkage import Inputs, Linkage
 from validate.reference.effects.registry import ANGLES
+from validate.spanning_tree.chassis import ChassisMotion
 from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
+Rates = dict[str, dict[str, Array]]
+"""Velocity and acceleration of every moving point, in the linkage's unit, and of the turns of the bodies that
+are reported, by quantity and name, (N, 3).
+"""
 
 
 @dataclass(frozen=True)
@@ -44,21 +49,6 @@ class Poses:
         )
 
 
-@dataclass(frozen=True)
-class Rates:
-    """Velocities and accelerations of poses, in the linkage's unit.
-
-    Attributes:
-        velocity, acceleration: of every moving point, (N, 3).
-        spin, spin_rate: angular velocity and acceleration of the bodies that are reported, (N, 3).
-    """
-
-    velocity: Mapping[str, Array]
-    acceleration: Mapping[str, Array]
-    spin: Mapping[str, Array]
-    spin_rate: Mapping[str, Array]
-
-
 def numbers(
     linkage: Linkage,
     inputs: Inputs | None,
@@ -72,17 +62,16 @@ def numbers(
         inputs: what moves the chassis; it rests where there are none.
         effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
     """
-    tree, unit, still = linkage.tree, linkage.unit, np.zeros((len(poses.inputs), 3))
+    tree, unit, still = linkage.tree, linkage.tree.unit, np.zeros((len(poses.inputs), 3))
     near = {name: poses.places.get(name, still + place.at) for name, place in tree.points.items()}
     found: dict[str, dict[str, Array]] = {
         "position": {name: place * unit + tree.origin for name, place in near.items()}
     }
     if rates is not None:
-        for quantity, moving in (("velocity", rates.velocity), ("acceleration", rates.acceleration)):
-            found[quantity] = {name: moving.get(name, still) * unit for name in near}
-        found["angular_velocity"] = dict(rates.spin)
-        found["angular_acceleration"] = dict(rates.spin_rate)
-    chassis = None if inputs is None else inputs.chassis
+        found |= rates
+        for quantity in ("velocity", "acceleration"):
+            found[quantity] = {name: rates[quantity].get(name, still) * unit for name in near}
+    chassis = None if inputs is None else ChassisMotion.of(linkage.plain, inputs.laws)
     if chassis is not None:
         found = chassis.moved(found)
     found[OF_CAR] = linkage.wheels.numbers(near, {} if inputs is None else inputs.laws, effects)

@@ -201,13 +201,11 @@ class Program(ABC):
             self.set_rates(velocity)
             acceleration[self.unknown] = -inverse @ self.apart(acceleration)[self.rows]
             first[i], second[i] = self.moving(acceleration)
-        velocities, accelerations = (
-            {name: array[:, k] for k, name in enumerate(names)} for array in (first, second)
-        )
-        spins, rates = (
-            {name: array[:, k] for k, name in enumerate(bodies, len(names))} for array in (first, second)
-        )
-        return Rates(velocities, accelerations, spins, rates)
+        found: Rates = {}
+        for quantity, array in (("velocity", first), ("acceleration", second)):
+            found[quantity] = {name: array[:, k] for k, name in enumerate(names)}
+            found[f"angular_{quantity}"] = {body: array[:, k] for k, body in enumerate(bodies, len(names))}
+        return found
 
     def signs(self, jacobian: Array) -> Array:
         """Signs of the determinants of the diagonal blocks of J_u, (blocks,)."""
@@ -290,8 +288,8 @@ class Program(ABC):
             return 1.0, ()
         left, sizes, _ = np.linalg.svd(jacobian[:, self.unknown])
         share = np.abs(np.concatenate([left[:, -1], left[:, -1] @ jacobian[:, self.driven]]))
-        of_rows = np.repeat([loop.name for loop in self.linkage.loops], 3)[self.rows]
-        names = [*of_rows.tolist(), *(driven.input for driven in self.linkage.driven)]
+        of_rows = np.repeat([loop.name for loop in self.linkage.tree.loops], 3)[self.rows]
+        names = [*of_rows.tolist(), *(driven.input for driven in self.linkage.tree.driven)]
         order = np.argsort(-share, kind="stable")
         strong = [names[k] for k in order if share[k] > 0.5 * share[order[0]]]
         with np.errstate(divide="ignore"):

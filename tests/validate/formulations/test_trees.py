@@ -66,13 +66,13 @@ class Faulty(InMujoco):
 
     def poses(self, inputs: Array, tolerance: float, start: Poses) -> Poses:
         poses = super().poses(inputs, tolerance, start)
-        off = poses.places["tie_rod_outer"] + np.array([0.0, 1e-6 / self.linkage.unit, 0.0])
+        off = poses.places["tie_rod_outer"] + np.array([0.0, 1e-6 / self.linkage.tree.unit, 0.0])
         return replace(poses, places={**poses.places, "tie_rod_outer": off})
 
     def rates(self, poses: Poses, series: Array) -> Rates:
         rates = super().rates(poses, series)
-        spin_rate = {body: array * (1.0 + 1e-9) for body, array in rates.spin_rate.items()}
-        return replace(rates, spin_rate=spin_rate)
+        turns = {body: array * (1.0 + 1e-9) for body, array in rates["angular_acceleration"].items()}
+        return {**rates, "angular_acceleration": turns}
 
 
 def test_a_fault_of_a_program_does_not_widen_what_it_claims() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 
 from validate.reference.effects import axle, wheel
 from validate.reference.effects.effect import RACK, TIME, TRAVEL, Effect
@@ -34,14 +34,3 @@ def named(names: Iterable[str]) -> dict[str, Effect]:
             raise BadInputError("effect", name, f"one of {', '.join(OF_POSITIONS)}, {ways}")
         found[name] = effect
     return found
-
-
-def available(names: Iterable[str], has: Collection[str]) -> dict[str, Effect]:
-    """Those of some effects that a car can have.
-
-    Args:
-        has: what it has, of `effect.NEEDS`.
-    Raises:
-        BadInputError: there is no such effect.
-    """
-    return {name: effect for name, effect in named(names).items() if not effect.lacks(has)}
