@@ -8,7 +8,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pointcoord import Scene, simulate
 from pointcoord.effects.corner import Wheel
 from pointcoord.effects.registry import ANGLES
 from pointcoord.effects.wheel_angles import WHEEL_ANGLES
