@@ -191,6 +191,11 @@ class MechanismPart(Part):
     loads: dict[str, LoadPart] = Field(default_factory=dict)
     points: dict[str, Vector]
 
+    short_forms = ("axes",)
+    elsewhere = dict.fromkeys(
+        ("units", "effects", "tolerance", "convention"), "at the top, above [mechanism]"
+    )
+
     _driven: tuple[str, ...] | None = PrivateAttr(None)
 
     @classmethod
@@ -481,6 +486,11 @@ class Scene(Part):
     inputs: dict[str, InputPart]
     time: TimePart
     points: Annotated[tuple[Text, ...], AS_LIST] | None = None
+
+    short_forms = ("units",)
+    elsewhere = dict.fromkeys(TimePart.model_fields, "under [time]") | dict.fromkeys(
+        (*MechanismPart.model_fields, *MechanismPart.short_forms), "under [mechanism]"
+    )
 
     @classmethod
     def completed(cls, content: dict[str, Any]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from typing import Annotated, Any, Self, SupportsFloat
+from typing import Annotated, Any, ClassVar, Self, SupportsFloat
 
 import numpy as np
 from pydantic import (
@@ -97,6 +97,11 @@ class Part(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
+    short_forms: ClassVar[tuple[str, ...]] = ()
+    """Keys that `completed` puts others in place of."""
+    elsewhere: ClassVar[Mapping[str, str]] = {}
+    """Keys of other tables of a scene, and where they stand."""
+
     _checked: dict[str, Any] | None = PrivateAttr(None)
 
     @classmethod
@@ -134,13 +139,18 @@ class Part(BaseModel):
 
     @classmethod
     def _require_known(cls, content: Mapping[Any, Any]) -> None:
-        free = [name for name in cls.model_fields if name not in content]
+        known = (*cls.model_fields, *cls.short_forms)
+        free = [name for name in known if name not in content]
         others = [key for key in content if key not in cls.model_fields]
         if others:
-            hints = [meant(str(key), free) for key in others[:NAMED]]
+            places = [cls.elsewhere.get(str(key)) for key in others[:NAMED]]
+            hints = [
+                f" (it stands {place})" if place else meant(str(key), free)
+                for key, place in zip(others, places, strict=False)
+            ]
             more = zip(others[1:NAMED], hints[1:], strict=True)
             problem = f"there is no such key{hints[0]}" + "".join(f", nor {shown_key(k)}{h}" for k, h in more)
-            raise TableFault((others[0],), problem, ", ".join(cls.model_fields))
+            raise TableFault((others[0],), problem, ", ".join(known))
 
     def agree(self) -> None:
         """Check what the keys make together.

@@ -54,6 +54,24 @@ def test_no_public_way_leads_to_a_scene_of_a_meaningless_tolerance(bad: Any) -> 
         assert caught.value.key == "tolerance"
 
 
+@pytest.mark.parametrize(
+    ("scene", "mechanism", "told"),
+    [
+        ({"axes": "iso"}, {}, r"axes: there is no such key \(it stands under \[mechanism\]\)"),
+        ({"stop": 1.0}, {}, r"stop: there is no such key \(it stands under \[time\]\)"),
+        ({"unit": "m"}, {}, r"unit: there is no such key \(did you mean 'units'\?\)"),
+        ({}, {"units": "m"}, r"mechanism.units: .* \(it stands at the top, above \[mechanism\]\)"),
+        ({}, {"axis": "iso"}, r"mechanism.axis: there is no such key \(did you mean 'axes'\?\)"),
+    ],
+)
+def test_a_key_of_another_table_is_told_where_it_stands(
+    scene: dict[str, str], mechanism: dict[str, str], told: str
+) -> None:
+    content = BOUNCE.model_dump(exclude_none=True)
+    with pytest.raises(SceneError, match=told):
+        Scene.from_mapping({**content, **scene, "mechanism": {**content["mechanism"], **mechanism}})
+
+
 def test_a_copy_with_other_values_is_checked_in_every_part() -> None:
     with pytest.raises(SceneError, match="tolerence: there is no such key; allowed: title, effects"):
         BOUNCE.model_copy(update={"tolerence": 1e-9})
