@@ -49,6 +49,7 @@ HOME = drawn_angle()
 @pytest.mark.parametrize(
     ("head", "change", "words"),
     [
+        ("rack [mm]", lambda s: 1.7 * s, "rack is 1.7 times ours"),
         ("rack [mm]", lambda s: -s / 25.4, "rack is in in, not in mm, and has the other sign"),
         ("rack [cm]", lambda s: s / 10.0 - 0.5, "rack counts from another zero: 0.5 cm are missing"),
         (
