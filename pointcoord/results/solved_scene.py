@@ -211,32 +211,15 @@ def _carry(mechanism: Mechanism, part: slice | EllipsisType, carried: Sequence[S
         part: which of the mechanism's cars they are of.
     """
     unit = mechanism.unit[part][..., None, None]
-    edges: dict[tuple[int, str, str], Array] = {}
-    normals: dict[tuple[int, tuple[str, str, str]], Array] = {}
-
-    def edge(order: int, base: str, point: str) -> Array:
-        key = order, base, point
-        if key not in edges:
-            edges[key] = found[order, point] - found[order, base]
-        return edges[key]
-
-    def normal(order: int, carriers: tuple[str, str, str]) -> Array:
-        key, (base, first, second) = (order, carriers), carriers
-        if key not in normals:
-            total = normals[key] = np.zeros_like(edge(order, base, first))
-            for i in range(order + 1):
-                _add_cross(total, comb(order, i), edge(i, base, first), edge(order - i, base, second))
-        return normals[key]
-
     for order, name in carried:
-        carriers = base, first, second = mechanism.topology.carried[name]
+        base, *others = mechanism.topology.carried[name]
         a, b, c = (mechanism.carrier_weights[name][part][..., i, None, None] for i in range(3))
-        place = found[order, name]
-        np.multiply(edge(order, base, first), a, out=place)
-        place += b * edge(order, base, second)
+        e1, e2 = ([found[d, point] - found[d, base] for d in range(order + 1)] for point in others)
+        place, normal = found[order, name], np.zeros_like(e1[0])
+        for i in range(order + 1):
+            _add_cross(normal, comb(order, i), e1[i], e2[order - i])
         # The weights are of lengths in the mechanism's units: of the cross product's square one is left.
-        place += (c / unit) * normal(order, carriers)
-        place += found[order, base]
+        place[...] = a * e1[order] + b * e2[order] + (c / unit) * normal + found[order, base]
 
 
 def _add_cross(total: Array, factor: float, a: Array, b: Array) -> None:
