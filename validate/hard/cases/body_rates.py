@@ -3,7 +3,7 @@ r"""Rates of the knuckle where the printed quotient is 0/0, and rates that are e
 The paper prints omega = v65 x v75 / (v65 . r75). As v = omega x r, its divisor is omega . (r65 x r75): it is
 zero whenever omega lies in the plane of the knuckle's three points. While the arm is held v75 itself is zero,
 and omega along the strut, in that plane; but the turning arm, too, passes an angle where it lies there.
-Least squares over the three points divides by an inertia tensor, which only a knuckle in line makes singular.
+The turn of two edges divides by the square of their vector product: zero for a knuckle in line only.
 """
 
 from __future__ import annotations

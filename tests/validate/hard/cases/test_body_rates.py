@@ -1,4 +1,4 @@
-"""The printed omega is a quotient that vanishes in common motions; least squares over the knuckle is not."""
+"""The printed omega is a quotient that vanishes in common motions; the turn of two edges does not."""
 
 from dataclasses import replace
 
