@@ -122,7 +122,10 @@ def _no_mixed_terms(patch: pytest.MonkeyPatch) -> None:
 
 
 def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
-    """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities."""
+    """omega x (omega x r) left out: alpha made of accelerations as omega is of velocities.
+
+    A knuckle that turns about one of its edges, as the paper's does as the rack moves, has alpha right.
+    """
     rates = ByEdges.rates
     patch.setattr(ByEdges, "rates", lambda self, p, v, a: (rates(self, p, v, a)[0], rates(self, p, a, a)[0]))
 
@@ -284,7 +287,7 @@ FAULTS = {
     "the inputs' second derivatives forgotten in the map": Fault(
         _in_powers_of_inputs(lambda _, r: r), "bounce", "acceleration", "pointcoord-map"
     ),
-    "no centripetal term in alpha": Fault(_no_centripetal_term, "steer", "angular_acceleration"),
+    "no centripetal term in alpha": Fault(_no_centripetal_term, "bounce", "angular_acceleration"),
     "the kingpin's sign": Fault(_kingpin_sign, "bounce", "wheel"),
     "theta'' forgotten": Fault(_in_inputs(_without(2)), "bounce", "acceleration"),
     "the jerk of the angle forgotten": Fault(_in_inputs(_without(3)), "bounce-on-a-heaving-chassis", "jerk"),
