@@ -15,8 +15,9 @@ the plane of a horizontal h and up through c, the knuckle's points move about th
 
     c - (v . up / w . a) h + (v . h / w . a) up,    a = h x up.
 
-To add a number of places, add it to `ANGLES` or to `LENGTHS`; one of velocities, which has no gradients, to
-`OF_VELOCITIES` or `OF_RACK`; one of both wheels of an axle to `AXLE_EFFECTS`.
+To add a number of places, add it to `ANGLES` or to `LENGTHS`, or to `AXIS_LENGTHS` if both the steering axis
+and the screw axis have it; one of velocities, which has no gradients, to `OF_VELOCITIES` or `OF_RACK`; one of
+both wheels of an axle to `AXLE_EFFECTS`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -24,7 +24,7 @@ from validate.formulations.registry import OUTSIDE, formulation
 
 OF_EVERY_NUMBER = ("pointcoord", "absolute")
 OTHERS = ("pointcoord-newton", "pointcoord-map", "relative", *OUTSIDE)
-SAMPLES = 4
+SAMPLES = 3
 TURNED = Path(__file__).with_name("roll-pitch-heave.toml")
 CAR = {"axle": "rear", **NUMBERS_OF_A_CAR}
 LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}

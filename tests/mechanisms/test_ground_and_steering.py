@@ -12,7 +12,7 @@ from validate.comparison.compare import compare_solutions
 from validate.formulations.registry import formulation
 
 WISHBONE = Scene.load("double-wishbone").model_dump(exclude_none=True)["mechanism"]
-TIME = {"start": 0.0, "stop": 1.0, "samples": 4}
+TIME = {"start": 0.0, "stop": 1.0, "samples": 3}
 RATES = ("velocity", "acceleration", "knuckle_rates")
 ANGLES = (*RATES, "toe", "wheel_travel")
 

@@ -190,7 +190,7 @@ def content_of(name: str) -> Content:
         name: {"polynomial": [*rounded([drawn[name]]), *(c * (1 + 0.25 * k) for c in steps[kinds[name][0]])]}
         for k, name in enumerate(scene.inputs)
     }
-    content |= {"inputs": inputs, "time": {"start": 0.0, "stop": 1.0, "samples": 3}, "effects": []}
+    content |= {"inputs": inputs, "time": {"start": 0.0, "stop": 1.0, "samples": 2}, "effects": []}
     # What loads make of one axle is enough: each rod of two wheels is a way of the car of its own.
     effects = [
         e for e in Scene.from_mapping(content).mechanism.effects if (name, e) != ("axle-roll", "loads")
