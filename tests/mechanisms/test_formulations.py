@@ -24,7 +24,7 @@ from validate.formulations.registry import OUTSIDE, formulation
 
 OF_EVERY_NUMBER = ("pointcoord", "absolute")
 OTHERS = ("pointcoord-newton", "pointcoord-map", "relative", *OUTSIDE)
-SAMPLES = 3
+SAMPLES = 4
 TURNED = Path(__file__).with_name("roll-pitch-heave.toml")
 CAR = {"axle": "rear", **NUMBERS_OF_A_CAR}
 LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}
@@ -55,7 +55,7 @@ def asked(name: str, every: bool) -> Scene:
     if not every:
         return Scene.from_mapping(content, name)
     content["mechanism"].setdefault("wheel_radius", 300.0)
-    content["mechanism"]["car"] = CAR
+    content["mechanism"]["car"] = {**CAR, **content["mechanism"].get("car", {})}
     topology = load(name).mechanism.topology
     wheels = [role.removesuffix("wheel_axis") for role in topology.roles if role.endswith("wheel_axis")]
     content["mechanism"]["loads"] = {wheel.removesuffix("."): LOAD for wheel in wheels}
