@@ -106,6 +106,15 @@ class Factors:
             None if self.substitution is None else self.substitution.taken(members),
         )
 
+    def part(self, rows: Indices, unknowns: Indices) -> Factors:
+        """Of some diagonal blocks of a block triangular matrix; its inverse has theirs in the same places.
+
+        The condition number is that of the whole.
+        """
+        matrix = self.matrix[..., rows[:, None], unknowns]
+        inverse = self.inverse[..., unknowns[:, None], rows]
+        return Factors(matrix, inverse, self.row_scale[..., rows], self.condition)
+
     def replaced(self, members: NDArray[np.intp], new: Factors) -> Factors:
         """These factors with some members, by number, taken from others; one batch dimension."""
         if len(members) == len(self.condition):

@@ -83,6 +83,15 @@ class Powers:
     def _places(self) -> Indices:
         return self.exponents @ (self.order + 1) ** np.arange(self.inputs)[::-1]
 
+    def within(self, variables: tuple[int, ...]) -> Indices:
+        """Places of the powers of some variables alone, which are in the order of powers of so many."""
+        others = [i for i in range(self.inputs) if i not in variables]
+        return np.flatnonzero(~self.exponents[:, others].any(axis=-1))
+
+    def variables_of(self, there: NDArray[np.bool_]) -> frozenset[int]:
+        """Which variables a series hangs on, whose coefficients are there or not, (powers,)."""
+        return frozenset(np.flatnonzero((self.exponents[there] > 0).any(axis=0)).tolist())
+
     def power_of(self, variable: int, exponent: int) -> int:
         """Place of a power of one variable alone."""
         wanted = np.zeros(self.inputs, dtype=np.intp)

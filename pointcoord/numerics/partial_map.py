@@ -4,10 +4,15 @@ With the unknowns u = [v, s], s those of the blocks that are left out, the map's
 y in another order, [v, s, w]; it has the rows of the blocks that are kept, and v is what it solves for. What
 moves when some known coordinates do is such a part: a block that reads an unknown that moves moves too, so
 the blocks that are left out read none, and their s, once solved, is right for good.
+
+Of several inputs each moves some blocks, and a block that reads an unknown hangs on all the inputs that this
+one does. So the blocks that hang on the same inputs are a part too, a stage: to it the unknowns of the stages
+of fewer inputs are known.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -26,11 +31,13 @@ class PartialMap:
     Attributes:
         whole: what it is a part of.
         system: the part.
+        rows: by row of the part, its number in the whole.
         order: by coordinate of the part, its number in the whole, shape (size,).
     """
 
     whole: QuadraticMap
     system: QuadraticMap
+    rows: NDArray[np.intp]
     order: NDArray[np.intp]
 
     @property
@@ -94,12 +101,60 @@ def moving_part(system: QuadraticMap, driven: frozenset[int]) -> PartialMap:
     Args:
         driven: the known coordinates that move.
     """
+    moved = system.structure.moved_by(dict.fromkeys(driven, frozenset({0})))
+    numbers = [number for number, causes in enumerate(moved) if causes]
+    return _part_of(system, numbers or range(len(moved)))
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The blocks that the same inputs move.
+
+    Attributes:
+        inputs: ascending. part: the blocks, as a map.
+        reads: what moves that they read, beside their own unknowns, as numbers of the whole, ascending.
+    """
+
+    inputs: tuple[int, ...]
+    part: PartialMap
+    reads: tuple[int, ...]
+
+    @property
+    def moving(self) -> NDArray[np.intp]:
+        """All that moves of what its rows read, as numbers of the whole."""
+        return np.array([*self.part.unknowns, *self.reads], dtype=np.intp)
+
+
+@lru_cache(maxsize=64)
+def stages(system: QuadraticMap, driven: tuple[tuple[int, frozenset[int]], ...]) -> tuple[Stage, ...]:
+    """The blocks by the inputs that move them, each stage after those that it reads.
+
+    What stands still is in none.
+
+    Args:
+        driven: the known coordinates that move, and which inputs move each.
+    """
     structure = system.structure
-    moved = structure.moved_by(driven)
-    blocks = [block for block, moves in zip(structure.blocks, moved, strict=True) if moves or not any(moved)]
+    moved = structure.moved_by(dict(driven))
+    moving = {number for number, inputs in driven if inputs}
+    for block, inputs in zip(structure.blocks, moved, strict=True):
+        moving.update(block.unknowns if inputs else ())
+    found = []
+    for inputs in sorted({*moved} - {frozenset()}, key=lambda inputs: (len(inputs), sorted(inputs))):
+        numbers = [number for number, own in enumerate(moved) if own == inputs]
+        part = _part_of(system, numbers)
+        read = {i for number in numbers for i in structure.blocks[number].reads}
+        reads = tuple(sorted((read & moving).difference(part.unknowns.tolist())))
+        found.append(Stage(tuple(sorted(inputs)), part, reads))
+    return tuple(found)
+
+
+def _part_of(system: QuadraticMap, numbers: Sequence[int]) -> PartialMap:
+    """Some blocks, by number; the map itself if they are all."""
+    blocks = [system.structure.blocks[number] for number in numbers]
     rows = sorted(row for block in blocks for row in block.rows)
     if len(rows) == len(system.rows):
-        return PartialMap(system, system, np.arange(system.size))
+        return PartialMap(system, system, np.arange(len(rows)), np.arange(system.size))
     solved = sorted(unknown for block in blocks for unknown in block.unknowns)
     chosen = set(solved)
     order = [*solved, *(i for i in range(system.size) if i not in chosen)]
@@ -116,5 +171,6 @@ def moving_part(system: QuadraticMap, driven: frozenset[int]) -> PartialMap:
     return PartialMap(
         system,
         QuadraticMap(kept, len(solved), system.size),
+        np.array(rows, dtype=np.intp),
         np.array(order, dtype=np.intp),
     )

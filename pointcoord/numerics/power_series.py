@@ -6,7 +6,8 @@ reads at each k
 
     C_u u_k = -( C_w w_k + sum_{0 < i < k} B(y_i, y_{k-i}) ),
 
-all k of one total degree at once.
+all k of one total degree at once. Of several parameters each moves some blocks of the map only, and few
+blocks hang on all: those that hang on the same ones are expanded in these alone (see `partial_map`).
 
 In time k = 1 is the paper's velocity equation (19), k = 2 half its acceleration equation (22). Only products
 of two differences that both move take part in the sum, and many rows share one (see
@@ -25,6 +26,7 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.multi_index import Products, powers_counted, products
+from pointcoord.numerics.partial_map import stages
 from pointcoord.numerics.quadratic import MovingProducts, QuadraticMap
 from pointcoord.numerics.vectors import LAST, NEXT
 
@@ -33,8 +35,6 @@ Combine = Callable[[Array], Array]
 
 # Products of pairs of coefficients at once: 7 MB for a map of a hundred terms.
 PAIRS = 8192
-# Members that are expanded in several inputs at once: their factors, some 100 kB each, stay in a cache.
-MEMBERS = 32
 
 
 def expand(
@@ -49,7 +49,7 @@ def expand(
 
     Args:
         factors: factorisation of C_u at y.
-        y: assembled coordinates, shape (..., size); of several inputs with one batch dimension at most.
+        y: assembled coordinates, shape (..., size).
         known: series of the known coordinates, shape (..., powers, size - unknowns).
         begun: the first powers, of whole degrees, if they are at hand, shape (..., some powers, size).
         inputs: p, how many parameters.
@@ -87,15 +87,34 @@ def expand_moving(
     Returns:
         Coefficients of the unknown ones and then of these, shape (powers, ..., unknowns + moving).
     """
-    if inputs == 1 or y.ndim == 1:
+    if inputs == 1:
         return _recursion(system, factors, y, known, driven, begun, inputs)
+    n, every = system.unknowns, powers_counted(inputs, len(known))
     # By members side by side in memory, which is four times as quick.
-    series = np.moveaxis(np.empty((system.unknowns + len(driven), len(known), len(y))), 0, -1)
-    for low in range(0, len(y), MEMBERS):
-        some = np.arange(low, min(low + MEMBERS, len(y)))
-        first = None if begun is None else begun[:, some]
-        local = factors.taken(some)
-        series[:, some] = _recursion(system, local, y[some], known[:, some], driven, first, inputs)
+    members_last = np.ascontiguousarray(known.reshape(every.count, -1, len(driven)).swapaxes(1, 2))
+    there = (members_last != 0.0).any(axis=-1)
+    moved = tuple((number, every.variables_of(there[:, i])) for i, number in enumerate(driven))
+    series = np.moveaxis(np.zeros((n + len(driven), every.count, *y.shape[:-1])), 0, -1)
+    series[0, ..., :n] = y[..., :n]
+    series[..., n:] = known
+    place = {number: n + i for i, number in enumerate(driven)}
+    for stage in stages(system, moved):
+        part, powers = stage.part, every.within(stage.inputs)
+        own = series if len(powers) == len(series) else series[powers]
+        first = None
+        if begun is not None:
+            first = begun[powers[powers < len(begun)]].take(part.unknowns, axis=-1)
+        found = _recursion(
+            part.system,
+            factors.part(part.rows, part.unknowns),
+            part.taken(y),
+            own.take([place.get(number, number) for number in stage.reads], axis=-1),
+            part.order.argsort()[list(stage.reads)].tolist(),
+            first,
+            len(stage.inputs),
+        )
+        for i, unknown in enumerate(part.unknowns.tolist()):
+            series[powers, ..., unknown] = found[..., i]
     return series
 
 
@@ -108,7 +127,7 @@ def _recursion(
     begun: Array | None,
     inputs: int,
 ) -> Array:
-    """The same of as many members as are expanded at once."""
+    """The same of one stage, all of whose blocks hang on all inputs (see `partial_map`)."""
     n, every = system.unknowns, powers_counted(inputs, len(known))
     moving, edges = tuple(driven), every.edges
     terms = system.moving_products(moving)

@@ -13,7 +13,7 @@ pass over the entries; so does the matching of a linkage, where few rows have to
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -79,12 +79,13 @@ class Structure:
                 wanted.update(block.reads)
         return tuple(reversed(found))
 
-    def moved_by(self, known: Collection[int]) -> tuple[bool, ...]:
-        """Whether each block moves when some known coordinates do."""
-        moved, found = set(known), list[bool]()
+    def moved_by(self, known: Mapping[int, frozenset[int]]) -> tuple[frozenset[int], ...]:
+        """Which causes move each block, where these known coordinates are moved by some each."""
+        moved, found = dict(known), list[frozenset[int]]()
         for block in self.blocks:
-            found.append(not moved.isdisjoint(block.reads))
-            moved.update(block.unknowns if found[-1] else ())
+            causes = frozenset[int]().union(*(moved[i] for i in block.reads if i in moved))
+            found.append(causes)
+            moved.update(dict.fromkeys(block.unknowns, causes))
         return tuple(found)
 
 

@@ -219,7 +219,7 @@ def test_the_series_of_a_part_is_that_of_the_whole(batch: tuple[int, ...], alike
 def test_series_in_two_inputs_are_those_in_one_along_every_line(
     batch: tuple[int, ...], driven: tuple[tuple[int, ...], ...]
 ) -> None:
-    """Along s = (a t, b t) the powers of degree d sum to the d-th coefficient in t."""
+    """Along s = (a t, b t) the powers of degree d sum to the d-th coefficient in t, by whatever stages."""
     order, y, rng = 5, poses(batch), np.random.default_rng(5)
     every = powers(2, order)
     known = np.zeros((*batch, every.count, 4))

@@ -104,8 +104,10 @@ def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
         wanted |= reached[home[i]]
     assert structure.needed(asked) == tuple(np.flatnonzero(wanted).tolist())
     known = data.draw(st.sets(st.integers(n, n + 2)))
-    driven = [not known.isdisjoint(block.reads) for block in blocks]
-    assert list(structure.moved_by(known)) == (reached @ np.array(driven)).tolist()
+    moved = structure.moved_by({i: frozenset({i - n}) for i in known})
+    for cause in (0, 1, 2):
+        driven = [cause + n in known and cause + n in block.reads for block in blocks]
+        assert [cause in causes for causes in moved] == (reached @ np.array(driven)).tolist()
 
 
 def test_the_blocks_of_a_long_chain_or_circle_are_no_recursion() -> None:
