@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, NotComputed, Scene
+from pointcoord import Motion, NotComputed, Samples, Scene
 from pointcoord.effects.conventions import CONVENTIONS, Convention
 from pointcoord.effects.effect import Effect, Quantity
 from pointcoord.effects.registry import ALWAYS, EFFECTS, number_called, words_of
@@ -18,26 +17,15 @@ from pointcoord.wording import meant as hint
 from validate.closed_drawing import closed_drawing
 from validate.errors import UsageError
 from validate.formulations.asked_numbers import is_force
+from validate.formulations.protocol import Solution
 from validate.plain_text import gathered, shown
 from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
 
 
-class Sampled(Protocol):
-    """Numbers of a motion or of another solution at instants."""
-
-    @property
-    def times(self) -> Array:
-        """Shape (N,), s."""
-        ...
-
-    @property
-    def numbers(self) -> Mapping[str, Mapping[str, Array]]:
-        """By quantity and name, (N, 3) or (N,)."""
-        ...
-
-
+Sampled = Samples | Solution
+"""Numbers of a motion or of another solution at instants."""
 Read = Callable[[Motion, Sampled], Array]
 
 TIME, TRAVEL = "time", "travel"

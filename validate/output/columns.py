@@ -13,7 +13,7 @@ import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO, Protocol
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,9 @@ from pointcoord import Motion, Sweep
 from pointcoord.results.named_columns import columns, number_columns
 from validate.extras import needed
 from validate.output.files import require_known_ending, write_whole
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 Array = NDArray[np.float64]
 Block = Mapping[str, NDArray[Any]]
@@ -38,14 +41,6 @@ ROWS = 2048
 PIECE = 2**20
 # Blocks of a motion in a group of rows of Parquet, which is compressed by itself: more make smaller files.
 GROUP = 16
-
-
-class Writable(Protocol):
-    """Whatever takes text."""
-
-    def write(self, text: str, /) -> object:
-        """Take it."""
-        ...
 
 
 def require_table(target: str) -> None:
@@ -81,13 +76,13 @@ def write_sweep(target: str, blocks: Iterable[Sweep]) -> None:
     _write(target, (_by_design if Path(target).suffix == ".npz" else _by_instant)(blocks), 1)
 
 
-def write_csv(stream: Writable, motion: Motion, instants: int | None = None) -> None:
+def write_csv(stream: SupportsWrite[str], motion: Motion, instants: int | None = None) -> None:
     """Write a motion as CSV; reading a number gives the same bits."""
     for text in _csv(_of_motion(motion, instants)):
         stream.write(text)
 
 
-def write_sweep_csv(stream: Writable, blocks: Iterable[Sweep]) -> None:
+def write_sweep_csv(stream: SupportsWrite[str], blocks: Iterable[Sweep]) -> None:
     """Write a sweep as CSV; reading a number gives the same bits."""
     for text in _csv(_by_instant(blocks)):
         stream.write(text)

@@ -136,8 +136,9 @@ class Table:
     @property
     def markdown(self) -> str:
         """The table in Markdown, in which no cell acts; what disagrees is bold."""
-        bold = {cell: f"**{markdown(cell.text)}**" for row in self.cells for cell in row if _is_bad(cell)}
-        rows = ([bold.get(cell) or markdown(cell.text) for cell in row] for row in self.cells)
+        bold = dict.fromkeys(("disagrees", "moved"), "**")
+        marked = ([(bold.get(one.verdict, ""), markdown(one.text)) for one in row] for row in self.cells)
+        rows = ([f"{mark}{text}{mark}" for mark, text in row] for row in marked)
         lines = [[markdown(name) for name in self.head], ["---"] * len(self.head), *rows]
         return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
@@ -148,10 +149,6 @@ class Table:
 
 Part = str | Table
 """Lines of text, or a table."""
-
-
-def _is_bad(cell: Cell) -> bool:
-    return cell.verdict in ("disagrees", "moved")
 
 
 def text_of(parts: Sequence[Part]) -> str:
