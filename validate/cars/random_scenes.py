@@ -42,7 +42,7 @@ class RandomScene:
     scene: Scene
 
 
-def random_scene(number: int, samples: int = 3) -> RandomScene:
+def random_scene(number: int) -> RandomScene:
     """The random scene of a number, from zero up; one without an end to come near to is regular."""
     rng = np.random.default_rng([SEED, number])
     kind: Kind = KINDS[int(rng.choice(len(KINDS), p=SHARES))]
@@ -70,7 +70,6 @@ def random_scene(number: int, samples: int = 3) -> RandomScene:
         laws,
         start=start,
         stop=start + duration,
-        samples=samples,
         tolerance=1e-9 * drawn.scale,
         title=f"random car {number}",
     )

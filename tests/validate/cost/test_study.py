@@ -71,9 +71,9 @@ def test_what_is_kept_is_not_measured_again_and_more_is_added(tmp_path: Path, fe
     again = measure(study, Store(path, here), lambda *_: pytest.fail("measured again"))
     assert (again, path.read_bytes()) == (rows, before)
     assert {row.program for row in rows} == {here.program}
-    more = measure(replace(study, ways=ways_named(["series", "map"])), Store(path, here))
+    more = measure(replace(study, ways=ways_named(["series", "newton"])), Store(path, here))
     assert more[: len(rows)] == rows
-    assert {row.way for row in more[len(rows) :]} == {"map"}
+    assert {row.way for row in more[len(rows) :]} == {"newton"}
     changed = study_scene("steer", STEER.positions_only())
     assert not {row.key for row in measure(replace(study, scenes=(changed,)), Store(path, here))} & {
         row.key for row in rows

@@ -16,8 +16,10 @@ from validate.reference import InfeasibleError, Instant
 WAYS = (False, True)
 CarEnd = tuple[str, str, bool, float | None]
 ENDS: list[CarEnd] = [
-    *((car, "arm_angle", up, None) for car in ("paper", "other", "short-arm") for up in WAYS),
-    *((car, "rack", up, SQUARE) for car in ("paper", "other", "wishbone") for up in WAYS),
+    *((car, "arm_angle", up, None) for car in ("paper", "short-arm") for up in WAYS),
+    *((car, "rack", up, SQUARE) for car in ("paper", "wishbone") for up in WAYS),
+    ("other", "arm_angle", True, None),
+    ("other", "rack", False, SQUARE),
     ("wide", "arm_angle", False, None),
     ("wishbone", "arm_angle", True, None),
     ("wishbone", "arm_angle", False, None),
