@@ -7,7 +7,7 @@ well.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from itertools import combinations
 from pathlib import Path
 
@@ -34,10 +34,15 @@ class Variant:
     closure: Closure
     scene: str = field(default="", compare=False)
 
+    @cached_property
+    def base_scene(self) -> Scene:
+        """The scene of the base car."""
+        return Scene.load(self.scene)
+
     @property
     def base(self) -> Car:
         """A car to make others from."""
-        return Car.of(_loaded(self.scene))
+        return Car.of(self.base_scene)
 
     @property
     def chassis_motions(self) -> tuple[str, ...]:
@@ -47,22 +52,26 @@ class Variant:
     @property
     def of_parts(self) -> bool:
         """Whether other mechanisms are its parts, as two corners are of an axle."""
-        return bool(_loaded(self.scene).mechanism.file.mirrored)
+        return bool(self.base_scene.mechanism.file.mirrored)
 
     @property
     def holds_its_shape(self) -> bool:
         """Whether rows follow from others in the drawing, as of parallel hinges: no point moves alone."""
-        return bool(_loaded(self.scene).mechanism.topology.left_out)
+        return bool(self.base_scene.mechanism.topology.left_out)
 
-    @property
+    @cached_property
     def input_sets(self) -> tuple[tuple[str, ...], ...]:
         """Sets of inputs that move the mechanism, that of the base car's scene first."""
-        return _input_sets(self.scene)
+        base = self.base
+        own = tuple(name for name in self.base_scene.inputs if name not in self.chassis_motions)
+        limit = ALIKE * condition(base, drawn_inputs(base, own))
+        return own, *(one for one in _moving_sets(base, len(own), limit) if set(one) != set(own))
 
-    @property
+    @cached_property
     def ending_sets(self) -> tuple[tuple[str, ...], ...]:
         """Those of them of which some input has an end, from the drawing of the base car."""
-        return _ending_sets(self.scene)
+        base = self.base
+        return tuple(names for names in self.input_sets if any(_ends(base, names, one) for one in names))
 
     @property
     def words(self) -> str:
@@ -101,14 +110,10 @@ def variants_of(suspension: str | None = None, closure: Closure | None = None) -
     return found
 
 
-def _of_scene(name: str) -> Variant:
-    part = _loaded(name).mechanism
-    return Variant(part.name, part.closure, name)
-
-
 @cache
-def _loaded(name: str) -> Scene:
-    return Scene.load(name)
+def _of_scene(name: str) -> Variant:
+    part = Scene.load(name).mechanism
+    return Variant(part.name, part.closure, name)
 
 
 def input_sets(car: Car) -> tuple[tuple[str, ...], ...]:
@@ -119,22 +124,6 @@ def input_sets(car: Car) -> tuple[tuple[str, ...], ...]:
     known = car.structure.inputs
     each = (_moving_sets(car, size) for size in range(1, len(known) + 1))
     return next((sets for sets in each if sets), ())
-
-
-@cache
-def _input_sets(name: str) -> tuple[tuple[str, ...], ...]:
-    scene = _loaded(name)
-    known = scene.mechanism.structure.inputs
-    own = tuple(one for one in scene.inputs if not known[one].moves_the_chassis)
-    car = Car.of(scene)
-    limit = ALIKE * condition(car, drawn_inputs(car, own))
-    return own, *(one for one in _moving_sets(car, len(own), limit) if set(one) != set(own))
-
-
-@cache
-def _ending_sets(name: str) -> tuple[tuple[str, ...], ...]:
-    car = Car.of(_loaded(name))
-    return tuple(names for names in _input_sets(name) if any(_ends(car, names, one) for one in names))
 
 
 def _moving_sets(car: Car, size: int, limit: float = np.inf) -> tuple[tuple[str, ...], ...]:

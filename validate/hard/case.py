@@ -197,22 +197,19 @@ def family(
     values: Values | Callable[[Subject], Values],
     expected: Expected | Mapping[str, Expected] = RIGHT,
     subjects: Sequence[Subject] = SUBJECTS,
-    *,
-    strict: bool = False,
     **more: Any,
 ) -> tuple[Case, ...]:
-    """A case for each of some mechanisms; see `case`.
+    """A case for each of some mechanisms; see `case`. Of those that are hard by nature less is expected.
 
     Args:
         values: that the first mechanism is tried at, or of each.
-        strict: whether as much is expected of mechanisms that are hard by nature.
     """
     return tuple(
         case(
             scene,
             parameter,
             values(one) if callable(values) else values_of(one, values),
-            expected if strict else expected_of(one, expected),
+            expected_of(one, expected),
             one,
             **more,
         )

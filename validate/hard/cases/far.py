@@ -20,7 +20,7 @@ from validate.cars.car import moved, scaled
 from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import SQUARE
-from validate.hard.case import RIGHT, Expected, decades, family
+from validate.hard.case import RIGHT, Expected, case, decades, family, values_of
 from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, WISHBONE, Content, Subject
 from validate.hard.trial import Trial, solved
 
@@ -120,22 +120,22 @@ WHYS = {
 }
 TWOS = "Squares of small and large lengths differ by twice as many decades as the lengths."
 TENS = f"{TWOS[:-1]}, and every coordinate is rounded anew."
-_far = partial(family, group="Far from the origin, and mixed sizes")
+GROUP = "Far from the origin, and mixed sizes"
+_far = partial(family, group=GROUP)
 
 CASES = (
     *(
-        case
-        for subject in (SUBJECTS[0], BESIDE, *SUBJECTS[1:])
-        for case in _far(
+        case(
             far_from_the_origin,
             "1 mm over the distance along x; thrice as far along z",
-            decades(),
+            values_of(subject, decades()),
             {"pointcoord": RIGHT, "pointcoord-newton": RIGHT, "absolute": NEARER, "relative": NEARER},
-            [subject],
-            strict=True,
+            subject,
+            group=GROUP,
             why=WHYS.get(subject, ""),
             judged=as_at_home,
         )
+        for subject in (SUBJECTS[0], BESIDE, *SUBJECTS[1:])
     ),
     *_far(
         far_and_heaved_back,
@@ -144,13 +144,13 @@ CASES = (
         subjects=HEAVING,
     ),
     *(
-        case
+        one
         for name, why, values, subjects in (
             ("sizes-by-powers-of-two", TWOS, tuple(2.0**k for k in range(11, -20, -3)), SUBJECTS[:1]),
             ("sizes-by-powers-of-ten", TENS, decades(-6, 4), SUBJECTS[:1]),
             ("sizes", TENS, decades(-6, 4), (BESIDE, *SUBJECTS[1:])),
         )
-        for case in _far(
+        for one in _far(
             *(scaled_car, "size, in parts of a car of some 500 mm", values),
             subjects=subjects,
             name=name,
