@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
@@ -16,7 +15,6 @@ from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
-from validate.comparison.explanation import Explanation
 from validate.comparison.given import Given, given
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.exit_status import ExitStatus
@@ -27,10 +25,27 @@ from validate.formulations.registry import formulation
 Array = NDArray[np.float64]
 # Numbers below the smallest normal one lose digits, and so do tolerances made of them.
 SMALLEST = float(np.finfo(float).tiny)
-# Numbers of one side that are compared at once: with a dozen such arrays they stay in a processor's memory.
-AT_ONCE = 2**16
 GIVEN_BACK = "points of the chassis, or such as stay where they are drawn"
 Verdict = Literal["agrees", "disagrees", "not tested", "not given"]
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What would explain that numbers disagree; `diagnosis` finds it.
+
+    Attributes:
+        words: which numbers, and what was done to them.
+        kind: of fault, as `diagnosis.kinds` calls it; two kinds joined by "and".
+        quantities: whose numbers it explains: a quantity where it explains all that disagrees of it and
+            undoes nothing that agrees, else quantity.name.
+        leftover: the largest difference that is left when the fault is undone / what it is held to; more
+            than 1 where it explains a part only.
+    """
+
+    words: str
+    kind: str
+    quantities: tuple[str, ...]
+    leftover: float
 
 
 @dataclass(frozen=True)
@@ -55,13 +70,13 @@ class Comparison:
     quantity: str
     name: str
     unit: str
-    difference: float
-    tolerance: float
-    share: float
-    instant: float
-    verdict: Verdict
-    rests_on: str
-    part: float
+    difference: float = math.nan
+    tolerance: float = math.nan
+    share: float = math.nan
+    instant: float = math.nan
+    verdict: Verdict = "not given"
+    rests_on: str = ""
+    part: float = math.nan
     place: str = ""
     telling: bool = True
     why: str = ""
@@ -249,12 +264,11 @@ def compare_solutions(
         parts = _parts(quantity, names, first, second)
         lacking = dict(_missing(quantity, parts, first, second))
         missing += lacking
-        sides = (_Side.of(first, quantity), _Side.of(second, quantity))
-        some = _rows(name, quantity, parts, sides, instants[both], factor)
-        for row in some:
-            told = _reasoned(row, lacking, notes, faults)
+        pair = Pair.of(first, second, quantity, factor)
+        for part in parts:
+            row = _reasoned(_row(name, part, pair, instants[both]), lacking, notes, faults)
             # Decided only where one of them may give what it has: else every row has to agree.
-            rows.append(_judged(told, scene, sides, factor))
+            rows.append(replace(row, telling=pair.tells(scene, part)) if row.verdict == "agrees" else row)
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
@@ -309,133 +323,139 @@ def _reasoned(
 
 
 @dataclass(frozen=True)
-class _Side:
-    """What one formulation gives and claims of a quantity."""
+class Side:
+    """What one formulation gives and claims of a quantity.
+
+    Attributes:
+        numbers, claims: by name, (N, 3) or (N,). blind: see `Accuracy.blind`.
+        largest: of the numbers at each instant, (N,). level: see `tolerance.level`, (N,).
+    """
 
     formulation: str
     numbers: Mapping[str, Array]
     claims: Mapping[str, Array]
-    condition: Array
     blind: NDArray[np.bool_] | None
+    largest: Array
+    level: Array
 
     @classmethod
-    def of(cls, side: Given, quantity: str) -> _Side:
+    def of(cls, side: Given, quantity: str) -> Side:
+        """A quantity of all that a formulation gives."""
         numbers, claims = side.numbers[quantity], side.claims[quantity]
-        return cls(side.formulation, numbers, claims, side.condition, side.blind)
+        largest = largest_numbers(numbers.values(), len(side.condition))
+        widest = level(claims.values(), largest, side.condition)
+        return cls(side.formulation, numbers, claims, side.blind, largest, widest)
 
-    @cached_property
-    def largest(self) -> Array:
-        """Of the numbers, (N,)."""
-        return largest_numbers(self.numbers.values(), len(self.condition))
-
-    @cached_property
-    def level(self) -> Array:
-        """See `tolerance.level`, (N,)."""
-        return level(self.claims.values(), self.largest, self.condition)
+    def claimed(self, name: str) -> Array:
+        """What it claims of a name, (N, components): 0 where it claims nothing."""
+        return _columns(self.claims.get(name, np.zeros_like(self.numbers[name])))
 
 
-def _judged(row: Comparison, scene: Scene, sides: tuple[_Side, _Side], factor: float) -> Comparison:
-    """A row, and whether it tells anything of a solver that is held to what it stated."""
-    stated = [side.blind is not None for side in sides]
-    if row.verdict != "agrees" or stated not in ([True, False], [False, True]):
-        return row
-    own, other = sides if stated[0] else sides[::-1]
-    return replace(row, telling=_tells(row, scene, own, other, factor))
+@dataclass(frozen=True)
+class Pair:
+    """A quantity of two formulations at the same instants.
 
-
-def _tells(row: Comparison, scene: Scene, own: _Side, other: _Side, factor: float) -> bool:
-    """Whether a number is none that the solver was given: what was given would not agree as well.
-
-    It was given where each point is drawn, and that of the chassis is all there is to know of its points. An
-    instant of which its accuracy says nothing does not count.
+    Attributes:
+        factor: how many times the derived tolerance to hold differences to.
     """
-    kind = QUANTITIES[row.quantity]
-    seen = np.ones(len(own.condition), dtype=bool) if own.blind is None else ~own.blind
-    part = scene.mechanism
-    if kind.of == "point" and row.name in part.topology.chassis:
-        return False
-    if per_second(row.quantity):
-        given_back = np.zeros(3)
-    elif kind.of == "point" and row.name in part.points:
-        given_back = np.array(part.points[row.name], dtype=float)
-    else:
-        return bool(seen.any())
-    numbers = other.numbers[row.name]
-    nothing = np.zeros_like(numbers)
-    first, second = (side.claims.get(row.name, nothing) for side in (own, other))
-    allowed = factor * tolerance(first, second, float(other.largest.max()))
-    return bool((np.abs(numbers - given_back) > allowed)[seen].any())
+
+    quantity: str
+    one: Side
+    two: Side
+    factor: float
+
+    @classmethod
+    def of(cls, one: Given, two: Given, quantity: str, factor: float) -> Pair:
+        """A quantity of all that both give."""
+        return cls(quantity, Side.of(one, quantity), Side.of(two, quantity), factor)
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """Both."""
+        return self.one, self.two
+
+    def gives(self, name: str) -> bool:
+        """Whether both have numbers of a name, at one instant at least."""
+        return len(self.one.largest) > 0 and all(name in side.numbers for side in self.sides)
+
+    def allowed(self, name: str) -> Array:
+        """What a difference is held to, (N, components)."""
+        # The smaller of both, so that a wrong number does not widen its own tolerance.
+        largest = min(float(side.largest.max()) for side in self.sides)
+        return self.factor * tolerance(self.one.claimed(name), self.two.claimed(name), largest)
+
+    def gap(self, name: str) -> Array:
+        """The difference, (N, components)."""
+        mine, other = (_columns(side.numbers[name]) for side in self.sides)
+        gap = gaps_between(mine, other, QUANTITIES[self.quantity].unit)
+        # Who gives a number that there is none of, a rounding over a rounding, claims nothing of it.
+        claims = self.two.claimed(name), self.one.claimed(name)
+        lone = np.where(np.isnan(mine), claims[0], np.where(np.isnan(other), claims[1], 0.0))
+        gap[lone >= NOTHING] = 0.0
+        return gap
+
+    def tells(self, scene: Scene, name: str) -> bool:
+        """Whether a number is none that a solver was given: what was given would not agree as well.
+
+        It is asked of a solver with a stated accuracy only. It was given where each point is drawn, and that
+        of the chassis is all there is to know of its points. An instant of which its accuracy says nothing
+        does not count.
+        """
+        if (self.one.blind is None) == (self.two.blind is None):
+            return True
+        own, other = self.sides if self.two.blind is None else self.sides[::-1]
+        kind, part = QUANTITIES[self.quantity], scene.mechanism
+        seen = np.ones(len(own.largest), dtype=bool) if own.blind is None else ~own.blind
+        if kind.of == "point" and name in part.topology.chassis:
+            return False
+        if per_second(self.quantity):
+            given_back = np.zeros(3)
+        elif kind.of == "point" and name in part.points:
+            given_back = np.array(part.points[name], dtype=float)
+        else:
+            return bool(seen.any())
+        width = tolerance(own.claimed(name), other.claimed(name), float(other.largest.max()))
+        return bool((np.abs(other.numbers[name] - given_back) > self.factor * width)[seen].any())
 
 
-def _rows(
-    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array, factor: float
-) -> list[Comparison]:
-    """A row for each of the parts, in their order."""
-    both = [part for part in parts if all(part in side.numbers for side in sides)] if len(times) else []
-    rows: dict[str, Comparison] = {}
-    at_once = max(AT_ONCE // max(sides[0].numbers[both[0]].size, 1), 1) if both else 1
-    for low in range(0, len(both), at_once):
-        some = both[low : low + at_once]
-        rows |= zip(some, _compared(scene, quantity, some, sides, times, factor), strict=True)
-    unit, nan = QUANTITIES[quantity].unit, math.nan
-    ends = (scene, sides[0].formulation, sides[1].formulation, quantity)
-    return [
-        rows.get(part) or Comparison(*ends, part, unit, nan, nan, nan, nan, "not given", "", nan)
-        for part in parts
-    ]
-
-
-def _compared(
-    scene: str, quantity: str, parts: Sequence[str], sides: tuple[_Side, _Side], times: Array, factor: float
-) -> Iterator[Comparison]:
-    """Rows of parts that both sides give, all at once; arrays are (components, parts, N)."""
-    one, two = sides
-    unit = QUANTITIES[quantity].unit
-    mine, other = (_stacked([side.numbers[part] for part in parts]) for side in sides)
-    gap = gaps_between(mine, other, unit)
-    nothing = np.zeros_like(one.numbers[parts[0]])
-    held = [_stacked([side.claims.get(part, nothing) for part in parts]) for side in sides]
-    # The smaller of both, so that a wrong number does not widen its own tolerance.
-    largest = min(float(side.largest.max()) for side in sides)
-    allowed = factor * tolerance(held[0], held[1], largest)
-    # Nor does who gives a number that there is none of, a rounding over a rounding, claim anything of it.
-    lone = np.where(np.isnan(mine), held[1], np.where(np.isnan(other), held[0], 0.0))
-    gap[lone >= NOTHING] = 0.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST)).max(axis=(0, 2))
-    gaps, widths = gap.max(axis=0), allowed.max(axis=0)
-    most = [np.abs(claim).max(axis=0) for claim in held]
+def _row(scene: str, name: str, pair: Pair, times: Array) -> Comparison:
+    """The comparison of a name at instants, (N,), s."""
+    one, two = pair.sides
+    unit = QUANTITIES[pair.quantity].unit
+    row = Comparison(scene, one.formulation, two.formulation, pair.quantity, name, unit)
+    if not pair.gives(name):
+        return row
+    gap, allowed, claims = pair.gap(name), pair.allowed(name), [side.claimed(name) for side in pair.sides]
+    share = float(shares(gap, allowed).max())
+    worst, widest = (np.unravel_index(np.argmax(array), array.shape) for array in (gap, allowed))
     # A side whose accuracy was stated beforehand may claim much, and what it claims elsewhere is no measure.
-    stated = [side.blind for side in sides if side.blind is not None]
+    stated = [side.blind for side in pair.sides if side.blind is not None]
+    most = [claim.max(axis=-1) for claim in claims]
     wide = np.any(stated, axis=0) if stated else untested(most[0], most[1], one.level, two.level)
-    loose = (wide & (gaps > SMALLEST)).any(axis=-1)
-    for i, part in enumerate(parts):
-        share, when, widest = float(shares[i]), int(np.argmax(gaps[i])), int(np.argmax(widths[i]))
-        verdict: Verdict = "agrees"
-        if any(part not in side.claims for side in sides):
-            verdict = "not tested"
-        elif share > 1.0:
-            verdict = "disagrees"
-        elif loose[i]:
-            verdict = "not tested"
-        worst = (int(np.argmax(gap[:, i, when])), i, when)
-        place = (int(np.argmax(allowed[:, i, widest])), i, widest)
-        larger = int(held[1][place] > held[0][place])
-        yield Comparison(
-            scene=scene,
-            first=one.formulation,
-            second=two.formulation,
-            quantity=quantity,
-            name=part,
-            unit=unit,
-            difference=float(gap[worst]),
-            tolerance=float(allowed[worst]),
-            share=share,
-            instant=float(times[when]),
-            verdict=verdict,
-            rests_on=sides[larger].formulation,
-            part=float(factor * held[larger][place] / (allowed[place] + SMALLEST)),
-        )
+    verdict: Verdict = "agrees"
+    if any(name not in side.claims for side in pair.sides):
+        verdict = "not tested"
+    elif share > 1.0:
+        verdict = "disagrees"
+    elif (wide & (gap.max(axis=-1) > SMALLEST)).any():
+        verdict = "not tested"
+    larger = int(claims[1][widest] > claims[0][widest])
+    return replace(
+        row,
+        difference=float(gap[worst]),
+        tolerance=float(allowed[worst]),
+        share=share,
+        instant=float(times[worst[0]]),
+        verdict=verdict,
+        rests_on=pair.sides[larger].formulation,
+        part=float(pair.factor * claims[larger][widest] / (allowed[widest] + SMALLEST)),
+    )
+
+
+def shares(gap: Array, allowed: Array) -> Array:
+    """Differences in parts of what they are held to; 0 where nothing differs."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST))
 
 
 def gaps_between(mine: Array, other: Array, unit: str) -> Array:
@@ -451,6 +471,6 @@ def gaps_between(mine: Array, other: Array, unit: str) -> Array:
     return np.asarray(gap)
 
 
-def _stacked(arrays: Sequence[Array]) -> Array:
-    """Arrays (N, ...) as one, (components, arrays, N)."""
-    return np.stack([array.reshape(len(array), -1).T for array in arrays], axis=1)
+def _columns(array: Array) -> Array:
+    """Numbers (N,) or (N, 3) as (N, components)."""
+    return array.reshape(len(array), -1)

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.comparison.compare import SMALLEST, Comparison, Outcome, gaps_between
+from validate.comparison.compare import Comparison, Outcome, Pair, shares
 from validate.comparison.given import given
-from validate.comparison.tolerance import largest_numbers, tolerance
 
 Array = NDArray[np.float64]
 
@@ -30,7 +29,7 @@ class OverTime:
     @property
     def share(self) -> Array:
         """Difference / tolerance, (N,); 0 where nothing differs."""
-        return np.where(self.difference == 0.0, 0.0, self.difference / (self.tolerance + SMALLEST))
+        return shares(self.difference, self.tolerance)
 
 
 def over_time(outcome: Outcome, row: Comparison, instants: Array) -> OverTime | None:
@@ -38,16 +37,9 @@ def over_time(outcome: Outcome, row: Comparison, instants: Array) -> OverTime | 
     sides = [given(solution, instants) for solution in outcome.solutions]
     both = sides[0].found & sides[1].found
     one, two = (side.at(both) for side in sides)
-    if not both.any() or any(row.name not in side.numbers[row.quantity] for side in (one, two)):
+    pair = Pair.of(one, two, row.quantity, outcome.factor)
+    if not pair.gives(row.name):
         return None
-    count = int(both.sum())
-    pairs = [side.numbers[row.quantity][row.name].reshape(count, -1) for side in (one, two)]
-    nothing = np.zeros_like(pairs[0])
-    claims = [side.claims[row.quantity].get(row.name, nothing).reshape(count, -1) for side in (one, two)]
-    # As a whole comparison takes it: the smaller one of both sides.
-    largest = min(float(largest_numbers(s.numbers[row.quantity].values(), count).max()) for s in (one, two))
-    gap = gaps_between(pairs[0], pairs[1], row.unit)
-    allowed = outcome.factor * tolerance(claims[0], claims[1], largest)
-    worst = np.argmax(np.where(gap == 0.0, 0.0, gap / (allowed + SMALLEST)), axis=1)
-    each = np.arange(count)
+    gap, allowed = pair.gap(row.name), pair.allowed(row.name)
+    each, worst = np.arange(len(gap)), np.argmax(shares(gap, allowed), axis=1)
     return OverTime(np.asarray(instants)[both], gap[each, worst], allowed[each, worst])

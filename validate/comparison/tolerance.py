@@ -31,8 +31,6 @@ from pointcoord.numerics.rounding import EPS
 Array = NDArray[np.float64]
 
 LOOSEST = 1000.0
-# Instants up to which all numbers of a quantity are looked at together.
-FEW = 64
 
 
 def tolerance(first: Array, second: Array, largest: float) -> Array:
@@ -43,17 +41,9 @@ def tolerance(first: Array, second: Array, largest: float) -> Array:
 def largest_numbers(numbers: Iterable[Array], count: int) -> Array:
     """The largest finite number of a quantity at each instant, (count,), 0 where there is none."""
     found = np.zeros(count)
-    for array in _few_together(numbers, count):
-        np.maximum(found, largest(np.where(np.isfinite(array), array, 0.0)), out=found)
+    for array in numbers:
+        np.maximum(found, _largest(np.where(np.isfinite(array), array, 0.0)), out=found)
     return found
-
-
-def _few_together(arrays: Iterable[Array], count: int) -> Iterable[Array]:
-    """Arrays (count, ...) as one where there are few instants: each call takes longer than its numbers."""
-    each = list(arrays)
-    if count > FEW or not each:
-        return each
-    return [np.concatenate([array.reshape(count, -1) for array in each], axis=1)]
 
 
 def level(claims: Iterable[Array], numbers: Array, condition: Array) -> Array:
@@ -64,8 +54,8 @@ def level(claims: Iterable[Array], numbers: Array, condition: Array) -> Array:
         numbers: the largest of them, (N,). condition: of the matrix that gives the rates, (N,).
     """
     found = EPS * condition * numbers
-    for claim in _few_together(claims, len(numbers)):
-        np.maximum(found, largest(claim), out=found)
+    for claim in claims:
+        np.maximum(found, _largest(claim), out=found)
     return np.asarray(found)
 
 
@@ -79,12 +69,6 @@ def untested(first: Array, second: Array, first_level: Array, second_level: Arra
     return np.asarray((first > LOOSEST * second_level) | (second > LOOSEST * first_level))
 
 
-def largest(array: Array) -> Array:
+def _largest(array: Array) -> Array:
     """The largest magnitude of any component at each instant, (N,), of numbers (N, ...)."""
-    columns = array.reshape(len(array), -1).T
-    if len(array) <= FEW:
-        return np.asarray(np.abs(columns).max(axis=0))
-    found = np.abs(columns[0])
-    for column in columns[1:]:
-        np.maximum(found, np.abs(column), out=found)
-    return np.asarray(found)
+    return np.asarray(np.abs(array.reshape(len(array), -1)).max(axis=-1))

@@ -18,9 +18,8 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
-from validate.comparison.compare import Outcome
+from validate.comparison.compare import SMALLEST, Outcome, Pair
 from validate.comparison.given import given as given_numbers
-from validate.comparison.tolerance import largest_numbers, tolerance
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Numbers, Solution
 
@@ -35,7 +34,6 @@ MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
 CLEAR = 4.0
 # Of a quantity's largest number: differences that are rounding, whatever is claimed.
 ROUNDING = 64.0 * EPS
-TINY = float(np.finfo(float).tiny)
 
 
 def length_or_angle(row: Row) -> str:
@@ -75,6 +73,16 @@ def nearest(instants: Array, to: Array) -> NDArray[np.intp]:
     return np.searchsorted(0.5 * (instants[1:] + instants[:-1]), to)
 
 
+def some_of(count: int, most: int) -> NDArray[np.intp]:
+    """The places of so many of `count` instants at most, evenly."""
+    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.intp))
+
+
+def numbers_in(numbers: Numbers, rows: Iterable[Row]) -> Array:
+    """The numbers of rows, one after the other."""
+    return np.concatenate([numbers[quantity][of].ravel() for quantity, of in rows])
+
+
 def _apart_by(step: float, numbers: Array) -> int:
     """How many numbers can be picked that are all farther apart than a step; MOST_DISTINCT at most."""
     rising = np.sort(numbers[np.isfinite(numbers)])
@@ -98,10 +106,18 @@ class Solved:
         return self.scene.model_copy(update={"tolerance": tolerance, "points": None})
 
     @cached_property
+    def ends(self) -> Scene:
+        """The same at its first and last instant: motions are read between them."""
+        time = self.scene.time
+        return self.fine.model_copy(
+            update={"time": time.model_copy(update={"samples": min(2, time.samples)})}
+        )
+
+    @cached_property
     def motion(self) -> Motion | None:
         """Its motion; None where pointcoord refuses it."""
         with suppress(PointcoordError):
-            return simulate(self.fine)
+            return simulate(self.ends)
         return None
 
 
@@ -153,52 +169,44 @@ class Evidence:
         one, two = given_numbers(given, instants), given_numbers(held, instants)
         both = one.found & two.found
         one, two = one.at(both), two.at(both)
-        rows = [
-            (quantity, name)
-            for quantity, numbers in one.numbers.items()
-            for name in numbers
-            if name in two.numbers[quantity]
-        ]
-        allowed: dict[Row, Array] = {}
-        for quantity, name in rows:
-            sides = (one, two)
-            largest = min(
-                float(largest_numbers(s.numbers[quantity].values(), len(s.condition)).max(initial=0.0))
-                for s in sides
-            )
-            zero = np.zeros_like(one.numbers[quantity][name])
-            claims = [s.claims[quantity].get(name, zero) for s in sides]
-            allowed[quantity, name] = outcome.factor * tolerance(claims[0], claims[1], largest) + TINY
+        pairs = {quantity: Pair.of(one, two, quantity, outcome.factor) for quantity in one.numbers}
+        rows = [(q, name) for q, pair in pairs.items() for name in pair.one.numbers if pair.gives(name)]
+        trusted = {row: two.numbers[row[0]][row[1]] for row in rows}
         disagree = {(row.quantity, row.name) for row in outcome.disagreements}
         return cls(
             scene=scene,
             times=instants[both],
             given={row: one.numbers[row[0]][row[1]] for row in rows},
-            held={row: two.numbers[row[0]][row[1]] for row in rows},
-            allowed=allowed,
+            held=trusted,
+            allowed={(q, n): pairs[q].allowed(n).reshape(trusted[q, n].shape) + SMALLEST for q, n in rows},
             wrong=tuple(row for row in rows if row in disagree),
             solved=Solved(scene),
             not_given=numbers_not_given(two.numbers, rows),
         )
 
-    def thinned(self, count: int) -> Evidence:
-        """The same at so many instants at most, evenly."""
-        some = np.unique(np.linspace(0, len(self.times) - 1, min(count, len(self.times))).astype(np.intp))
-        given, held, allowed, own, not_given = (
+    def at(self, places: slice | NDArray[np.intp], theirs: slice | None = None) -> Evidence:
+        """The same at some of the instants; the given numbers from other ones, where these are stated."""
+        held, allowed, own, not_given, given = (
             {row: array[some] for row, array in rows.items()}
-            for rows in (self.given, self.held, self.allowed, self.own, self.not_given)
+            for rows, some in (
+                *((rows, places) for rows in (self.held, self.allowed, self.own, self.not_given)),
+                (self.given, places if theirs is None else theirs),
+            )
         )
-        known = {point: places[some] for point, places in self.known.items()}
         return replace(
             self,
-            times=self.times[some],
+            times=self.times[places],
             given=given,
             held=held,
             allowed=allowed,
             own=own,
-            known=known,
+            known={point: path[places] for point, path in self.known.items()},
             not_given=not_given,
         )
+
+    def thinned(self, count: int) -> Evidence:
+        """The same at so many instants at most, evenly."""
+        return self.at(some_of(len(self.times), count))
 
     def joined(self, rows: Sequence[Row], at: slice | NDArray[np.intp] = slice(None)) -> tuple[Array, Array]:
         """The given numbers of rows at some instants, one after the other, and how far each may be off."""
@@ -322,30 +330,15 @@ class Evidence:
             ("one sample early", slice(None, -1), slice(1, None)),
         )
         for words, theirs, ours in ends:
-            allowed, own, held, not_given = (
-                {row: values[ours] for row, values in rows.items()}
-                for rows in (self.allowed, self.own, self.held, self.not_given)
-            )
-            times = self.times[ours]
-            limits = {"start": float(times[0]), "stop": float(times[-1]), "samples": len(times)}
+            late = self.at(ours, theirs)
+            limits = {
+                "start": float(late.times[0]),
+                "stop": float(late.times[-1]),
+                "samples": len(late.times),
+            }
             time = self.scene.time.model_copy(update=limits)
             scene = self.scene.model_copy(update={"time": time})
-            yield (
-                words,
-                replace(
-                    self,
-                    scene=scene,
-                    times=times,
-                    given={row: values[theirs] for row, values in self.given.items()},
-                    held=held,
-                    allowed=allowed,
-                    own=own,
-                    known={point: places[ours] for point, places in self.known.items()},
-                    not_given=not_given,
-                    solved=Solved(scene),
-                    parted=True,
-                ),
-            )
+            yield words, replace(late, scene=scene, solved=Solved(scene), parted=True)
 
     @property
     def telling(self) -> tuple[tuple[Row, ...], ...]:

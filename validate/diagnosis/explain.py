@@ -23,8 +23,7 @@ import numpy as np
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.comparison.compare import Outcome
-from validate.comparison.explanation import Explanation
+from validate.comparison.compare import Explanation, Outcome
 from validate.diagnosis.evidence import Evidence, Row, kind_of, order, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds import KINDS, UNIT

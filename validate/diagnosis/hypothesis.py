@@ -10,13 +10,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.diagnosis.evidence import Evidence, Row, kind_of
+from pointcoord import Motion
+from validate.diagnosis.evidence import Evidence, Row, kind_of, numbers_in
+from validate.diagnosis.least import fitted
 
 Array = NDArray[np.float64]
 WouldBe = tuple[Array, Array]
 """What given numbers would be, and how far from that they may be."""
 Undo = Callable[[Row, Array], Array]
 
+FEW = 25  # instants that amounts are found from
 ENOUGH_NUMBERS = 3  # of the car, of which one is left out: what one or two alone say fits much
 
 
@@ -72,6 +75,37 @@ def by_what_tells(
         if by_themselves and len(looked) >= ENOUGH_NUMBERS:
             for others in combinations(looked, len(looked) - 1):
                 yield from (one for one in suppose(others, False) if gives(evidence, one, others))
+
+
+def amounts_of(
+    evidence: Evidence,
+    looked: Sequence[Row],
+    motion_of: Callable[..., Motion | None],
+    start: Sequence[float],
+    step: float,
+    rounded: bool = True,
+) -> list[float] | None:
+    """The amounts by which the car's motion gives the numbers of some rows; see `fitted`.
+
+    Args:
+        motion_of: the motion by some amounts; None where there is none. start: at which it is ours.
+    """
+    few = evidence.thinned(FEW)
+    theirs, off = few.joined(looked)
+    if not np.isfinite(theirs).all():
+        return None
+
+    def read(sets: Array) -> Array:
+        found = np.full((len(sets), len(theirs)), np.nan)
+        for i, amounts in enumerate(sets.tolist()):
+            if amounts == list(start):
+                found[i] = np.concatenate([few.held[row].ravel() for row in looked])
+            elif motion := motion_of(*amounts):
+                found[i] = numbers_in(motion.at(few.times).numbers, looked)
+        return found
+
+    found = fitted(read, start, step, theirs, off, rounded)
+    return None if found is None else list(found.tolist())
 
 
 def gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:

@@ -34,6 +34,7 @@ def fitted(
     step: float,
     theirs: Array,
     off: Array | float = 0.0,
+    rounded: bool = False,
 ) -> Array | None:
     """Parameters at which `read` is nearest to given numbers; None where that leaves much of the difference.
 
@@ -41,6 +42,8 @@ def fitted(
         read: the numbers (B, M) at sets of parameters (B, P); NaN where there are none.
         start: where the parameters are ours. step: of differences by each.
         off: how far the numbers may be from theirs; if all are within it nothing is left.
+        rounded: whether the roundest parameters that leave as little are taken, which are meant: those by
+            which all numbers are within what they may be off go before rounder ones.
     """
     begin = np.array(start)
     (first,) = read(begin[None]) - theirs
@@ -59,7 +62,13 @@ def fitted(
         beside: Array = np.nan_to_num(read(parameters - step * np.eye(len(begin))) - theirs, nan=far)
         return np.asarray((gap(parameters) - beside).T / step)
 
-    apart, jacobian = float(np.linalg.norm(first)), slopes(begin)
+    def left(parameters: Array) -> float:
+        return float(np.linalg.norm(gap(parameters)))
+
+    def kept(near: Array) -> bool:
+        return left(near) <= KEPT * least and bool((np.abs(gap(near)) <= off).all())
+
+    apart, jacobian = left(begin), slopes(begin)
     change = np.linalg.lstsq(jacobian, -first, rcond=None)[0]
     if not float(np.linalg.norm(first + jacobian @ change)) <= LIKELY * apart:
         return None
@@ -68,9 +77,14 @@ def fitted(
 
     found = least_squares(
         gap, begin, slopes, x_scale="jac", xtol=1e-15, ftol=SETTLED, gtol=1e-15, max_nfev=MOST_STEPS
-    )
-    left, nearly = float(np.linalg.norm(found.fun)), NEARLY * np.asarray(off)
-    return np.asarray(found.x) if left <= PROMISING * apart or (np.abs(found.fun) <= nearly).all() else None
+    ).x
+    least = left(found)
+    if least > PROMISING * apart and not (np.abs(gap(found)) <= NEARLY * np.asarray(off)).all():
+        return None
+    if not rounded:
+        return np.asarray(found)
+    near = roundest(found, DECIMALS, kept)
+    return near if kept(near) else roundest(found, DECIMALS, lambda one: left(one) <= CLOSE * least)
 
 
 def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool], unit: float = 1.0) -> Array:
@@ -83,29 +97,6 @@ def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool],
     """
     rounder = (unit * np.round(np.asarray(found) / unit, places) for places in range(decimals))
     return np.asarray(next((near for near in rounder if fits(near)), found))
-
-
-def as_meant(found: Array, read: Callable[[Array], Array], theirs: Array, off: Array) -> tuple[float, Array]:
-    """What found amounts leave, and the roundest that leave as little: those that they are meant to be.
-
-    Amounts by which all numbers are within what they may be off go before rounder ones.
-
-    Args:
-        read: as of `fitted`. off: how far each number may be from the given one.
-    """
-
-    def gap(amounts: Array) -> Array:
-        return np.asarray(np.abs(theirs - read(amounts[None])[0]))
-
-    def left(amounts: Array) -> float:
-        return float(np.linalg.norm(gap(amounts)))
-
-    def kept(near: Array) -> bool:
-        return left(near) <= KEPT * least and bool((gap(near) <= off).all())
-
-    least = left(found)
-    near = roundest(found, DECIMALS, kept)
-    return least, near if kept(near) else roundest(found, DECIMALS, lambda one: left(one) <= CLOSE * least)
 
 
 def decimals_of(amounts: Array) -> int:

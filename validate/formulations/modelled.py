@@ -102,13 +102,13 @@ class Problem:
     def _per_second(self, numbers: Numbers) -> Numbers:
         if (self.unit == 1.0).all():
             return numbers
-        found: dict[str, dict[str, Array]] = {}
-        for quantity, arrays in numbers.items():
-            found[quantity] = {}
-            for name, array in arrays.items():
-                divisor = self.unit[: len(array)] ** per_second(quantity)
-                found[quantity][name] = array / divisor.reshape(-1, *(1,) * (array.ndim - 1))
-        return found
+
+        def divided(array: Array, order: int) -> Array:
+            return np.asarray(
+                array / (self.unit[: len(array)] ** order).reshape(-1, *(1,) * (array.ndim - 1))
+            )
+
+        return {q: {n: divided(array, per_second(q)) for n, array in of.items()} for q, of in numbers.items()}
 
 
 def asked_of(found: Numbers, scene: Scene) -> Numbers:

@@ -379,7 +379,7 @@ class _Held:
             states: by point its value and derivatives, each (N, 3). turns: of every body, likewise.
         """
         chassis = states[self.design.plain["bodies"][CHASSIS][0]]
-        count, found = len(chassis[0]), [np.zeros(len(chassis[0]))]
+        count, found = len(chassis[0]), [np.ones(len(chassis[0]))]
         turned, spins = [np.ones(count)], list[Array]()
         for d in range(len(chassis) - 1):
             spins.append(np.max([_lengths(values_of(turn[d], count)) for turn in turns.values()], axis=0))
@@ -424,12 +424,9 @@ class _Held:
             d, of = per_second(quantity), QUANTITIES[quantity].of
             if d >= len(growth):
                 continue  # the inputs' own derivatives are not known so far
-            if of == "point" and d == 0:
-                claims[quantity] = {
-                    n: self.unit * (moved(n, 0) + off[:, None] + UNIT_ROUNDOFF * np.abs(states[n][0]) + far)
-                    for n in names
-                }
-            elif of == "point":
+            if of == "point":
+                # Once where it is handed over, and once where the chassis' part of it is added.
+                added = UNIT_ROUNDOFF * np.abs(chassis[d]) if d else far
                 claims[quantity] = {
                     n: self.unit
                     * (
@@ -437,7 +434,7 @@ class _Held:
                         + solved_for(n, d)
                         + (off * per_length[d])[:, None]
                         + UNIT_ROUNDOFF * np.abs(states[n][d])
-                        + UNIT_ROUNDOFF * np.abs(chassis[d])
+                        + added
                     )
                     for n in names
                 }

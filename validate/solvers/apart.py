@@ -29,7 +29,7 @@ import numpy as np
 
 from validate.plain_text import shown
 from validate.solvers.load import solver_at
-from validate.solvers.plain import NoSolver, Solve, SolverFailed, no_mapping, raised_at, said
+from validate.solvers.plain import NoSolver, Solve, SolverFailed, no_mapping, raised_at, read_only, said
 
 LIMIT = 600.0  # s, an answer: no motion of a suspension takes so long
 PARTING = 2.0  # s, that a child is given to end by itself
@@ -175,23 +175,13 @@ def serve(pipe: Connection[Any, Any], place: str, with_traceback: bool) -> None:
 
 def _answer(solve: Solve, given: dict[str, Any]) -> tuple[str, object]:
     try:
-        answer: object = solve(_read_only(given))
+        answer: object = solve(read_only(given))  # pickle forgets that arrays cannot be written to
         if not isinstance(answer, Mapping):
             return FAILED, (no_mapping(answer), "")
         return ANSWER, _plain(answer)
     # Whatever it is, the child lives on: Ctrl-C does not reach it, so that even that is the solver's own.
     except BaseException as error:
         return FAILED, (said(error), raised_at(error))
-
-
-def _read_only(given: Any) -> Any:
-    """What is given, as it is before it is sent: pickle forgets that arrays cannot be written to."""
-    if isinstance(given, np.ndarray):
-        given.flags.writeable = False
-    elif isinstance(given, dict):
-        for part in given.values():
-            _read_only(part)
-    return given
 
 
 def _plain(answer: Any) -> Any:

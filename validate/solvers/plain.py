@@ -81,7 +81,7 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
     driven = laws_of(scene, instants)
     still = np.zeros_like(next(iter(driven.values())))
     laws = {name: driven.get(name, still) for name in part.topology.inputs}
-    return {
+    given = {
         "suspension": part.name,
         "closure": part.closure,
         "side": part.side,
@@ -89,18 +89,24 @@ def given_to_solver(scene: Scene) -> dict[str, Any]:
         "right": list(part.right),
         "points": {name: list(place) for name, place in part.points.items()},
         "carried": list(part.topology.carried),
-        INSTANTS: _read_only(instants),
+        INSTANTS: instants,
         "inputs": {
-            name: {order: _read_only(rate.copy()) for order, rate in zip(STATES, law.T, strict=False)}
+            name: {order: rate.copy() for order, rate in zip(STATES, law.T, strict=False)}
             for name, law in laws.items()
         },
         "asked": {quantity: list(names) for quantity, names in asked_numbers(scene).items()},
     }
+    return read_only(given)
 
 
-def _read_only(array: Array) -> Array:
-    array.flags.writeable = False
-    return array
+def read_only(given: dict[str, Any]) -> dict[str, Any]:
+    """Data whose arrays cannot be written to."""
+    for part in given.values():
+        if isinstance(part, np.ndarray):
+            part.flags.writeable = False
+        elif isinstance(part, dict):
+            read_only(part)
+    return given
 
 
 def as_function(solver: object, name: str) -> Solve:

@@ -65,7 +65,7 @@ def straight_ahead() -> Scene:
     return Scene.from_mapping(content, "straight ahead")
 
 
-@pytest.mark.parametrize("second", ["absolute", "relative", "mujoco"])
+@pytest.mark.parametrize("second", ["absolute", "relative"])
 def test_a_model_that_claims_nothing_of_a_number_may_give_one_where_there_is_none(second: str) -> None:
     outcome = compare(straight_ahead(), "pointcoord", second)
     assert outcome.agreed

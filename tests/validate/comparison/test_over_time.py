@@ -11,8 +11,7 @@ from validate.comparison.over_time import over_time
 from validate.formulations.protocol import Solution
 
 
-@pytest.mark.parametrize("name", ["bounce-and-steer", "double-wishbone"])
-@pytest.mark.parametrize("factor", [1.0, 3.0])
+@pytest.mark.parametrize(("name", "factor"), [("bounce-and-steer", 1.0), ("double-wishbone", 3.0)])
 def test_the_largest_share_over_time_is_the_comparison_s(name: str, factor: float) -> None:
     scene = Scene.load(name)
     outcome = compare(scene, "pointcoord", "absolute", factor=factor)

@@ -8,6 +8,7 @@ from itertools import cycle
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, sweep
 from pointcoord.method import AUTO
@@ -33,7 +34,7 @@ EFFECTS = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "
 
 
 @cache
-def solved(name: str, samples: int = 101) -> tuple[Scene, Solution]:
+def solved(name: str, samples: int = 41) -> tuple[Scene, Solution]:
     scene = Scene.load(name)
     time = scene.time.model_copy(update={"samples": samples})
     scene = scene.model_copy(update={"effects": EFFECTS, "time": time})
@@ -66,10 +67,6 @@ def arcsin(held: Solution, name: str, axis: int) -> Numbers:
     return angle(held, name, lambda _: np.arcsin(-line[:, axis] / np.linalg.norm(line, axis=1)))
 
 
-def differences(held: Solution) -> Numbers:
-    return {"velocity": by_differences(held.numbers["position"], held.times)}
-
-
 def by_differences(places: Mapping[str, Array], times: Array) -> Mapping[str, Array]:
     return {n: np.gradient(p, times, axis=0) for n, p in places.items()}
 
@@ -83,105 +80,69 @@ def mirrored(held: Solution) -> Numbers:
     return {**each(held, STATES, lambda v: v * side), **each(held, TURNS, lambda v: -v * side)}
 
 
-FAULTS: Mapping[str, tuple[Callable[[Solution], Numbers], str, str]] = {
-    "sign of a component": (lambda h: each(h, STATES, lambda v: v * [1.0, 1.0, -1.0]), "sign", "sign of z"),
-    "sign of rates only": (lambda h: each(h, ("velocity",), lambda v: v * [1.0, -1.0, 1.0]), "sign", "of y"),
-    "toe out": (lambda h: angle(h, "toe", lambda v: -v), "sign", "toe: the other sign"),
-    "camber by arcsin": (lambda h: arcsin(h, "camber", 2), "definition", "arcsin"),
-    "toe by arcsin": (lambda h: arcsin(h, "toe", 0), "definition", "arcsin"),
-    "less its static value": (
-        lambda h: angle(h, "toe", lambda v: v - v[0]),
-        "offset",
-        "the value at the first instant is subtracted",
-    ),
-    "axes exchanged": (lambda h: each(h, STATES, lambda v: v[:, [1, 0, 2]]), "axes", "our y, x, z"),
-    "forward, left": (
-        lambda h: each(h, (*STATES, *TURNS), lambda v: v * [-1.0, -1.0, 1.0]),
-        "sign",
-        "the other sign of x and y",
-    ),
-    "single precision": (
-        lambda h: each(h, STATES, lambda v: v.astype(np.float32).astype(float)),
-        "digits",
-        "single precision",
-    ),
-    "accelerations by differences": (
-        lambda h: {"acceleration": {n: np.gradient(v, h.times, axis=0) for n, v in h.velocity.items()}},
-        "differences",
-        "central differences",
-    ),
-    "metres and sign": (
-        lambda h: each(h, STATES, lambda v: v * [1.0, -1.0, 1.0] / 1000.0),
-        "sign and unit",
-        "the other sign of y, and m for mm",
-    ),
-    "degrees and another zero": (
-        lambda h: camber(h, lambda v: np.degrees(v) - 1.25),
-        "unit and offset",
-        "a constant offset of -1.25 in its own unit",
-    ),
-    "mirror": (mirrored, "mirror", "left for right"),
-    "degrees": (lambda h: camber(h, np.degrees), "unit", "degrees for radians"),
-    "metres": (lambda h: each(h, STATES, lambda v: v / 1000.0), "unit", "m for mm"),
-    "origin": (
-        lambda h: each(h, ("position",), lambda v: v + np.array([0.0, 0.0, 25.0])),
-        "offset",
-        "(0, 0, 25) mm",
-    ),
-    "constant": (lambda h: camber(h, lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
-    "digits": (lambda h: each(h, (*STATES, "wheel"), lambda v: np.round(v, 3)), "digits", "3 decimals"),
-    "differences": (differences, "differences", "central differences"),
-    "swapped rates": (
-        lambda h: {"velocity": h.numbers["acceleration"], "acceleration": h.numbers["velocity"]},
-        "swapped",
-        "acceleration is swapped with velocity",
-    ),
-    "one sample late": (
-        lambda h: each(h, (*STATES, *TURNS, "wheel"), lambda v: np.concatenate([v[:1], v[:-1]])),
-        "sample",
-        "toe, caster: one sample late, the first one twice",
-    ),
-    "one sample late, and toe out": (
-        lambda h: angle(h, "toe", lambda v: -np.roll(v, 1)),
-        "sample and sign",
-        "toe: one sample late, the last one first, and the other sign",
-    ),
-    "the last row first": (
-        lambda h: angle(h, "caster", lambda v: v[::-1]),
-        "sample",
-        "caster: its rows in the reverse order",
-    ),
-    "minutes of arc": (
-        lambda h: angle(h, "toe", lambda v: 60.0 * v),
-        "unit",
-        "toe: minutes of arc taken for degrees",
-    ),
-    "differences padded with a zero": (
+def late(v: Array) -> Array:
+    return np.concatenate([v[:1], v[:-1]])
+
+
+FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
+    (lambda h: each(h, STATES, lambda v: v * [1.0, 1.0, -1.0]), "sign", "sign of z"),
+    (lambda h: angle(h, "toe", lambda v: -v), "sign", "toe: the other sign"),
+    (lambda h: each(h, (*STATES, *TURNS), lambda v: v * [-1.0, -1.0, 1.0]), "sign", "sign of x and y"),
+    (lambda h: arcsin(h, "camber", 2), "definition", "arcsin"),
+    (lambda h: arcsin(h, "toe", 0), "definition", "arcsin"),
+    (lambda h: each(h, ("wheel",), np.tan), "definition", "kingpin, toe, caster: the slope, no angle"),
+    (lambda h: each(h, ("wheel",), np.sin), "definition", "camber, kingpin, toe, caster: the sine, no angle"),
+    (lambda h: angle(h, "toe", lambda v: v - v[0]), "offset", "the value at the first instant is subtracted"),
+    (lambda h: each(h, ("position",), lambda v: v + np.array([0.0, 0.0, 25.0])), "offset", "(0, 0, 25) mm"),
+    (lambda h: camber(h, lambda v: v + 0.013), "offset", "constant offset of 0.013 rad"),
+    (lambda h: each(h, STATES, lambda v: v[:, [1, 0, 2]]), "axes", "our y, x, z"),
+    (mirrored, "mirror", "left for right"),
+    (lambda h: camber(h, np.degrees), "unit", "degrees for radians"),
+    (lambda h: angle(h, "toe", lambda v: 60.0 * v), "unit", "toe: minutes of arc taken for degrees"),
+    (lambda h: each(h, STATES, lambda v: v / 1000.0), "unit", "m for mm"),
+    (lambda h: each(h, STATES, lambda v: v.astype(np.float32).astype(float)), "digits", "single precision"),
+    (lambda h: each(h, (*STATES, "wheel"), lambda v: np.round(v, 3)), "digits", "3 decimals"),
+    (lambda h: {"velocity": by_differences(h.position, h.times)}, "differences", "central differences"),
+    (lambda h: {"acceleration": by_differences(h.velocity, h.times)}, "differences", "central differences"),
+    (
         lambda h: {"velocity": {n: padded(p, h.times) for n, p in h.position.items()}},
         "differences",
         "velocity: rates by forward differences, zero in the last row",
     ),
-    "slopes for angles": (
-        lambda h: each(h, ("wheel",), np.tan),
-        "definition",
-        "camber, kingpin, toe, caster: the slope, no angle",
+    (
+        lambda h: {"velocity": h.numbers["acceleration"], "acceleration": h.numbers["velocity"]},
+        "swapped",
+        "acceleration is swapped with velocity",
     ),
-    "sines for angles": (
-        lambda h: each(h, ("wheel",), np.sin),
-        "definition",
-        "camber, kingpin, toe, caster: the sine, no angle",
+    (lambda h: each(h, (*STATES, *TURNS, "wheel"), late), "sample", "caster: one sample late, the first"),
+    (lambda h: angle(h, "caster", lambda v: v[::-1]), "sample", "caster: its rows in the reverse order"),
+    (
+        lambda h: angle(h, "toe", lambda v: -np.roll(v, 1)),
+        "sample and sign",
+        "toe: one sample late, the last one first, and the other sign",
     ),
-    "degrees, printed": (
+    (lambda h: each(h, STATES, lambda v: v * [1.0, -1.0, 1.0] / 1e3), "sign and unit", "of y, and m for mm"),
+    (
+        lambda h: camber(h, lambda v: np.degrees(v) - 1.25),
+        "unit and offset",
+        "a constant offset of -1.25 in its own unit",
+    ),
+    (
         lambda h: camber(h, lambda v: np.round(np.degrees(v), 4)),
         "unit and digits",
         "degrees for radians, and printed with 4 decimals",
     ),
-}
+]
 
 
-@pytest.mark.parametrize(("fault", "name"), [*zip(FAULTS, cycle(SCENES), strict=False)])
-def test_a_planted_fault_is_the_first_diagnosis(fault: str, name: str) -> None:
-    plant, kind, words = FAULTS[fault]
+@pytest.mark.parametrize(
+    ("plant", "kind", "words", "name"),
+    [(*fault, name) for fault, name in zip(FAULTS, cycle(SCENES), strict=False)],
+    ids=[words for *_, words in FAULTS],
+)
+def test_a_planted_fault_is_the_first_diagnosis(
+    plant: Callable[[Solution], Numbers], kind: str, words: str, name: str
+) -> None:
     numbers = plant(solved(name)[1])
     first = diagnosis(name, numbers)[0]
     assert (first.kind, first.leftover <= 1.0) == (kind, True), first
@@ -277,8 +238,8 @@ def test_rates_per_input_are_told_from_rates_per_time() -> None:
     assert (first.kind, first.quantities) == ("per input", ("velocity",))
 
 
-@pytest.mark.parametrize("name", SCENES[:2])
-def test_a_time_shift_is_found_with_its_seconds(name: str) -> None:
+def test_a_time_shift_is_found_with_its_seconds() -> None:
+    name = SCENES[1]
     scene, _ = solved(name)
     time = scene.time
     later = time.model_copy(update={"start": time.start + 0.0137, "stop": time.stop + 0.0137})
@@ -296,8 +257,8 @@ def drawn_with(name: str, **offsets: float) -> Numbers:
     return {q: {n: array[0] for n, array in part.items()} for q, part in wrong.numbers.items()}
 
 
-@pytest.mark.parametrize("name", SCENES[:2])
-def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong(name: str) -> None:
+def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong() -> None:
+    name = SCENES[0]
     numbers = drawn_with(name, tie_rod_outer__z=2.0)
     found = diagnosis(name, {**numbers, "wheel": {n: np.degrees(a) for n, a in numbers["wheel"].items()}})
     assert [one.kind for one in found[:2]] == ["hardpoint", "unit"]
@@ -307,7 +268,7 @@ def test_a_misread_hardpoint_is_found_with_its_amount_and_what_else_is_wrong(nam
 
 @pytest.mark.parametrize(
     ("name", "quantities"),
-    [("double-wishbone", ("position",)), ("bmw-e90-strut", ("wheel",)), ("wheel-travel", (*STATES, "wheel"))],
+    [("bmw-e90-strut", ("wheel",)), ("wheel-travel", (*STATES, "wheel"))],
 )
 def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_is_said(
     name: str, quantities: tuple[str, ...]
@@ -324,8 +285,6 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     ("name", "coordinate", "amount", "words"),
     [
         (SCENES[0], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
-        (SCENES[1], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
-        ("pushrod", "damper_rocker__y", -3.8, "damper_rocker.y drawn 3.8 mm too far in"),
         ("pushrod", "pushrod_outer__z", 2.0, "pushrod_outer.z drawn 2 mm too high"),
     ],
 )
@@ -353,11 +312,10 @@ def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() 
     assert {*only.quantities} == {f"wheel.{name}" for name in shares}
 
 
-@pytest.mark.parametrize("quantities", [("velocity",), (*STATES, *TURNS, "wheel")])
-def test_noise_has_no_explanation(quantities: tuple[str, ...]) -> None:
+def test_noise_has_no_explanation() -> None:
     _, held = solved("double-wishbone")
     random = np.random.default_rng(11)
-    noisy = each(held, quantities, lambda v: v + 1e-3 * random.standard_normal(v.shape))
+    noisy = each(held, (*STATES, *TURNS, "wheel"), lambda v: v + 1e-3 * random.standard_normal(v.shape))
     assert diagnosis("double-wishbone", noisy) == ()
 
 
@@ -419,13 +377,10 @@ def taken(factor: float, more: float = 0.0) -> Callable[[InputPart], InputPart]:
 
 WRONG_INPUTS: Mapping[str, dict[str, tuple[float, float]]] = {
     "the input rack has the other sign": {"rack": (-1.0, 0.0)},
-    "the input rack is taken 0.5 times": {"rack": (0.5, 0.0)},
     "the input rack is taken 0.952381 times": {"rack": (20.0 / 21.0, 0.0)},
     "the input rack is taken as 0": {"rack": (0.0, 0.0)},
     "the input rack is taken 5 mm more": {"rack": (1.0, 5.0)},
-    "the input arm_angle is taken 0.02 rad less": {"arm_angle": (1.0, -0.02)},
     "the input arm_angle is taken as pi minus it": {"arm_angle": (-1.0, np.pi)},
-    "the input rack is taken as 5 mm minus it": {"rack": (-1.0, 5.0)},
     "the input arm_angle is taken 0.02 rad more, and the input rack has the other sign": {
         "rack": (-1.0, 0.0),
         "arm_angle": (1.0, 0.02),
@@ -458,22 +413,14 @@ def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
     low, top, inner, outer = (
         points[name] for name in ("lower_ball_joint", "upper_ball_joint", "tie_rod_inner", "tie_rod_outer")
     )
-    kingpin = (top - low) / np.linalg.norm(top - low)
-    normal = np.cross(kingpin, inner - low)
-    normal /= np.linalg.norm(normal)
-    other = outer - 2.0 * ((outer - low) @ normal) * normal
-    first, second = (
-        (d - (d @ kingpin) * kingpin) / np.linalg.norm(d - (d @ kingpin) * kingpin)
-        for d in (outer - low, other - low)
-    )
-    sideways, ahead = np.cross(kingpin, first), first
-    cosine, sine = second @ ahead, second @ sideways
+    axis = (top - low) / np.linalg.norm(top - low)
+    normal = np.cross(axis, inner - low)
+    other = outer - 2.0 * (outer - low) @ normal / (normal @ normal) * normal
+    first, second = (np.cross(axis, place - low) for place in (outer, other))
+    turn = Rotation.from_rotvec(axis * np.arctan2(np.cross(first, second) @ axis, first @ second))
 
     def turned(place: Array) -> Array:
-        d = place - low
-        along = (d @ kingpin) * kingpin
-        moved = along + cosine * (d - along) + sine * np.cross(kingpin, d)
-        return np.asarray(low + moved)
+        return np.asarray(low + turn.apply(place - low))
 
     points |= {n: turned(points[n]) for n in ("tie_rod_outer", "wheel_centre", "wheel_axis_inner")}
     drawn = {name: tuple(place.tolist()) for name, place in points.items()}

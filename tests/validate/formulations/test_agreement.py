@@ -9,6 +9,10 @@ from validate.comparison.compare import Outcome, compare
 from validate.formulations.protocol import FormulationError
 from validate.strategies import scenes
 
+# The short profile searches briefly: `pointcoord study random` searches long.
+EXAMPLES = settings.default.max_examples if settings.default else 100
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 40)
+
 
 def require_agreement(outcome: Outcome) -> None:
     """Every row agrees; of rates that are lost to underflow when they are multiplied nothing can be said."""
@@ -18,6 +22,7 @@ def require_agreement(outcome: Outcome) -> None:
         assert max(float(np.abs(array).max()) for array in numbers) < 1e-280, row
 
 
+@searched
 @given(scenes())
 def test_formulations_agree_on_random_cars_and_motions(scene: Scene) -> None:
     note(repr(scene))

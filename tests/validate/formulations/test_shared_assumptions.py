@@ -38,7 +38,7 @@ LAWS: dict[str, dict[str, Any]] = {
 # a hundred, and rates some ten times the lengths.
 CLOSE = 1e4 * np.finfo(float).eps * 1000.0
 
-models = pytest.mark.parametrize("name", ["pointcoord", "pointcoord-newton", "absolute", "relative"])
+models = pytest.mark.parametrize("name", ["pointcoord", "absolute", "relative"])
 cars = pytest.mark.parametrize("car", SCENES)
 
 
@@ -145,7 +145,7 @@ def exact_not_a_knot(times: list[Fraction], values: list[Fraction]) -> list[list
     ]
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_table_is_the_not_a_knot_spline_of_exact_arithmetic(seed: int) -> None:
     rng = np.random.default_rng(seed)
     count = int(rng.integers(4, 12))

@@ -10,7 +10,6 @@ from plain_solvers import closed_form, less_exact
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate import check
 from validate.cars.input_ends import drawn_inputs, end
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
@@ -20,6 +19,7 @@ from validate.formulations.trees import linkage_in
 from validate.hard.cars import scene_content
 from validate.peers.in_pinocchio import InPinocchio
 from validate.peers.motion import numbers
+from validate.solvers.plain import PlainSolver, Solve
 from validate.studies.claims import scene_rows
 from validate.studies.study import Task
 
@@ -30,6 +30,10 @@ MOVING = {"arm_angle": (1.6, 0.12, -0.3), "rack": (4.0, -25.0, 40.0), "heave": (
 
 def moving(car) -> Scene:
     return Scene.from_mapping(scene_content(car, **MOVING, start=-0.5, stop=0.5, samples=5), "moving")
+
+
+def compared(solver: Solve, scene: Scene, accuracy: float) -> Outcome:
+    return compare(scene, PlainSolver("mine", solver, accuracy), "pointcoord")
 
 
 def by_quantity(outcome: Outcome) -> dict[str, float]:
@@ -44,16 +48,16 @@ def by_quantity(outcome: Outcome) -> dict[str, float]:
 @pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_a_right_solver_agrees_in_everything_down_to_nearly_rounding(car) -> None:
     for accuracy in (1e-3, 1e-6, 1e-10):
-        outcome = check(closed_form, moving(car), accuracy)
+        outcome = compared(closed_form, moving(car), accuracy)
         assert {row.verdict for row in outcome.rows} == {"agrees"}, by_quantity(outcome)
 
 
 @pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_a_solver_is_held_to_what_it_states(car) -> None:
     scene, solver = moving(car), less_exact(1e-3, seed=1)
-    kept = check(solver, scene, 1e-3)
+    kept = compared(solver, scene, 1e-3)
     assert kept.passed, by_quantity(kept)
-    broken = check(solver, scene, 1e-9)
+    broken = compared(solver, scene, 1e-9)
     assert not broken.passed
     assert all(share > 1.0 for share in by_quantity(broken).values())
     # The tolerance is that of this accuracy and of no far larger one: every quantity uses up a part of it.
@@ -84,7 +88,7 @@ def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
         scene = near_the_end(car, distance)
         claims = accuracy_for(scene, 1e-10).claims
         wide[distance] = [claims[q]["wheel_centre"].max() for q in ("position", "velocity", "acceleration")]
-        assert check(closed_form, scene, 1e-10).passed, distance
+        assert compared(closed_form, scene, 1e-10).passed, distance
     # At a distance d of a fold position, velocity and acceleration change with d^-1/2, d^-3/2 and d^-5/2.
     for near, far in ((1e-5, 1e-3), (1e-7, 1e-5)):
         grown = np.log10(np.array(wide[near]) / np.array(wide[far])) / 2.0
@@ -93,7 +97,7 @@ def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
 
 @pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
 def test_nearer_a_fold_than_the_accuracy_nothing_is_tested(car) -> None:
-    outcome = check(closed_form, near_the_end(car, 1e-7), 1e-2)
+    outcome = compared(closed_form, near_the_end(car, 1e-7), 1e-2)
     assert {row.verdict for row in outcome.rows if row.difference > 1e-300} == {"not tested"}
     assert not outcome.disagreements
 

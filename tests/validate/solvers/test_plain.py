@@ -8,10 +8,11 @@ import pytest
 from plain_solvers import closed_form
 
 from pointcoord import Scene, simulate
-from pointcoord.effects.registry import QUANTITIES
-from validate import FormulationError, check
+from validate import FormulationError, Outcome, check, compare
+from validate.comparison.examined import Once
+from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, scene_content
-from validate.solvers.plain import NoSolver, given_to_solver
+from validate.solvers.plain import NoSolver, PlainSolver, given_to_solver
 
 CAR = BESIDE_CAR
 SCENE = Scene.from_mapping(
@@ -20,9 +21,16 @@ SCENE = Scene.from_mapping(
 RIGHT = closed_form(given_to_solver(SCENE))
 
 
-def verdicts(answer: object, scene: Scene = SCENE) -> dict[tuple[str, str], str]:
-    outcome = check(lambda given: answer, scene)
-    return {(row.quantity, row.name): row.verdict for row in outcome.rows}
+# What nothing but a comparison needs: no explanation is looked for, and pointcoord solves the scene once.
+HELD = Once(formulation("pointcoord"))
+
+
+def compared(answer: object) -> Outcome:
+    return compare(SCENE, PlainSolver("mine", lambda given: answer, 1e-6), HELD)
+
+
+def verdicts(answer: object) -> dict[tuple[str, str], str]:
+    return {(row.quantity, row.name): row.verdict for row in compared(answer).rows}
 
 
 def plain(value: Any) -> bool:
@@ -64,22 +72,16 @@ def changed(quantity: str, name: str, by: float) -> dict[str, Any]:
     return RIGHT | {quantity: RIGHT[quantity] | {name: RIGHT[quantity][name] + by}}
 
 
-@pytest.mark.parametrize("row", check(closed_form, SCENE).rows, ids=lambda row: f"{row.quantity}-{row.name}")
-def test_a_wrong_number_disagrees_and_nothing_else_does(row: Any) -> None:
-    # Twice what is tolerated at the instant where that is widest; 100 times covers the others.
-    found = verdicts(changed(row.quantity, row.name, 100.0 * max(row.tolerance, 1e-12)))
-    assert found.pop((row.quantity, row.name)) == "disagrees"
-    assert set(found.values()) == {"agrees"}
-
-
-@pytest.mark.parametrize("quantity", [q for q in QUANTITIES if q in RIGHT])
-def test_a_wrong_sign_of_a_quantity_disagrees(quantity: str) -> None:
-    found = verdicts(RIGHT | {quantity: {name: -array for name, array in RIGHT[quantity].items()}})
-    assert {q for (q, _), verdict in found.items() if verdict == "disagrees"} == {quantity}
+def test_a_wrong_number_disagrees_and_nothing_else_does() -> None:
+    for row in compared(RIGHT).rows:
+        # Twice what is tolerated at the instant where that is widest; 100 times covers the others.
+        found = verdicts(changed(row.quantity, row.name, 100.0 * max(row.tolerance, 1e-12)))
+        assert found.pop((row.quantity, row.name)) == "disagrees"
+        assert set(found.values()) == {"agrees"}
 
 
 def test_any_part_may_be_given_and_the_rest_is_listed() -> None:
-    outcome = check(lambda given: {"position": {"wheel_centre": RIGHT["position"]["wheel_centre"]}}, SCENE)
+    outcome = compared({"position": {"wheel_centre": RIGHT["position"]["wheel_centre"]}})
     found = {(row.quantity, row.name): row.verdict for row in outcome.rows}
     assert found.pop(("position", "wheel_centre")) == "agrees"
     assert set(found.values()) == {"not given"}
@@ -89,7 +91,7 @@ def test_any_part_may_be_given_and_the_rest_is_listed() -> None:
 
 @pytest.mark.parametrize("answer", [{}, {"position": {}}, {"camber": [1.0]}, {"camber": None}])
 def test_who_gives_nothing_that_can_be_compared_does_not_pass(answer: dict[str, Any]) -> None:
-    outcome = check(lambda given: answer, SCENE)
+    outcome = compared(answer)
     assert {row.verdict for row in outcome.rows} == {"not given"}
     assert not outcome.passed
     assert outcome.missing
@@ -127,10 +129,10 @@ def test_fewer_instants_are_compared_where_they_are_named() -> None:
     assert verdicts(some)["wheel", "camber"] == "agrees"
     others = {"instants": [0.0, 0.5], "camber": RIGHT["wheel"]["camber"][[2, 3]]}
     assert verdicts(others)["wheel", "camber"] == "disagrees"
-    outcome = check(lambda given: {"camber": RIGHT["wheel"]["camber"][:2]}, SCENE)
+    outcome = compared({"camber": RIGHT["wheel"]["camber"][:2]})
     assert any("has the shape (2,); needed: (5,)" in note for note in outcome.notes)
     with pytest.raises(FormulationError, match="none of the scene's"):
-        check(lambda given: {"instants": [7.0], "camber": [0.0]}, SCENE)
+        compared({"instants": [7.0], "camber": [0.0]})
 
 
 def test_a_number_that_is_none_disagrees() -> None:
@@ -150,7 +152,7 @@ def test_a_number_that_is_none_disagrees() -> None:
     ],
 )
 def test_what_is_left_out_is_told(answer: dict[Any, Any], said: str) -> None:
-    assert said in "\n".join(check(lambda given: answer, SCENE).notes)
+    assert said in "\n".join(compared(answer).notes)
 
 
 CHASSIS = {name: RIGHT["position"][name] for name in SCENE.mechanism.topology.chassis}
@@ -164,14 +166,14 @@ def at_rest(theta: float) -> Scene:
 
 
 def test_giving_back_what_was_given_tells_nothing() -> None:
-    outcome = check(lambda given: {"position": CHASSIS}, SCENE)
+    outcome = compared({"position": CHASSIS})
     assert [row.name for row in outcome.rows if row.verdict == "agrees"] == list(CHASSIS)
     assert not outcome.disagreements
     assert not outcome.passed
     assert "what the solver was given" in outcome.why_no_verdict
     assert outcome.counts["given back"] == outcome.counts["agrees"] == len(CHASSIS)
     moving = {**CHASSIS, "wheel_centre": RIGHT["position"]["wheel_centre"]}
-    told = check(lambda given: {"position": moving}, SCENE)
+    told = compared({"position": moving})
     assert told.passed
     assert [row.name for row in told.rows if row.verdict == "agrees" and row.telling] == ["wheel_centre"]
 
@@ -208,11 +210,11 @@ UNUSABLE = {
 def test_what_is_given_and_cannot_be_used_is_no_agreement_whatever_agrees_beside_it(
     part: dict[str, Any],
 ) -> None:
-    outcome = check(lambda given: {"camber": RIGHT["wheel"]["camber"], **part}, SCENE)
+    outcome = compared({"camber": RIGHT["wheel"]["camber"], **part})
     assert ("camber", "agrees") in {(row.name, row.verdict) for row in outcome.rows}
     assert not outcome.passed
     assert len(outcome.faults) == 1
-    wrong = check(lambda given: {"camber": -RIGHT["wheel"]["camber"], **part}, SCENE)
+    wrong = compared({"camber": -RIGHT["wheel"]["camber"], **part})
     assert {row.name for row in wrong.disagreements} == {"camber"}
 
 
@@ -226,7 +228,7 @@ def test_what_is_given_and_cannot_be_used_is_no_agreement_whatever_agrees_beside
     ],
 )
 def test_what_is_not_given_or_is_something_else_is_no_fault(part: dict[str, Any]) -> None:
-    outcome = check(lambda given: {"camber": RIGHT["wheel"]["camber"], **part}, SCENE)
+    outcome = compared({"camber": RIGHT["wheel"]["camber"], **part})
     assert outcome.passed
     assert not outcome.faults
 

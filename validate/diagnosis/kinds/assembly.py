@@ -39,7 +39,7 @@ def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
     """The whole car, by each other closure of its type of suspension."""
     part = evidence.scene.mechanism
     for closure in part.file.closures:
-        if closure != part.closure and (motion := _solved(evidence.solved.fine, closure=closure)):
+        if closure != part.closure and (motion := _solved(evidence.solved.ends, closure=closure)):
             words = f"the car is closed as {closure}, where the scene asks for {part.closure}"
             yield Hypothesis(closure, words, evidence.by(motion), whole=True)
 
@@ -75,7 +75,7 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     motion = None
     if np.abs(missed).max() <= KEPT * size:
         points = {name: tuple(place.tolist()) for name, place in pose.items()}
-        motion = _solved(evidence.solved.fine, points=points)
+        motion = _solved(evidence.solved.ends, points=points)
     if motion is None:
         return
     numbers = motion.at(evidence.times).numbers

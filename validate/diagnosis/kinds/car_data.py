@@ -4,26 +4,22 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
-from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from pointcoord import PointcoordError, Scene, simulate
+from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.loads import ROD_FORCE
 from pointcoord.effects.registry import EFFECTS
 from validate.diagnosis.evidence import Evidence, Row
-from validate.diagnosis.hypothesis import Hypothesis
-from validate.diagnosis.least import as_meant, fitted
+from validate.diagnosis.hypothesis import Hypothesis, amounts_of
+from validate.diagnosis.least import decimals_of
 from validate.formulations.asked_numbers import is_force
 
-Array = NDArray[np.float64]
 Path = tuple[str | int, ...]
 """Of a number in the mechanism's part of a scene, such as ("car", "wheelbase")."""
 
-FEW = 25  # instants that a number is looked for at
 STEP = 1e-4  # of the number, of differences by it
 RADIUS: Path = ("wheel_radius",)
 LEAST = 1e-9  # of the radius, that it may be
@@ -44,9 +40,11 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each number that those which disagree are made of, by itself."""
     if not evidence.other_cars:
         return
-    content = evidence.solved.fine.model_dump(exclude_none=True)
+    content = evidence.solved.ends.model_dump(exclude_none=True)
     content["effects"] = _effects(evidence)
     part: dict[str, Any] = content["mechanism"]
+    for load in part.get("loads", {}).values():
+        load |= {what: [*vector] for what, vector in load.items()}
     loads: list[Path] = [
         ("loads", wheel, what, i)
         for wheel, load in part.get("loads", {}).items()
@@ -88,40 +86,29 @@ def _effects(evidence: Evidence) -> list[str]:
 def _other(
     evidence: Evidence, content: dict[str, Any], path: Path, value: float, looked: list[Row]
 ) -> Hypothesis | None:
-    few = evidence.thinned(FEW)
-    theirs, off = few.joined(looked)
     least = LEAST * value if path == RADIUS else -np.inf
 
-    def car(number: float) -> Scene:
+    def motion_of(number: float) -> Motion | None:
         other = copy.deepcopy(content)
-        *tables, key = path
-        inner = _at(other["mechanism"], tuple(tables))
-        if isinstance(key, int):
-            *tables, last = tables
-            inner = list(inner)
-            _at(other["mechanism"], tuple(tables))[last] = inner
-        inner[key] = max(number, least)
-        return Scene.from_mapping(other, "another car")
+        _at(other["mechanism"], path[:-1])[path[-1]] = max(number, least)
+        try:
+            return simulate(Scene.from_mapping(other, "another car"))
+        except PointcoordError:
+            return None
 
-    def read(values: Array) -> Array:
-        found = np.full((len(values), len(theirs)), np.nan)
-        for i, (number,) in enumerate(values.tolist()):
-            with suppress(PointcoordError):
-                there = simulate(car(number)).at(few.times).numbers
-                found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
-        return found
-
-    found = fitted(read, [value], STEP * (abs(value) or 1.0), theirs)
-    if found is None:
+    found = amounts_of(evidence, looked, motion_of, [value], STEP * (abs(value) or 1.0))
+    motion = motion_of(*found) if found else None
+    if found is None or motion is None:
         return None
-    number = float(as_meant(found, read, theirs, off)[1][0])
+    (number,) = found
     if path[0] == "car" and not value / FARTHEST <= number <= value * FARTHEST:
         return None
     words = f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
     if path == RADIUS and number <= NOTHING * value:
         words = "the wheel centre is taken for the contact point"
     # Another load is one of all forces; a radius may be another one for some numbers only.
-    return Hypothesis(path, words, evidence.by(simulate(car(number))), 1, 1.5, whole=path[0] == "loads")
+    decimals = decimals_of(np.array(found))
+    return Hypothesis(path, words, evidence.by(motion), 1, 1.5, decimals, whole=path[0] == "loads")
 
 
 def _at(tables: Any, path: Path) -> Any:

@@ -8,7 +8,7 @@ as the tie rod's inner end does for the rack's centre, is misread with it or alo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import combinations
 
@@ -19,7 +19,7 @@ from pointcoord import Scene, sweep
 from pointcoord.linkage.car_axes import Direction
 from validate.diagnosis.evidence import Evidence, Row, kind_of, nearest, order
 from validate.diagnosis.hypothesis import Hypothesis, by_what_tells, gives
-from validate.diagnosis.least import LIKELY, as_meant, decimals_of, fitted
+from validate.diagnosis.least import LIKELY, decimals_of, fitted
 
 Array = NDArray[np.float64]
 Coordinate = tuple[str, ...]
@@ -96,33 +96,21 @@ def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypot
     groups = _groups(names)[:most]
     for choices in groups:
         tried = [
-            (*found, chosen)
+            (chosen, found)
             for chosen in _likeliest(choices, names, slopes[usable], theirs - ours, farthest)
-            if (found := _amounts(partial(read, chosen), len(chosen), theirs, off, farthest))
+            if (found := fitted(partial(read, chosen), [0.0] * len(chosen), STEP, theirs, off, rounded=True))
+            is not None
             # Of one that is off by nothing the others are a choice of their own.
-            and found[1].all()
+            and found.all()
+            and np.abs(found).max() < farthest
         ]
-        best = min((left for left, *_ in tried), default=0.0)
-        likely = [(chosen, amounts) for left, amounts, chosen in tried if left <= POORER * best]
+        left = [float(np.linalg.norm(read(chosen, found[None]) - theirs)) for chosen, found in tried]
+        best = min(left, default=0.0)
+        likely = [one for one, rest in zip(tried, left, strict=True) if rest <= POORER * best]
         hypotheses = [one for chosen, amounts in likely if (one := _supposed(evidence, chosen, amounts))]
         if any(gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
             return hypotheses
     return []
-
-
-def _amounts(
-    read: Callable[[Array], Array], count: int, theirs: Array, off: Array, farthest: float
-) -> tuple[float, Array] | None:
-    """What coordinates leave, and by how much they are off, as round as it may be; None of too much.
-
-    Args:
-        off: how far the numbers may be from theirs.
-    """
-
-    amounts = fitted(read, [0.0] * count, STEP, theirs, off)
-    if amounts is None or not np.abs(amounts).max() < farthest:
-        return None
-    return as_meant(amounts, read, theirs, off)
 
 
 def _coordinates(scene: Scene) -> Chosen:

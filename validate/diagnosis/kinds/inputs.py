@@ -9,22 +9,19 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, simulate
 from pointcoord.scene.input_part import InputPart
 from validate.diagnosis.evidence import Evidence, Row
-from validate.diagnosis.hypothesis import Hypothesis, by_what_tells, gives
-from validate.diagnosis.least import fitted, meant
+from validate.diagnosis.hypothesis import Hypothesis, amounts_of, by_what_tells, gives
+from validate.diagnosis.least import meant
 from validate.formulations.input_rates import rates
 
-Array = NDArray[np.float64]
 Taken = Mapping[str, tuple[float, float]]
 """k and m by input."""
 
 OURS = (1.0, 0.0)
 STEP = 1e-3  # of differences by k and m
-FEW = 64  # instants that a wrong input is looked for at
 NEAR = 1e-5  # how near to pi an amount is meant to be it
 
 
@@ -35,24 +32,17 @@ def wrong_inputs(evidence: Evidence) -> Iterator[Hypothesis]:
 
 def _wrong(evidence: Evidence, looked: Sequence[Row], several: bool) -> list[Hypothesis]:
     """One number of an input by itself; all together if several are looked for and this does not do."""
-    laws, few = evidence.scene.inputs, evidence.thinned(FEW)
-    theirs, _ = few.joined(looked)
-    if not np.isfinite(theirs).all():
-        return []
-    sizes = {name: np.abs(rates(law, few.times)[:, 0]) for name, law in laws.items()}
-
-    def numbers(places: Sequence[tuple[str, int]], sets: Array) -> Array:
-        found = np.full((len(sets), len(theirs)), np.nan)
-        for i, values in enumerate(sets):
-            if motion := _motion(evidence, _taken(places, values)):
-                there = motion.at(few.times).numbers
-                found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
-        return found
+    laws = evidence.scene.inputs
+    sizes = {name: np.abs(rates(law, evidence.times)[:, 0]) for name, law in laws.items()}
 
     def search(places: Sequence[tuple[str, int]]) -> Taken:
         """k (0) and m (1) of some inputs; of those only that are found not to be ours."""
         start = [OURS[which] for _, which in places]
-        found = fitted(lambda sets: numbers(places, sets), start, STEP, theirs)
+
+        def motion_of(*values: float) -> Motion | None:
+            return _motion(evidence, _taken(places, values))
+
+        found = amounts_of(evidence, looked, motion_of, start, STEP, rounded=False)
         if found is None:
             return {}
         for i, (name, which) in enumerate(places):
@@ -74,9 +64,9 @@ def _wrong(evidence: Evidence, looked: Sequence[Row], several: bool) -> list[Hyp
     return found
 
 
-def _taken(places: Sequence[tuple[str, int]], values: Array) -> dict[str, tuple[float, float]]:
+def _taken(places: Sequence[tuple[str, int]], values: Sequence[float]) -> dict[str, tuple[float, float]]:
     """k and m of inputs by some of these numbers, the others ours."""
-    said = dict(zip(places, values.tolist(), strict=True))
+    said = dict(zip(places, values, strict=True))
     return {
         n: (said.get((n, 0), OURS[0]), said.get((n, 1), OURS[1])) for n in dict.fromkeys(n for n, _ in places)
     }
@@ -95,7 +85,7 @@ def _supposed(evidence: Evidence, taken: Taken) -> Hypothesis | None:
 
 def _motion(evidence: Evidence, taken: Taken) -> Motion | None:
     """The car's motion by other inputs, with every point; None where it cannot follow them."""
-    scene = evidence.solved.fine
+    scene = evidence.solved.ends
     laws = {name: _changed(scene.inputs[name], *km) for name, km in taken.items()}
     try:
         return simulate(scene.model_copy(update={"inputs": {**scene.inputs, **laws}}))

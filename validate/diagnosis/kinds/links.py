@@ -12,19 +12,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from validate.diagnosis.evidence import Evidence, Row
-from validate.diagnosis.hypothesis import Hypothesis, by_what_tells
-from validate.diagnosis.least import as_meant, decimals_of, fitted
-
-Array = NDArray[np.float64]
+from validate.diagnosis.hypothesis import Hypothesis, amounts_of, by_what_tells
+from validate.diagnosis.least import decimals_of
 
 STEP = 0.05  # mm, of differences by a length
-FEW = 25  # instants that a length is looked for at
 
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -41,10 +37,7 @@ def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
 def _wrong_length(
     evidence: Evidence, looked: Sequence[Row], tables: Mapping[str, Any], rod: str
 ) -> Hypothesis | None:
-    few, ends = evidence.thinned(FEW), tables["rods"][rod]
-    theirs, off = few.joined(looked)
-    if not np.isfinite(theirs).all():
-        return None
+    ends = tables["rods"][rod]
     name = f"length of {rod}"
     changed = {
         **tables,
@@ -55,25 +48,16 @@ def _wrong_length(
     def car(more: float) -> Motion | None:
         return _solved(evidence, changed, {}, {name: {"sum": [{"constant": "drawn"}, {"constant": more}]}})
 
-    def read(sets: Array) -> Array:
-        found = np.full((len(sets), len(theirs)), np.nan)
-        for i, (more,) in enumerate(sets.tolist()):
-            if motion := car(more):
-                there = motion.at(few.times).numbers
-                found[i] = np.concatenate([there[quantity][of].ravel() for quantity, of in looked])
-        return found
-
-    found = fitted(read, [0.0], STEP, theirs, off)
-    if found is None:
+    found = amounts_of(evidence, looked, car, [0.0], STEP)
+    motion = car(*found) if found else None
+    if found is None or motion is None:
         return None
-    _, amounts = as_meant(found, read, theirs, off)
-    if (motion := car(more := float(amounts[0]))) is None:
-        return None
+    (more,) = found
     start, end = (np.array(evidence.scene.mechanism.points[point]) for point in ends)
     drawn = float(np.linalg.norm(end - start))
     said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
     words = f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
-    return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, decimals_of(amounts), whole=True)
+    return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, decimals_of(np.array(found)), whole=True)
 
 
 def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -139,13 +123,11 @@ def _solved(
     inputs: Mapping[str, Any],
 ) -> Motion | None:
     """The motion of the car by other tables, points and further inputs; None where there is none."""
-    content = evidence.solved.fine.model_dump(exclude_none=True)
+    content = evidence.solved.ends.model_dump(exclude_none=True)
     part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
     part |= _in_parts(tables, evidence.scene.mechanism.topology.sides)
     part["points"] = {**part["points"], **points}
     content |= {"mechanism": part, "inputs": {**content["inputs"], **inputs}}
-    # It is read between its instants.
-    content["time"] = {**content["time"], "samples": min(2, evidence.scene.time.samples)}
     try:
         return simulate(Scene.from_mapping(content, "another car"))
     except PointcoordError:

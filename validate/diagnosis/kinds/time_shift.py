@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pointcoord import PointcoordError, simulate
 from pointcoord.numerics.rounding import EPS
-from validate.diagnosis.evidence import Evidence
+from validate.diagnosis.evidence import Evidence, numbers_in, some_of
 from validate.diagnosis.hypothesis import Hypothesis
 from validate.diagnosis.least import fitted
 
@@ -40,14 +40,14 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
     except PointcoordError:
         # The car does not go so far.
         motion, first, last = evidence.solved.motion, times[0], times[-1]
-    some = np.unique(np.linspace(0, len(times) - 1, min(FEW, len(times))).astype(np.intp))
+    some = some_of(len(times), FEW)
     some = some[(times[some] + whole - pad >= first) & (times[some] + whole + pad <= last)]
     if len(some) < 5:
         return
 
     def read(shifts: Array) -> Array:
         found = [motion.at(times[some] + whole + np.clip(shift, -pad, pad)).numbers for (shift,) in shifts]
-        return np.stack([np.concatenate([one[q][of].ravel() for q, of in looked]) for one in found])
+        return np.stack([numbers_in(one, looked) for one in found])
 
     rest = fitted(read, [0.0], 1e-4 * pad, np.concatenate([evidence.given[r][some].ravel() for r in looked]))
     # Where whole instants leave nothing but rounding, there is nothing to find.
