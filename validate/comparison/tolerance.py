@@ -71,4 +71,4 @@ def untested(first: Array, second: Array, first_level: Array, second_level: Arra
 
 def _largest(array: Array) -> Array:
     """The largest magnitude of any component at each instant, (N,), of numbers (N, ...)."""
-    return np.asarray(np.abs(array.reshape(len(array), -1)).max(axis=-1))
+    return np.asarray(np.abs(array).max(axis=tuple(range(1, array.ndim))))
