@@ -10,7 +10,7 @@ import pytest
 from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
 from relative_cars import plain_car, swing
-from sample_cars import PAPER_STRUT, SampleCar, by_car
+from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar, by_car
 
 from validate.cars.car import Car
 from validate.cars.input_ends import drawn_inputs, end
@@ -126,8 +126,7 @@ def test_a_hinge_that_closes_a_loop_cannot_be_driven_by_its_turn() -> None:
 
 
 @by_car
-@pytest.mark.parametrize("driven", ["arm_angle", "rack"])
-@pytest.mark.parametrize("ahead", [False, True])
+@pytest.mark.parametrize(("driven", "ahead"), [("arm_angle", False), ("rack", True)])
 def test_an_input_beyond_its_end_is_refused_with_the_end(car: SampleCar, driven: str, ahead: bool) -> None:
     drawn = Car(car.points, car.side, closure=car.closure, suspension=car.type)
     home = drawn_inputs(drawn)
@@ -191,3 +190,19 @@ def test_two_branches_that_cross_at_once_are_not_exchanged() -> None:
     """With its cranks in line both loops change the sign of a determinant, and not that of their product."""
     with pytest.raises(PoseError, match="cannot be reached"):
         solved(plain_scene("n-four-bar"), {"crank": held(np.array([-1.0, -1.6]))})
+
+
+def test_what_makes_no_mechanism_is_told_by_name() -> None:
+    strut = GENERAL_STRUT
+    with pytest.raises(HardpointsError, match="lower_arm_front is where lower_arm_rear is"):
+        linkage_of(plain_car(strut, lower_arm_rear=strut.points["lower_arm_front"]))
+    with pytest.raises(HardpointsError, match="strut_lower is where strut_top is"):
+        linkage_of(plain_car(strut, strut_lower=strut.points["strut_top"]))
+
+
+def test_an_angle_outside_half_a_turn_is_refused_at_its_instant() -> None:
+    theta = np.stack([np.linspace(1.6, 0.1, 5), np.zeros(5), np.zeros(5)], axis=-1)
+    theta[2, 0] = 3.2
+    with pytest.raises(InputError, match="an angle from 0 to pi") as caught:
+        linkage_of(plain_car(GENERAL_STRUT)).inputs({"arm_angle": theta, "rack": np.zeros((5, 3))})
+    assert caught.value.instant == 2

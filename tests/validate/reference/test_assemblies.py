@@ -13,7 +13,7 @@ from plain_mechanisms import design_of
 from reference_cars import CARS, ReferenceCar
 
 from validate.reference import AmbiguousAssemblyError, Instant, NoReferenceError, instants_of
-from validate.reference.vectors import minus
+from validate.reference.vectors import Vector, minus, plus, times
 
 Table = dict[str, tuple[int, int, int]]
 
@@ -44,7 +44,7 @@ def test_a_drawing_at_a_dead_point_is_ambiguous(car: ReferenceCar) -> None:
 
 @pytest.mark.parametrize("name", CARS)
 @given(theta=st.floats(-10, 10), rack=st.floats(-1e3, 1e3), speed=st.floats(-1e3, 1e3))
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=3, deadline=None)
 def test_any_finite_input_gives_a_proven_instant_or_an_error_of_the_family(
     name: str, theta: float, rack: float, speed: float
 ) -> None:
@@ -54,3 +54,28 @@ def test_any_finite_input_gives_a_proven_instant_or_an_error_of_the_family(
     except NoReferenceError:
         return
     assert reference.error_bound["position"] < reference.radius < mpf("1e-55")
+
+
+def along(*parts: tuple[str, Fraction]) -> Vector:
+    """The lower ball joint, and shares of the ways from it to other points."""
+    points = CARS["double wishbone"].points
+    place = ball = points["lower_ball_joint"]
+    for name, share in parts:
+        place = plus(place, times(minus(points[name], ball), share))
+    return place
+
+
+@pytest.mark.parametrize("share", [Fraction(1, 2), Fraction(1, 4)])
+def test_a_drawing_in_the_plane_where_two_assemblies_meet_is_ambiguous(share: Fraction) -> None:
+    car = CARS["double wishbone"]
+    place = along(("upper_ball_joint", share), ("tie_rod_inner", share))
+    found = []
+    for hair in (Fraction(1, 10**9), Fraction(-1, 10**9)):
+        x, y, z = place
+        near = replace(car, points={**car.points, "tie_rod_outer": (x + hair, y, z + hair)})
+        with pytest.raises(AmbiguousAssemblyError, match="from another assembly"):
+            near.close()
+        found.append(near.close(clearness=0).instant.position["wheel_centre"])
+    assert found[0] != found[1]
+    with pytest.raises(AmbiguousAssemblyError):
+        replace(car, points={**car.points, "tie_rod_outer": place}).close(clearness=0)

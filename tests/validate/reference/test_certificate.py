@@ -145,7 +145,7 @@ def test_poses_all_but_singular_are_certified_and_just_beyond_is_proven_infeasib
     car: ReferenceCar, name: str
 ) -> None:
     at = edge(car, name)
-    for distance in (Fraction(1, 10**6), Fraction(1, 10**12), Fraction(1, 10**20)):
+    for distance in (Fraction(1, 10**6), Fraction(1, 10**20)):
         near = car.solve({**car.still, name: (at - distance, 1, 0)})
         # A fold: the condition grows as the inverse square root of the distance.
         assert near.condition > 0.1 * float(distance) ** -0.5

@@ -11,15 +11,13 @@ import mpmath
 import numpy as np
 import pytest
 from mpmath import mpf
-from plain_mechanisms import solve_car
+from plain_mechanisms import design_of, solve_car
+from reference_cars import OFF_AXIS
 
-from validate.reference import (
-    AmbiguousAssemblyError,
-    BadInputError,
-    NoReferenceError,
-)
+from validate.reference import AmbiguousAssemblyError, BadInputError, NoReferenceError
 from validate.reference.effects.registry import OF_POSITIONS
 from validate.reference.exact import as_fraction
+from validate.reference.vectors import Vector
 
 Table = dict[str, tuple[Any, ...]]
 STILL = {"arm_angle": (1.5, 0, 0)}
@@ -46,8 +44,6 @@ def test_what_is_not_a_finite_real_number_is_refused_by_name(value: object) -> N
         ({"inputs": {"rack": (0, 0, 0)}}, "at least arm_angle"),
         ({"inputs": {**STILL, "camber": (0, 0, 0)}}, "one of arm_angle, rack, heave"),
         ({"inputs": {"arm_angle": (1.5, 0)}}, "value, rate, acceleration"),
-        ({"up": (0, 0, 2)}, "unit vectors"),
-        ({"up": (0, 0.6, 0.8)}, "right angles"),
         ({"up": (0, 1)}, "three numbers"),
         ({"side": "port"}, "'left' or 'right'"),
         ({"digits": 1000}, "15 to 200"),
@@ -96,3 +92,28 @@ def test_an_arm_about_an_upright_axis_cannot_be_driven_by_its_height(table: Tabl
     upright = {**table, "lower_arm_rear": (270, -5, 90)}
     with pytest.raises(AmbiguousAssemblyError):
         solve_car(upright, STILL, closure="collinear")
+
+
+MILLIONTH = Fraction(1, 10**6)
+
+
+@pytest.mark.parametrize(
+    ("up", "right", "allowed"),
+    [
+        # A square of exactly 1 + 1e-12, and one a little beyond it.
+        ((0, 0, 1), (MILLIONTH, 1, 0), True),
+        ((0, MILLIONTH + MILLIONTH**2, 1), (1, 0, 0), False),
+        # A cosine of exactly 1e-12 between them, and one a little beyond it.
+        ((0, 0, 1), (0, 1, -(MILLIONTH**2)), True),
+        ((0, 0, 1), (0, 1, MILLIONTH**2 + MILLIONTH**3), False),
+    ],
+)
+def test_directions_are_unit_vectors_at_right_angles_to_a_millionth_of_a_millionth(
+    up: Vector, right: Vector, allowed: bool
+) -> None:
+    if allowed:
+        design = design_of(OFF_AXIS, up=up, right=right)
+        assert (design.up, design.right) == (up, right)
+    else:
+        with pytest.raises(BadInputError, match=r"up and right is .* to 1e-12"):
+            design_of(OFF_AXIS, up=up, right=right)
