@@ -84,17 +84,6 @@ class ReferenceCar:
     def design(self) -> Design:
         return design_of(self.points, **self.kind)
 
-    @property
-    def wheel_axis(self) -> tuple[str, str]:
-        """Inner point and wheel centre."""
-        inner, centre = self.design.role("wheel_axis")
-        return inner, centre
-
-    @property
-    def bodies(self) -> dict[str, list[str]]:
-        """The points of each moving body."""
-        return {name: points for name, points in self.design.plain["bodies"].items() if name != "chassis"}
-
     def known(self, **changed: object) -> Known:
         """What the equations take as given, without motion; some inputs changed."""
         design = self.design

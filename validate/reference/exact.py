@@ -33,7 +33,6 @@ def as_fraction(value: Any, what: str) -> Fraction:
 
 def as_ball(value: Fraction | int) -> arb:
     """A ball that contains the fraction, at the present precision; exact if it fits."""
-    value = Fraction(value)
     return arb(fmpq(value.numerator, value.denominator))
 
 

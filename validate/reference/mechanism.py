@@ -13,7 +13,7 @@ from validate.reference.compiler import Compiler, Exact, Reader, Table, at
 from validate.reference.drives import Drive, drive_of
 from validate.reference.errors import BadInputError
 from validate.reference.jet import Jet
-from validate.reference.polynomial import Polynomial
+from validate.reference.polynomial import Polynomial, polynomial
 from validate.reference.vectors import Scalar, Vector, cross, dot, each
 
 
@@ -138,7 +138,7 @@ def _final(one: Scalar, size: int) -> Polynomial:
     """With the symbols of the numbers behind the unknowns."""
     terms = {
         tuple(sorted(s if s >= 0 else size - 1 - s for s in monomial)): coefficient
-        for monomial, coefficient in (Polynomial({}) + one).terms.items()
+        for monomial, coefficient in polynomial(one).terms.items()
         if coefficient
     }
-    return Polynomial(dict(sorted(terms.items(), key=lambda term: -len(term[0]))))
+    return Polynomial(terms)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
-from relative_cars import plain_car, swing
+from relative_cars import plain_car
 from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar, by_car
 
 from validate.cars.car import Car
@@ -176,7 +176,7 @@ def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, None])
 def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong: float | None) -> None:
-    laws = swing(PAPER_STRUT, np.linspace(0.0, 1.0, 9))
+    laws = {name: held(np.full(9, value)) for name, value in PAPER_STRUT.drawn_inputs.items()}
     if wrong is None:
         del laws["rack"]
     else:

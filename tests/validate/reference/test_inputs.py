@@ -10,11 +10,13 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from flint import arb
 from mpmath import mpf
 from plain_mechanisms import design_of, solve_car
 from reference_cars import OFF_AXIS
 
 from validate.reference import AmbiguousAssemblyError, BadInputError, NoReferenceError
+from validate.reference.dual import angle
 from validate.reference.effects.registry import OF_POSITIONS
 from validate.reference.exact import as_fraction
 from validate.reference.vectors import Vector
@@ -117,3 +119,9 @@ def test_directions_are_unit_vectors_at_right_angles_to_a_millionth_of_a_million
     else:
         with pytest.raises(BadInputError, match=r"up and right is .* to 1e-12"):
             design_of(OFF_AXIS, up=up, right=right)
+
+
+def test_two_components_that_may_both_be_none_have_no_angle() -> None:
+    assert not angle(arb(0), arb(0)).is_finite()
+    assert not angle(arb(0, 1), arb(0, 1)).is_finite()
+    assert angle(arb(0), arb(1)) == 0

@@ -72,17 +72,3 @@ def test_only_the_numbers_that_are_asked_for_are_given_and_angles_where_none_are
     assert set(found(plain, laws)) == set(ANGLES)
     asked = ["toe", "recession", "toe_by_travel", "no such number"]
     assert set(found(plain, laws, asked)) == {"toe", "recession"}
-
-
-def test_the_wheels_of_an_axle_are_each_of_their_own_side() -> None:
-    plain = plain_scene("axle-parallel", wheel_radius=300.0)
-    values = {"left.wheel_travel": 20.0, "right.wheel_travel": 20.0, "rack": 0.0}
-    numbers = found(
-        plain, {name: np.array([[value, 0.0, 0.0]]) for name, value in values.items()}, OF_POSITIONS
-    )
-    right = {name.removeprefix("right."): x for name, x in numbers.items() if name.startswith("right.")}
-    assert set(right) == set(OF_POSITIONS) - {"damper_length"}
-    for name, value in right.items():
-        mirrored = -value if name == "steer_angle" else value  # positive to the left on both
-        assert np.abs(numbers[f"left.{name}"] - mirrored).max() < WITHIN_MM, name
-    assert np.abs(right["travel"] - 20.0).max() < WITHIN_MM
