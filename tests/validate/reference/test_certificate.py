@@ -7,7 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from flint import arb, arb_poly, ctx
+from flint import arb, arb_mat, arb_poly, ctx
 from mechanism_drawings import DRAWINGS, described
 from mpmath import mpf
 from reference_cars import ReferenceCar
@@ -23,7 +23,7 @@ from validate.reference.certificate import certify
 from validate.reference.design import Known, values_only
 from validate.reference.exact import as_fraction, bits
 from validate.reference.fold import Fold, fold_ahead, pose_before
-from validate.reference.krawczyk import newton
+from validate.reference.krawczyk import Contraction, System, newton
 from validate.reference.route import closed
 from validate.reference.way import Way, next_pose, proven_tube, series_of, start_pose
 
@@ -88,6 +88,13 @@ def test_a_wrong_number_in_any_row_is_rejected(name: str) -> None:
             continue  # it multiplies an unknown that is 0 as drawn
         with pytest.raises(NotDecidedError):
             certify(solution, planted, BOX)
+
+
+def test_a_matrix_that_is_no_inverse_proves_nothing() -> None:
+    line = System(lambda x: [x[0]], lambda _: arb_mat([[1]]), lambda _: arb_mat(1, 1))
+    for factor, proven in ((1, True), (1.5, True), (2.5, False), (-1, False)):
+        proof = Contraction.at(line, [arb(0)], arb_mat([[factor]]))
+        assert (proof.settled() is not None) == proven
 
 
 def near_the_last_rack(car: ReferenceCar) -> tuple[Way, Fold]:
