@@ -69,6 +69,15 @@ def test_poses_and_rates_in_doubles_are_those_of_the_proven_instants(car: Refere
             np.testing.assert_allclose(found, vectors, rtol=0.0, atol=1e-10 * largest)
 
 
+def test_a_matrix_without_an_inverse_has_the_one_that_comes_nearest() -> None:
+    good, flat = np.diag([2.0, 4.0]), np.diag([2.0, 0.0])
+    assert inverse_of(np.array([good])).tolist() == [[[0.5, 0.0], [0.0, 0.25]]]
+    assert inverse_of(np.array([good, flat])).tolist() == [
+        [[0.5, 0.0], [0.0, 0.25]],
+        [[0.5, 0.0], [0.0, 0.0]],
+    ]
+
+
 def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions_that_miss_it(
     car: ReferenceCar,
 ) -> None:

@@ -18,7 +18,7 @@ from reference_cars import OFF_AXIS
 from validate.reference import AmbiguousAssemblyError, BadInputError, NoReferenceError
 from validate.reference.dual import angle
 from validate.reference.effects.registry import OF_POSITIONS
-from validate.reference.exact import as_fraction
+from validate.reference.exact import as_fraction, bits
 from validate.reference.vectors import Vector
 
 Table = dict[str, tuple[Any, ...]]
@@ -125,3 +125,8 @@ def test_two_components_that_may_both_be_none_have_no_angle() -> None:
     assert not angle(arb(0), arb(0)).is_finite()
     assert not angle(arb(0, 1), arb(0, 1)).is_finite()
     assert angle(arb(0), arb(1)) == 0
+
+
+@pytest.mark.parametrize("digits", [15, 200])
+def test_bits_hold_the_digits_and_25_more(digits: int) -> None:
+    assert 2 ** bits(digits) >= 10 ** (digits + 25) > 2 ** (bits(digits) - 1)

@@ -10,12 +10,13 @@ from flint import arb, ctx
 from mpmath import mpf
 from reference_cars import ReferenceCar
 
-from validate.reference import NotDecidedError
+from validate.reference import NotDecidedError, SingularPoseError
 from validate.reference.effects.effect import Effect
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction, bits
 from validate.reference.instant import prove_instant, prove_pose
 from validate.reference.route import CLEAR, reached
+from validate.reference.solve import with_enough_digits
 from validate.reference.vectors import minus
 
 
@@ -96,3 +97,21 @@ def test_a_car_that_goes_fast_without_pushing_takes_no_more_digits(car: Referenc
     apart = minus(found.velocity["wheel_centre"], found.velocity["lower_arm_front"])
     assert max(abs(x) for x in apart) <= found.error_bound["velocity"]
     assert max(abs(x) for x in found.acceleration["wheel_centre"]) <= found.error_bound["acceleration"]
+
+
+@pytest.mark.parametrize(
+    ("digits", "ladder"),
+    [(15, [15, 30, 60, 120, 240, 400]), (60, [60, 120, 240, 400]), (200, [200, 400])],
+)
+def test_digits_are_doubled_up_to_400_and_then_the_pose_is_called_singular(
+    digits: int, ladder: list[int]
+) -> None:
+    tried: list[int] = []
+
+    def never(working: int) -> int:
+        tried.append(working)
+        raise NotDecidedError("a claim", "0", "not 0")
+
+    with pytest.raises(SingularPoseError, match="400 digits"):
+        with_enough_digits(never, digits)
+    assert tried == ladder
