@@ -129,7 +129,7 @@ def test_a_table_is_columns_of_text() -> None:
 
 
 def test_a_wide_table_is_shown_in_bands_that_fit_and_have_the_inputs_each() -> None:
-    shown = on_terminal([*PROGRAM, "table", "wheel-travel", "--rows", "3"], columns=90)
+    shown = on_terminal([*PROGRAM, "table", "wheel-travel", "--rows", "3"], columns=90, both=False)
     lines = shown.replace("\r", "").splitlines()
     # What is positive is said in words, which may be folded.
     assert max(len(line) for line in lines if ": positive" not in line) <= 90
