@@ -159,7 +159,7 @@ def middle_inverse(matrix: arb_mat) -> arb_mat:
         NotDecidedError: it is singular to the present precision.
     """
     try:
-        return matrix.mid().solve(unit_matrix(matrix.nrows()), algorithm="approx").mid()
+        return matrix.mid().inv().mid()
     except ZeroDivisionError:
         raise NotDecidedError("the inverse of the Jacobian", "0", "not 0") from None
 
