@@ -5,12 +5,11 @@ freedoms: a driven link alone, then what hangs between such (Assur). A group's d
 where the assemblies of it meet, and so tells more than that of the Jacobian, which is the product of all.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
 Places = NDArray[np.intp]
 
@@ -32,15 +31,43 @@ def groups_of(first: Places, second: Places, sizes: Places) -> list[Group]:
     Args:
         first, second: the two bodies of each row. sizes: freedoms of each body, none of the chassis.
     """
-    of_column = np.repeat(np.arange(len(sizes)), sizes)
-    touched = csr_array((of_column == first[:, None]) | (of_column == second[:, None]))
-    column = maximum_bipartite_matching(touched, perm_type="column")
-    if len(first) != len(of_column) or (column < 0).any():
-        return [Group(np.arange(len(first)), np.arange(len(of_column)))]
-    own, waits = of_column[column], np.zeros((len(sizes), len(sizes)))
-    waits[own, first] = waits[own, second] = 1.0
-    group = connected_components(csr_array(waits), connection="strong")[1]
+    pairs, ends = list(zip(first.tolist(), second.tolist(), strict=True)), np.cumsum(sizes)
+    own = _matched(pairs, sizes.tolist()) if len(pairs) == ends[-1] else None
+    if own is None:
+        return [Group(np.arange(len(pairs)), np.arange(ends[-1]))]
+    waits = np.eye(len(sizes), dtype=np.bool_)
+    for body, rows in enumerate(own):
+        waits[body, [each for row in rows for each in pairs[row]]] = True
+    waits[:, 0] = False
+    for _ in range(len(sizes).bit_length()):  # also for those that these wait for
+        waits = waits @ waits
+    group = (waits & waits.T).argmax(axis=1)
+    together = [np.flatnonzero(group == one) for one in np.unique(group[1:])]
     return [
-        Group(np.flatnonzero(group[own] == one), np.flatnonzero(group[of_column] == one))
-        for one in dict.fromkeys(group[1:])
+        Group(
+            np.sort(np.concatenate([own[body] for body in some])),
+            np.concatenate([np.arange(ends[body] - sizes[body], ends[body]) for body in some]),
+        )
+        for some in together
     ]
+
+
+def _matched(pairs: Sequence[tuple[int, int]], sizes: Sequence[int]) -> list[list[int]] | None:
+    """Rows of each body, so many as its size, each row once, by augmenting paths; None if there are none."""
+    own: list[list[int]] = [[] for _ in sizes]
+
+    def placed(row: int, tried: set[int]) -> bool:
+        """Whether a body of the row has a place for it, or one of its rows can go to another body."""
+        for body in pairs[row]:
+            if body and body not in tried:
+                tried.add(body)
+                if len(own[body]) < sizes[body]:
+                    own[body].append(row)
+                    return True
+                for place, other in enumerate(own[body]):
+                    if placed(other, tried):
+                        own[body][place] = row
+                        return True
+        return False
+
+    return own if all(placed(row, set()) for row in range(len(pairs))) else None
