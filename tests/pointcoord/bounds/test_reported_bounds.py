@@ -136,6 +136,16 @@ def test_neighbours_that_share_an_inverse_are_as_well_proven_as_each_alone_in_an
             assert (bound <= together.expected[quantity][name] + 1e-24).all(), (quantity, name)
 
 
+def test_a_number_near_where_its_divisor_is_0_is_bounded_as_each_instant_alone() -> None:
+    scene = Scene.load("axle-steer")
+    time = scene.time.model_copy(update={"samples": 2000})  # 16 of them share an inverse
+    motion = simulate(scene.model_copy(update={"time": time, "effects": ("ackermann",)}))
+    proven = motion.proof(rates=True).proven
+    for quantity, name in (("dimension", "turning_radius"), ("ackermann", "ackermann")):
+        numbers = motion.numbers[quantity][name]
+        assert np.isfinite(proven[quantity][name][np.isfinite(numbers)]).all(), name
+
+
 BODY = Normal("", "base", "first", "second")
 
 
