@@ -35,8 +35,9 @@ class End:
     """An end of an input's range.
 
     Attributes:
-        value: the last reachable value, rad or mm.
-        limits: the links and joints that hold each other there; empty where the input itself ends.
+        value: the last reachable value, rad or mm; infinite where the input goes all the way round.
+        limits: the links and joints that hold each other there; empty where the input itself ends or has no
+            end.
     """
 
     value: float
@@ -151,11 +152,13 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
 
 
 def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
-    """The end of a turn to one side, a whole one at most."""
+    """The end of a turn to one side; none where a whole one is free."""
     drawn = _drawn(mechanism, closed)
     wanted = {one: np.array(value) for one, value in drawn.items()}
     wanted[name] += side * WHOLE
     _, path = driven_to(mechanism, wanted, closed, 0.0)
+    if path.done == 1.0:
+        return End(side * np.inf, ())
     return End(drawn[name] + side * WHOLE * float(path.done), _limits(mechanism, path))
 
 

@@ -7,6 +7,7 @@ import pytest
 from sample_cars import SampleCar, by_drawn_car
 
 from pointcoord import Scene, simulate, standing
+from pointcoord.drawing_stands import End
 from validate.adjudication.reference_solution import design_of
 from validate.reference import pose_exists
 
@@ -19,6 +20,12 @@ def test_the_paper_s_arm_reaches_as_far_as_its_dead_points_allow() -> None:
     assert high == pytest.approx(152.013, abs=1e-3)
     for end in found.reach["arm_angle"]:
         assert "rise of lower_ball_joint over lower_arm_front" in end.limits
+
+
+@pytest.mark.parametrize("name", ["slider-crank", "spatial-four-bar", "andrews-squeezer"])
+def test_a_crank_that_goes_all_the_way_round_has_no_end(name: str) -> None:
+    low, high = standing(Scene.load(name)).reach["crank"]
+    assert (low, high) == (End(-np.inf, ()), End(np.inf, ()))
 
 
 @by_drawn_car

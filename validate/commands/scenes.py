@@ -176,13 +176,17 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
     units, topology = scene.mechanism.topology.input_units, scene.mechanism.topology
     lines = ["as drawn:"]
     for one, value in stands.inputs.items():
+        here = f"  {one} is {_told(value, units[one])}; the other inputs held, it"
+        ends = stands.reach[one]
+        if all(np.isinf(end.value) for end in ends):
+            lines.append(f"{here} goes all the way round")
+            continue
         low, high = (
             _told(end.value, units[one])
             + (f", where it is held by {', '.join(end.limits[:3])}" if end.limits else "")
-            for end in stands.reach[one]
+            for end in ends
         )
-        lines.append(f"  {one} is {_told(value, units[one])}; the other inputs held, it reaches")
-        lines += [f"    from {low}", f"    to   {high}"]
+        lines += [f"{here} reaches", f"    from {low}", f"    to   {high}"]
     lines += [f"  {angle} is {_degrees(value)} deg" for angle, value in stands.angles.items()]
     if topology.wheel_axis:
         inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)

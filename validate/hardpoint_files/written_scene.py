@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import floor
+from math import floor, isinf
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,7 @@ from validate.toml_written import key_of, value_of
 TRAVEL, FAR_ENOUGH = 30.0, 40.0
 # Else a bounce, by part of the way from the drawing to the nearer end of the input that moves the wheel.
 PART = 0.25
+TURN = 6.2831  # rad: the way of one that goes all the way round
 # A sine of nearly one period. No instant is one at which the input turns, an odd multiple of pi / 12 s: its
 # rate is rounding alone there, and a comparison of rates would test nothing.
 FREQUENCY, STOP, SAMPLES = 6.0, 1.05, 43
@@ -138,6 +139,8 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
             continue
         low, high = (end.value for end in stands.reach[name])
         nearer, words = min(here - low, high - here), f"{unit}; it reaches {low:.4f} to {high:.4f}"
+        if isinf(nearer):
+            nearer, words = TURN, f"{unit}; it goes all the way round"
         if unit == "mm" and nearer >= FAR_ENOUGH:
             laws[name] = {"sweep": [here - TRAVEL, here + TRAVEL]}, words
             continue
