@@ -45,6 +45,8 @@ ROUNDING = EPS / SMALLEST_RCOND
 # What rounding does not tell from none: of a velocity a part of it, and of the knuckle a turn, rad, for a
 # travel of the rack by the wheel's radius.
 LEAST = 1e-9
+# Radii of the wheel: an instant centre that is farther away is at infinity, by definition.
+FARTHEST = 1e9
 
 
 @dataclass(frozen=True)
@@ -181,7 +183,8 @@ def instant_centre(h: int, component: int, sense: float = 1.0) -> Callable[[Moti
         velocity, spin = _contact_velocity(motion), _spin(motion, "travel")
         axes = motion.corner.axes
         turn = np.cross(axes[h], axes[UP]) @ spin
-        turn = np.where(np.abs(turn) <= ROUNDING * _speed(motion, velocity), 0.0, turn)
+        far = np.abs(velocity[UP]) > FARTHEST * motion.corner.radius * np.abs(turn)
+        turn = np.where(far, 0.0, turn)
         return sense * (_ratio(velocity[h], turn) if component == UP else -_ratio(velocity[UP], turn))
 
     return of
