@@ -78,17 +78,14 @@ class CertifiedPoses:
         return cls(groups, pose, factors, certify(system, pose, factors))
 
 
-def grouped(
-    system: QuadraticMap, y: Array, driven: Collection[int], alone: bool = False
-) -> tuple[Groups, Factors]:
+def grouped(system: QuadraticMap, y: Array, driven: Collection[int]) -> tuple[Groups, Factors]:
     """As few groups as can share an inverse, all of one size, with the factors of their middle poses.
 
     Args:
         y: coordinates of consecutive instants, (N, size).
         driven: places of those that are known and move.
-        alone: whether each instant is a group.
     """
-    size = 1 if alone else _power_of_two(min(LARGEST, len(y) / FEWEST))
+    size = _power_of_two(min(LARGEST, len(y) / FEWEST))
     while True:
         groups = Groups(len(y), size)
         together = groups.together(y)

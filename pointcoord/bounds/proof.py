@@ -160,13 +160,6 @@ def prove(
                 poses, exact = _with_rates(mechanism, times[here], part)
                 found = bounds_of_numbers(exact, part.effects, part.together(poses.groups))
                 bounds.put(here, poses.groups, *found)
-                lost = bounds.lost(np.arange(len(times))[here], part.numbers)
-                if lost.size and poses.groups.size > 1:
-                    # Of instants together a divisor may be 0 somewhere between them, and of each alone not.
-                    few = reported.part(lost)
-                    alone, exact_alone = _with_rates(mechanism, times[lost], few, alone=True)
-                    numbers = few.together(alone.groups)
-                    bounds.put(lost, alone.groups, *bounds_of_numbers(exact_alone, few.effects, numbers))
             else:
                 poses, exact = _positions(mechanism, times[here], part, certain)
             columns[:, here] = _of_poses(times[here], poses, exact, part)
@@ -196,12 +189,12 @@ def _positions(
 
 
 def _with_rates(
-    mechanism: Mechanism, times: Array, reported: Reported, alone: bool = False
+    mechanism: Mechanism, times: Array, reported: Reported
 ) -> tuple[CertifiedPoses, EnclosedPoses]:
-    """The same with the rates of the points, as many as were solved for; of each instant alone if asked."""
+    """The same with the rates of the points, as many as were solved for."""
     highest = max((effect.derivative for effect in reported.effects), default=0)
     y, *rates = reported.solved.coordinates(times, max(highest, 2))
-    groups, factors = grouped(mechanism.map, y, _drives(mechanism), alone)
+    groups, factors = grouped(mechanism.map, y, _drives(mechanism))
     together, functions = groups.together, {**reported.laws, **reported.chassis.functions}
     laws = {
         name: [part.together(together) for part in law.enclosed(times, max(len(rates), 2))]
@@ -435,12 +428,3 @@ class _Bounds:
                         # By components, so that instants lie side by side where they are read and written.
                         found[name] = np.empty((*array.shape[2:], self.count)).T
                     found[name][here] = groups.apart(array)
-
-    def lost(self, here: Indices, numbers: Numbers) -> Indices:
-        """The instants of these at which a number, (len(here), ...), has no bound."""
-        unbounded = np.zeros(len(here), dtype=bool)
-        for quantity, arrays in self.proven.items():
-            for name, bound in arrays.items():
-                without = np.isfinite(numbers[quantity][name]) & ~np.isfinite(bound[here])
-                unbounded |= without.reshape(len(here), -1).any(axis=1)
-        return here[unbounded]

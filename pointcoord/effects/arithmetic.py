@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics import enclosure, vectors
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]
 P = TypeVar("P", Array, Enclosed)
@@ -117,9 +116,7 @@ def chosen(where: NDArray[np.bool_], one: P, other: P) -> P:
     """One number where something holds, and another elsewhere."""
     if not isinstance(one, Enclosed):
         return np.asarray(np.where(where, one, other))
-    # Each has radii of its own then, and both middles are rounded.
-    apart = [Enclosed.of(x.middle, 0.0, *(x.radius + 2.0 * UNIT_ROUNDOFF * x.size)) for x in (one, other)]
-    parts = zip(*(part.parts for part in apart), strict=True)
+    parts = zip(*(part.parts for part in (one.alone, other.alone)), strict=True)
     return Enclosed(*(np.where(where, *both) for both in parts))
 
 

@@ -209,6 +209,12 @@ class Enclosed:
         """high + low + change, rounded twice."""
         return np.asarray((self.high + self.low) + self.change)
 
+    @property
+    def alone(self) -> Enclosed:
+        """Each number by itself, without an anchor, with radii of its own."""
+        # Of the anchor's radii, and what rounds the middle.
+        return Enclosed.of(self.middle, 0.0, *(self.radius + 2.0 * UNIT_ROUNDOFF * self.size))
+
     def apart(self, reported: Array) -> Array:
         """Largest distance of the exact number from a reported one that is close, shape of the change."""
         distance = reported - self.high
@@ -352,9 +358,13 @@ def _inverse(number: int) -> Enclosed:
 def quotient(numerator: Enclosed, divisor: Enclosed) -> Enclosed:
     """Of two numbers, in plain doubles; an infinite radius where the divisor may be 0.
 
+    Where divisors that share an anchor lie on both sides of 0, each quotient is looked at by itself.
+
     With n, r the numerator and its radius and d, s the divisor's, the exact quotient differs from n/d by at
     most (r + |n/d| s) / (|d| - s). Each middle is rounded by 2 u of itself, and the quotient by u.
     """
+    if ((divisor.reach > 0.0) & (np.abs(divisor.high) <= divisor.reach + divisor.radius[0])).any():
+        numerator, divisor = numerator.alone, divisor.alone
     n, d = numerator.middle, divisor.middle
     r, s = aligned(numerator.radius, divisor.radius)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):

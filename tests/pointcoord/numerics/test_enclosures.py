@@ -181,6 +181,20 @@ def test_quotients_roots_and_angles_of_groups_lie_within_their_radii(seed: int) 
         assert (found.radius[0].max(axis=-1) <= 50.0 * distance.max(axis=-1) + 1e-14).all()
 
 
+def test_a_quotient_is_bounded_beside_the_place_where_the_divisor_of_a_group_goes_through_zero() -> None:
+    divisors = np.array([[-0.03, -0.01, 0.0, 0.01, 0.03]])
+    found = quotient(Enclosed.of(1.0), anchored(divisors, (1, 1)))
+    radius = np.broadcast_to(found.radius[0], divisors.shape)[0]
+    assert np.isinf(radius).tolist() == [False, False, True, False, False]
+    for place in (0, 1, 3, 4):
+        true = 1 / Fraction(divisors[0, place])
+        assert (
+            abs(Fraction(found.middle[0, place]) - true)
+            <= Fraction(radius[place])
+            <= 40 * Fraction(U) * abs(true)
+        )
+
+
 def test_a_root_of_what_may_be_zero_is_at_most_the_root_of_what_it_may_be() -> None:
     found = root(Enclosed.of(np.array([0.0, -1e-9, 1e-12]), 0.0, np.array([4.0, 2e-9, 0.0])))
     assert found.radius[0] == pytest.approx([2.0, np.sqrt(3e-9), 0.0], abs=1e-12)
