@@ -343,7 +343,7 @@ class Side:
         """A quantity of all that a formulation gives."""
         numbers, claims = side.numbers[quantity], side.claims[quantity]
         largest = largest_numbers(numbers.values(), len(side.condition))
-        widest = level(claims.values(), largest, side.condition)
+        widest = level(claims.values(), largest, side.condition, side.usual.get(quantity))
         return cls(side.formulation, numbers, claims, side.blind, largest, widest)
 
     def claimed(self, name: str) -> Array:

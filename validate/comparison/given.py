@@ -7,7 +7,7 @@ number is told and left out; the rest is compared.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,7 @@ class Given:
         claims: how far each may be off, likewise; a name is missing where nothing is claimed of it.
         condition: condition number at each instant.
         blind: see `Accuracy.blind`.
+        usual: see `Accuracy.usual`.
         notes: what the user should know of it. faults: what cannot be used and is left out, and why.
     """
 
@@ -40,6 +41,7 @@ class Given:
     notes: tuple[str, ...]
     blind: NDArray[np.bool_] | None = None
     faults: tuple[str, ...] = ()
+    usual: Mapping[str, Array] = field(default_factory=dict)
 
     def at(self, instants: NDArray[np.bool_]) -> Given:
         """The same at fewer instants, a part of those that are found."""
@@ -54,8 +56,15 @@ class Given:
             for arrays in (self.numbers, self.claims)
         )
         blind = None if self.blind is None else self.blind[rows]
-        return Given(
-            self.formulation, instants, numbers, claims, self.condition[rows], self.notes, blind, self.faults
+        usual = {quantity: most[rows] for quantity, most in self.usual.items()}
+        return replace(
+            self,
+            found=instants,
+            numbers=numbers,
+            claims=claims,
+            condition=self.condition[rows],
+            blind=blind,
+            usual=usual,
         )
 
 
@@ -109,7 +118,8 @@ def given(solution: Solution, instants: Array) -> Given:
         notes.append(f"{who}: its condition number {condition}; 1 is taken")
         condition = np.ones_like(times)
     blind = None if solution.accuracy.blind is None else solution.accuracy.blind[places]
-    return Given(who, found, numbers, claims, condition[places], tuple(notes), blind, tuple(faults))
+    usual = {quantity: most[places] for quantity, most in solution.accuracy.usual.items()}
+    return Given(who, found, numbers, claims, condition[places], tuple(notes), blind, tuple(faults), usual)
 
 
 def usable(solution: Solution, instants: Array) -> Solution:
@@ -123,7 +133,9 @@ def usable(solution: Solution, instants: Array) -> Solution:
         {quantity: part for quantity, part in arrays.items() if part}
         for arrays in (side.numbers, side.claims)
     )
-    return Solution(side.formulation, instants[side.found], numbers, Accuracy(side.condition, claims))
+    return Solution(
+        side.formulation, instants[side.found], numbers, Accuracy(side.condition, claims, usual=side.usual)
+    )
 
 
 def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:

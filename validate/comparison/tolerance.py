@@ -16,7 +16,8 @@ times what the other formulation would claim, a fault of the other one that is s
 own claim would pass: such a row is "not tested" and no agreement. What a formulation would claim is the
 largest of its claims for the quantity at that instant, so that a component that happens to be exact does not
 count against its partner, and not less than what rounding may do to any method: eps times its condition
-number times the largest number of that quantity.
+number times the largest number of that quantity. Nor is it less than what its own method usually loses of it
+(`Accuracy.usual`): a proof may by chance find next to nothing, as of a pitch that is 0 everywhere.
 """
 
 from __future__ import annotations
@@ -46,14 +47,17 @@ def largest_numbers(numbers: Iterable[Array], count: int) -> Array:
     return found
 
 
-def level(claims: Iterable[Array], numbers: Array, condition: Array) -> Array:
+def level(claims: Iterable[Array], numbers: Array, condition: Array, usual: Array | None = None) -> Array:
     """What a formulation would give for any number of a quantity at each instant, (N,).
 
     Args:
         claims: of all points, bodies or angles of the quantity, each (N, ...).
         numbers: the largest of them, (N,). condition: of the matrix that gives the rates, (N,).
+        usual: see `Accuracy.usual`, (N,).
     """
     found = EPS * condition * numbers
+    if usual is not None:
+        np.maximum(found, usual, out=found)
     for claim in claims:
         np.maximum(found, _largest(claim), out=found)
     return np.asarray(found)

@@ -96,6 +96,7 @@ class PointCoordinates:
                     quantity: self._claims(motion, proof, quantity, uncertain) for quantity in motion.numbers
                 },
                 proven=True,
+                usual={quantity: self._usual(motion, proof, quantity) for quantity in motion.numbers},
             ),
             notes=motion.notes,
         )
@@ -122,6 +123,14 @@ class PointCoordinates:
             capped = np.where(uncertain.reshape(-1, *[1] * (number.ndim - 1)), proven, expected[name])
             claims[name] = np.where(number, np.minimum(proven, capped), 0.0)
         return claims
+
+    def _usual(self, motion: Motion, proof: Proof, quantity: str) -> Array:
+        """The largest expected error of any number of a quantity at each instant, (N,)."""
+        most = np.zeros(len(motion.times))
+        for name, expected in proof.expected[quantity].items():
+            known = np.isfinite(motion.numbers[quantity][name]) & np.isfinite(expected)
+            np.maximum(most, np.where(known, expected, 0.0).reshape(len(most), -1).max(axis=-1), out=most)
+        return most
 
 
 def _uncertain_laws(scene: Scene, times: Array) -> NDArray[np.bool_]:

@@ -52,6 +52,8 @@ class Accuracy:
             say nothing, (N,); such claims may be as wide as they are, and elsewhere they test. None: how
             much they test is judged by their width (see `comparison.tolerance`).
         stated: how exactly it says beforehand that it places points, mm, if it does.
+        usual: by quantity, the most that its method loses of any number where nothing is wrong, (N,), if that
+            is known beside the claims: what is proven of a number may by chance be far less.
     Raises:
         AccuracyError: a claim is not a finite number from 0 up, has not the shape of its numbers, or is
             about no quantity that there is.
@@ -62,6 +64,7 @@ class Accuracy:
     proven: bool = False
     blind: NDArray[np.bool_] | None = None
     stated: float | None = None
+    usual: Mapping[str, Array] = field(default_factory=dict)
 
     def with_claims(self, claims: Numbers) -> Accuracy:
         """The same with other claims of some quantities."""
@@ -72,6 +75,8 @@ class Accuracy:
             raise AccuracyError("condition", f"has the shape {np.shape(self.condition)}", "one per instant")
         count = len(self.condition)
         _check_claim("condition", self.condition, (count,))
+        for quantity, most in _by_name("usual", self.usual).items():
+            _check_claim(f"{quantity} as usual", most, (count,))
         for quantity, claims in _by_name("claims", self.claims).items():
             if quantity not in QUANTITIES:
                 raise AccuracyError(f"{quantity!r}", "is of no known quantity", ", ".join(QUANTITIES))

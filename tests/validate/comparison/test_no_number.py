@@ -1,5 +1,6 @@
 """A number that does not exist: both models say so, and neither alone may."""
 
+from copy import deepcopy
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,41 @@ def test_parallel_arms_have_their_centres_at_infinity_and_both_models_say_so() -
     outcome = compare(scene, "pointcoord", "absolute")
     assert outcome.agreed
     assert {*CENTRES} <= {row.name for row in outcome.rows}
+
+
+def test_a_centre_that_goes_through_infinity_is_there_for_both_models_or_for_neither() -> None:
+    content = deepcopy(LEVEL)
+    for name in ("upper_arm_front", "upper_arm_rear"):
+        content["mechanism"]["points"][name][1] = 300.0
+    content["inputs"]["wheel_travel"]["sweep"] = [-49.0, 50.0]
+    content["time"]["samples"] = 101
+    scene = Scene.from_mapping(content, "level arms, the upper ones shorter")
+    centres = simulate(scene).numbers["dimension"]
+    # Farther than 1e9 wheel radii is at infinity; this one is seven tenths of that away.
+    assert np.nanmax(np.abs(centres["side_view_swing_arm"])) > 1e11
+    assert np.isnan(centres["side_view_swing_arm"]).any()
+    assert np.isfinite(centres["front_view_swing_arm"]).all()
+    assert compare(scene, "pointcoord", "absolute").agreed
+
+
+def test_ackermann_is_bounded_up_to_the_poses_where_a_wheel_goes_through_straight_ahead() -> None:
+    """With toe out there is always a wheel that is steered to a side."""
+    content = Scene.load("axle-steer").model_dump(exclude_none=True)
+    for name, (x, y, z) in content["mechanism"]["points"].items():
+        if name.endswith("wheel_axis_inner"):
+            content["mechanism"]["points"][name] = [x - 2.0, y, z]
+    content["inputs"]["rack"] = {"sweep": [-29.0, 29.0]}
+    content["effects"] = ["ackermann"]
+    content["time"]["samples"] = 101
+    outcome = compare(Scene.from_mapping(content, "toe out"), "pointcoord", "absolute")
+    assert {"turning_radius", "ackermann", "ackermann_error"} <= {row.name for row in outcome.rows}
+    assert outcome.agreed
+
+
+def test_a_screw_pitch_that_is_0_everywhere_is_tested() -> None:
+    scene = Scene.from_mapping(LEVEL | {"effects": ["screw_axis"]}, "parallel arms")
+    outcome = compare(scene, "pointcoord", "absolute")
+    assert [row.verdict for row in outcome.rows if row.name == "screw_pitch"] == ["agrees"]
 
 
 def test_none_beside_a_number_is_the_worst_difference_and_none_beside_none_is_no_difference() -> None:

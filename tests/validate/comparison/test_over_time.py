@@ -29,7 +29,9 @@ def at(solution: Solution, kept: np.ndarray) -> Solution:
         {quantity: {name: array[kept] for name, array in part.items()} for quantity, part in arrays.items()}
         for arrays in (solution.numbers, solution.accuracy.claims)
     )
-    accuracy = replace(solution.accuracy, claims=claims, condition=solution.accuracy.condition[kept])
+    usual = {quantity: most[kept] for quantity, most in solution.accuracy.usual.items()}
+    condition = solution.accuracy.condition[kept]
+    accuracy = replace(solution.accuracy, claims=claims, condition=condition, usual=usual)
     return replace(solution, times=solution.times[kept], numbers=numbers, accuracy=accuracy)
 
 
