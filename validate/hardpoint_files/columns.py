@@ -2,15 +2,16 @@
 
 Titles are not needed. Where there are, they say which columns are x, y and z, of which wheel, in which unit
 and where they point, as in `Point, Left X (m), Left Y (m), Left Z (m)`; a column may say the wheel of each
-line, and a line of words such as `REAR SUSPENSION` that of the lines below it. Titles that say it otherwise
-are not guessed at: a table [table] in the file of names says which columns are meant.
+line, and a line of words such as `REAR SUSPENSION` that of the lines below it. Other lines of words, such as
+`LOWER A-ARM`, are headings of the points below them: `Front inboard`. Titles that say it otherwise are not
+guessed at: a table [table] in the file of names says which columns are meant.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 
 from validate.hardpoint_files.axes import DIRECTIONS
@@ -101,7 +102,7 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
         raise FileError(source, lines.mixed, told, "one sign before the decimals, none between thousands")
     rows = [(line, row if lines.mark else _named(row)) for line, row in lines.rows]
     titles = _said([row for _, row in rows], said, source) if said else UNTITLED
-    tables, heading, words = [titles], NO_WHEEL, (0, "")
+    tables, heading, words, section = [titles], NO_WHEEL, (0, ""), ""
     points: list[FilePoint] = []
     notes: dict[str, None] = {}
     for line, row in rows:
@@ -112,7 +113,9 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
             tables.append(titles := found)
         elif (wheel := _heading(row)) is not None:
             # The left wheel under a heading of the front axle is the front left one.
-            heading = wheel[0], wheel[1] or heading[1]
+            heading, section = (wheel[0], wheel[1] or heading[1]), ""
+        elif not numbers and sum(map(bool, row)) == 1:
+            section = next(filter(None, row))
         elif titles is UNTITLED and not numbers:
             words = (line, ", ".join(row[1:])) if sum(map(bool, row)) > 3 else words
         else:
@@ -120,7 +123,7 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
                 told = f"has titles that are not known: {short(words[1])}"
                 allowed = f"X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X; {SAY}"
                 raise FileError(source, words[0], told, allowed)
-            new = _points_of(row, titles, heading, source, line)
+            new = [replace(one, heading=section) for one in _points_of(row, titles, heading, source, line)]
             points += new
             if any(one.error is None for one in new):
                 notes |= {f"the column {short(one)} is not read": None for one in titles.unread(row)}

@@ -28,6 +28,7 @@ class FilePoint:
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
         error: why it is no point; None of one.
+        heading: of the lines among which it stands, such as LOWER A-ARM; empty if there is none.
     """
 
     name: str
@@ -36,6 +37,7 @@ class FilePoint:
     side: str = ""
     part: str = ""
     error: FileError | None = None
+    heading: str = ""
 
     def of(self, part: str, side: str) -> bool:
         """Whether it may belong to that wheel; an empty axle or side leaves it open."""

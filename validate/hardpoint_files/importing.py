@@ -308,9 +308,10 @@ class _Import:
         return {part: axle.called for part, axle in self.contents.axles.items() if axle.called}
 
     def closest(self) -> list[str]:
-        """The suspensions of which the file lacks the fewest points."""
-        lacking = {k: len(self.missing(k, dict(self.named(k)[0]))) for k in self.format.suspensions}
-        return [kind for kind, count in lacking.items() if count == min(lacking.values())]
+        """The suspensions that lack the fewest points in the file; of these, those with the most."""
+        known = {kind: dict(self.named(kind)[0]) for kind in self.format.suspensions}
+        fits = {kind: (-len(self.missing(kind, there)), len(there)) for kind, there in known.items()}
+        return [kind for kind, fit in fits.items() if fit == max(fits.values())]
 
     def missing(self, kind: str, known: Iterable[str]) -> list[str]:
         """Points that a car of ours must have; its spin axis is not left to what may stand in for it."""
@@ -331,12 +332,14 @@ class _Import:
         worded = {in_words(their): our for their, our in ours.items()} if self.format.vocabulary else {}
 
         def found(point: FilePoint) -> tuple[str, FilePoint]:
-            for base, (side, part) in self.readings(point.name):
+            # Under a heading a name may be half of one: LOWER A-ARM over Front inboard.
+            names = [point.name, *([f"{point.heading} {point.name}"] if point.heading else [])]
+            for name, (base, (side, part)) in ((n, reading) for n in names for reading in self.readings(n)):
                 if our := ours.get(plain(base)) or worded.get(in_words(base), ""):
                     if side and point.side and side != point.side:
-                        told = f"has {short(point.name)} for the {point.side} wheel"
+                        told = f"has {short(name)} for the {point.side} wheel"
                         raise self.refuse(told, "one side", point.line)
-                    return our, replace(point, side=side or point.side, part=part or point.part)
+                    return our, replace(point, name=name, side=side or point.side, part=part or point.part)
             return "", point
 
         return found

@@ -84,6 +84,27 @@ def test_a_sheet_of_optimumk_gives_the_wheel_whose_columns_are_named(tmp_path: P
     assert (drawn(found), found.scene.mechanism.side, found.doubts) == (CAR, "right", ())
 
 
+ROCKER = {
+    "pushrod_outer": "NSMA_PPAttPnt_L",
+    "pushrod_inner": "ROCK_RodPnt_L",
+    "rocker_front": "CHAS_RocAxi_L",
+    "rocker_rear": "CHAS_RocPiv_L",
+    "damper_rocker": "ROCK_CoiPnt_L",
+    "damper_top": "CHAS_AttPnt_L",
+}
+
+
+def test_a_rocker_of_optimumk_makes_a_car_with_a_pushrod_and_the_same_damper(tmp_path: Path) -> None:
+    car = {n: p for n, p in Scene.load("pushrod").mechanism.points.items() if n != "rack_centre"}
+    lines = (f"{(OPTIMUMK | ROCKER)[n]},{-x!r},{y!r},{z!r}" for n, (x, y, z) in car.items())
+    found = imported(tmp_path, "\n".join(["Name,X,Y,Z", *lines]))
+    assert found.scene.mechanism.type == "double_wishbone_pushrod"
+    assert found.scene.mechanism.side == "left"
+    assert drawn(found) == {name: (x, -y, z) for name, (x, y, z) in car.items()}
+    assert not found.others
+    assert any("pushrod_outer is taken for a point of the lower arm" in fact for fact in found.facts)
+
+
 # Which wheel.
 
 
@@ -146,6 +167,36 @@ def test_a_lonely_r_is_right_beside_an_l_and_asked_about_beside_an_f(name: str, 
     lines = (f'{ours} = "{name.format("R", word)}"' for ours, word in WORDS.items())
     names.write_text("\n".join(["[names]", *lines]))
     assert drawn(imported(tmp_path, lettered(F=CAR, R=rear), axes=OURS, names=str(names))) == rear
+
+
+SECTIONS = {
+    "LOWER A-ARM": {
+        "Front inboard": "lower_arm_front",
+        "Rear inboard": "lower_arm_rear",
+        "Outboard": "lower_ball_joint",
+    },
+    "UPPER A-ARM": {
+        "Front inboard": "upper_arm_front",
+        "Rear inboard": "upper_arm_rear",
+        "Outboard": "upper_ball_joint",
+    },
+    "TIE ROD": {"Inboard": "tie_rod_inner", "Outboard": "tie_rod_outer"},
+    "WHEEL": {"Center": "wheel_centre", "Spindle point": "wheel_axis_inner", "Mass": ""},
+}
+
+
+@pytest.mark.parametrize("commas", ["", ",,,"])
+def test_a_name_is_put_together_of_the_heading_of_its_section_and_its_own(
+    commas: str, tmp_path: Path
+) -> None:
+    lines = ["Point,X,Y,Z"]
+    for heading, its in SECTIONS.items():
+        lines.append(heading + commas)
+        lines += [f"{name},{cells(CAR.get(ours, (1.0, 2.0, 3.0)))}" for name, ours in its.items()]
+    found = imported(tmp_path, "\n".join(lines), axes=OURS)
+    assert drawn(found) == CAR
+    assert [point.name for point in found.others] == ["Mass"]
+    assert "LOWER A-ARM Front inboard, line 3" in found.text
 
 
 BOTH = [f"{WORDS[name]},{cells(WHEELS['front', 'left'][name])},{cells(CAR[name])}" for name in CAR]
