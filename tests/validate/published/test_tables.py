@@ -76,6 +76,8 @@ def test_both_models_give_every_column_whose_rule_is_known_to_its_last_digit(
         ("lotus-bump-lengths", "roll centre height to body", 0.0623),
         ("lotus-bump-lengths", "roll centre height to ground", 0.0623),
         ("lotus-bump-lengths", "anti-dive", 0.00707),
+        ("lotus-roll-centre", "roll centre y", 0.917),
+        ("lotus-roll-centre", "roll centre z", 0.0272),
         ("lotus-steering", "ackermann", 0.0391),
         ("lotus-static", "roll centre height", 0.0272),
     ],
@@ -89,11 +91,11 @@ def test_a_column_whose_rule_is_not_known_decides_nothing_and_its_distance_is_to
     assert any(column in note and one.open in note for note in found[name].outcomes[0].notes)
     assert {column for name, table in TABLES.items() for column in table.open} == {
         *("damper ratio", "roll centre height to body", "roll centre height to ground"),
-        *("ackermann", "roll centre height", "anti-dive"),
+        *("ackermann", "roll centre height", "anti-dive", "roll centre y", "roll centre z"),
     }
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", dict(HELD))
 def test_one_wrong_digit_makes_its_column_disagree_and_no_other(name: str, copy: Path) -> None:
     file, held = copy / f"{name}.csv", [column for table, column in HELD if table == name]
     columns = read_columns(str(file))
@@ -139,6 +141,15 @@ def test_a_wrong_digit_ends_the_program_with_status_1_and_is_named_in_words_json
         case.get("name") for case in ElementTree.parse(junit).iter("testcase") if len(case.findall("failure"))
     ]
     assert failures == ["damper_travel"] * 2
+
+
+def test_the_note_on_the_roll_says_to_which_side_lotus_rolls() -> None:
+    """Where a body rolls onto a wheel that stays on the ground, its damper becomes shorter."""
+    printed = read_columns(str(FOLDER / "lotus-roll-lengths.csv"))
+    roll, damper = (printed.values[printed.names.index(name)] for name in ("roll", "damper travel"))
+    assert (np.sign(damper) == np.sign(roll)).all()
+    for name in ("lotus-roll", "lotus-roll-centre"):
+        assert "roll is positive where the right side goes up" in TABLES[name].note
 
 
 def test_a_row_at_another_place_than_its_first_column_says_is_refused_in_a_line(
