@@ -54,6 +54,8 @@ class InputPart(Part):
     A sweep is written as a polynomial before it is one.
     """
 
+    short_forms = (SWEEP,)
+
     constant: Number | None = None
     polynomial: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=1)] | None = None
     sine: SinePart | None = None

@@ -72,7 +72,8 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         require_writable(target)
     for target, content in files.items():
         console.put(target, content, "the scene or its mechanism")
-    console.say(f"{' and '.join(map(shown, files))} written; try: pointcoord plan {shown(name)}.toml")
+    console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(options.scene)}")
+    console.say(f"for another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
 
 

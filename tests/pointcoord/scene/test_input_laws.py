@@ -86,7 +86,10 @@ def test_units_and_tables_in_files_hold_for_terms_too(tmp_path: Path) -> None:
             {"sum": [{"sweep": [0.0, "up"]}]},
             "arm_angle.sum.0.sweep: is [0.0, 'up']; allowed: two",
         ),
-        ({"sum": [{"swep": [0.0, 1.0]}]}, "inputs.arm_angle.sum.0.swep: there is no such key"),
+        (
+            {"sum": [{"swep": [0.0, 1.0]}]},
+            "inputs.arm_angle.sum.0.swep: there is no such key (did you mean 'sweep'?)",
+        ),
     ],
 )
 def test_what_is_no_law_is_refused_with_its_place(law: Any, words: str) -> None:
