@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints, in_shell, run, short_scene
 
+from validate.cli import main
+
 LONG = "400000"  # samples that take far longer than any test waits
 
 
@@ -276,3 +278,13 @@ def test_every_module_says_which_extra_it_lacks() -> None:
     lines = done.stdout.splitlines()
     assert len(lines) > 20  # the reference, the hard cases and the studies need them
     assert [line for line in lines if line.split()[1] != "True"] == []
+
+
+def test_new_says_which_car_it_copied_and_how_to_have_another(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A name is no kind of suspension: `new five_link` alone is no five-link."""
+    assert main(["new", str(tmp_path / "five_link")]) == 0
+    said = capsys.readouterr().out
+    assert "copied from double-wishbone" in said
+    assert "--from SCENE" in said
