@@ -9,8 +9,8 @@ for itself while they load.
 """
 
 from importlib import import_module
-from typing import TYPE_CHECKING
 
+TYPE_CHECKING = False  # as in `typing`, which takes longer to import than all else before signals are handled
 if TYPE_CHECKING:
     from pointcoord.drawing_stands import Standing, standing
     from pointcoord.errors import (

@@ -11,8 +11,11 @@ import importlib
 import os
 import signal
 import sys
-from types import FrameType
-from typing import NoReturn
+
+TYPE_CHECKING = False  # as in `pointcoord`
+if TYPE_CHECKING:
+    from types import FrameType
+    from typing import NoReturn
 
 NAME = "pointcoord"
 WRONG_INPUT, NOT_FINISHED = 2, 4

@@ -183,6 +183,16 @@ def test_ctrl_c_and_sigterm_while_the_program_starts_are_one_line(
     assert only_line(done.stderr) == f"pointcoord: {word}; nothing is written"
 
 
+def test_signals_are_handled_before_typing_or_any_library_is_imported() -> None:
+    program = (
+        f"import sys; sys.path.insert(0, {str(ROOT)!r}); import pointcoord.__main__; print(*sys.modules)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", program], capture_output=True, text=True, check=True
+    )
+    assert not {"typing", "numpy"} & set(done.stdout.split())
+
+
 def with_fake(folder: Path, *words: str, program: str = "pointcoord") -> subprocess.CompletedProcess[str]:
     """Run the program with a folder first on the path."""
     env = ENVIRONMENT | {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}
