@@ -8,6 +8,7 @@ from validate.commands.comparing import Page
 from validate.commands.usage import JSON, QUIET, REPORT, Command, given, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
+from validate.formulations.registry import missing
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.report import counted_as
@@ -52,6 +53,10 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     page = Page.of(options)
     if page is not None:
         page.require()
+    lacking = missing(name for case in cases for name in case.expected)
+    for name, why in lacking.items():
+        console.warn(f"{name} is left out: {why}")
+    cases = tuple(one for one in (case.without(lacking) for case in cases) if one.expected)
     results: list[hard_run.Examined] = []
     journal = Journal(
         options.json,

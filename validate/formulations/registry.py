@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
@@ -84,6 +84,17 @@ def second_there() -> tuple[str, str]:
         else:
             return name, why
     return "absolute", why
+
+
+def missing(names: Iterable[str]) -> dict[str, str]:
+    """Those of some formulations that need a package which is not there, and what to say of each."""
+    lacking: dict[str, str] = {}
+    for name in dict.fromkeys(names):
+        try:
+            formulation(name)
+        except MissingPackage as error:
+            lacking[name] = str(error)
+    return lacking
 
 
 def _absolute() -> Formulation:

@@ -7,8 +7,8 @@ in each.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -105,6 +105,11 @@ class Case:
         """Try one value."""
         trial = try_scene(value, self.content(value), tuple(self.expected), self.proven)
         return trial if self.judged is None else self.judged(self.subject, value, trial)
+
+    def without(self, formulations: Collection[str]) -> Case:
+        """The same, tried by none of some formulations, such as those that are not installed."""
+        left = {name: one for name, one in self.expected.items() if name not in formulations}
+        return replace(self, expected=left)
 
     @property
     def mapped(self) -> tuple[float, ...]:

@@ -256,6 +256,15 @@ def test_without_pinocchio_another_program_is_the_second_model_and_that_is_said(
     assert "the absolute model needs Pinocchio" in asked.stderr
 
 
+def test_without_pinocchio_hard_cases_are_tried_by_what_is_there(tmp_path: Path) -> None:
+    (tmp_path / "pinocchio.py").write_text("raise ModuleNotFoundError(name='pinocchio')\n")
+    done = with_fake(tmp_path, "hard", "arm-highest-held")
+    assert done.returncode == 0, done.stderr
+    assert "absolute is left out: the absolute model needs Pinocchio" in done.stderr
+    assert "relative is left out: " in done.stderr
+    assert "All as expected" in done.stdout
+
+
 def test_where_pinocchio_lacks_a_library_of_the_system_that_is_asked_for(tmp_path: Path) -> None:
     lacking = "libgomp.so.1: cannot open shared object file"
     (tmp_path / "pinocchio.py").write_text(f"raise ImportError({lacking!r})\n")
