@@ -196,6 +196,18 @@ def test_a_column_in_even_steps_is_set_and_not_rounded() -> None:
     assert disagreeing(steered(EVEN, wrong=0.02), {}, WISHBONE) == ["wheel.toe"]
 
 
+def test_zeros_that_are_left_off_make_no_even_column_rounded() -> None:
+    """Twelve digits of thirds, of which -30 is written without decimals."""
+    racks = [-30.0 + 10.0 / 3.0 * k for k in range(19)]
+    for wrong, verdict in ((0.0, "agrees"), (0.02, "disagrees")):
+        head, *rows = steered(racks, wrong=wrong).splitlines()
+        numbers = zip(racks, (line.partition(",")[2] for line in rows), strict=True)
+        text = "\n".join([head, *(f"{rack:.12g},{toe}" for rack, toe in numbers)])
+        (row,) = compared(text, {}, WISHBONE).outcome.rows
+        assert row.verdict == verdict
+        assert np.degrees(row.tolerance) == pytest.approx(0.005, rel=1e-3)
+
+
 def test_what_agrees_only_by_a_rounding_that_nobody_stated_is_not_tested_and_the_line_is_told() -> None:
     text = steered(UNEVEN)
     (row,) = compared(text, {}, WISHBONE).outcome.rows
