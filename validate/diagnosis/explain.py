@@ -24,7 +24,7 @@ import numpy as np
 from pointcoord import PointcoordError, Scene
 from pointcoord.effects.registry import QUANTITIES
 from validate.comparison.compare import Explanation, Outcome
-from validate.diagnosis.evidence import Evidence, Row, kind_of, order, together
+from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds import KINDS, UNIT
 from validate.formulations.protocol import Solution
@@ -94,14 +94,29 @@ def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
 def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, str, Evidence]]:
     """Without a fault that all numbers may have, and that hides which car it is: its kind and its words.
 
-    Axes, signs and units are supposed where some numbers show them, rows in their neighbours' places always.
+    Axes and signs are supposed where some numbers show them, rows in their neighbours' places always, another
+    unit or definition of all angles where it does not make more of their difference.
     """
-    for fault in (one.hypothesis for one in found):
+    hidden = (
+        one for kind in KINDS if kind.hides for one in _merged(kind, evidence) if _may_hide(evidence, one)
+    )
+    for fault in (*(one.hypothesis for one in found), *hidden):
         if fault.undo is not None:
             yield fault.kind, fault.words, evidence.undone(fault.rows, fault.undo)
     if evidence.moving_all_wrong:
         for words, undone in evidence.without_a_late_sample():
             yield "sample", words, undone
+
+
+def _may_hide(evidence: Evidence, fault: Hypothesis) -> bool:
+    """Whether all angles that are wrong, two at least, may have a fault."""
+    angles = [row for row in evidence.wrong if kind_of(row) == "car" and length_or_angle(row) == "rad"]
+    return len(angles) > 1 and all(
+        row in fault.rows
+        and evidence.left(row, *fault.rows[row])
+        <= evidence.left(row, evidence.held[row], evidence.allowed[row])
+        for row in angles
+    )
 
 
 def _explained(evidence: Evidence) -> list[_Found]:
@@ -328,10 +343,14 @@ def _ranked(found: Iterable[_Found]) -> list[_Found]:
 
 
 def _best(ranked: Sequence[_Found]) -> Iterator[_Found]:
-    """Those that explain what none before them does; or the same rows as simply and as well."""
+    """Those that explain what none before them does; or the same rows as simply and as well.
+
+    Of rows that are all explained whole, by several faults if need be, none is explained in part.
+    """
     kept: list[_Found] = []
     for one in ranked:
-        better = any(
+        whole = {row for other in kept if other.whole for row in other.rows}
+        better = (not one.whole and whole >= set(one.rows)) or any(
             set(one.rows) <= set(other.rows)
             and (
                 other.hypothesis.words == one.hypothesis.words

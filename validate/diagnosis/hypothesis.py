@@ -109,8 +109,9 @@ def amounts_of(
 
 
 def gives(evidence: Evidence, one: Hypothesis, rows: Sequence[Row]) -> bool:
-    """Whether a fault explains rows whole."""
-    return all(evidence.left(row, *one.rows[row]) <= 1.0 for row in rows)
+    """Whether a fault explains rows whole, and one of the whole car leaves right what agrees."""
+    agree = [row for row in one.rows if row not in evidence.wrong] if one.whole else []
+    return all(evidence.left(row, *one.rows[row]) <= 1.0 for row in (*rows, *agree))
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,7 @@ class Kind:
         of_time: whether it makes sense of numbers over time only.
         neighbours: whether it takes numbers from the rows beside, so that some rows alone do not show it.
         beside: a kind whose faults leave it open, as they may be its own said otherwise; empty if none does.
+        hides: whether all angles may have it beside another car, so that neither shows by itself.
     """
 
     name: str
@@ -137,3 +139,4 @@ class Kind:
     of_time: bool = False
     neighbours: bool = False
     beside: str = ""
+    hides: bool = False

@@ -90,6 +90,11 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     (lambda h: each(h, (*STATES, *TURNS), lambda v: v * [-1.0, -1.0, 1.0]), "sign", "sign of x and y"),
     (lambda h: arcsin(h, "camber", 2), "definition", "arcsin"),
     (lambda h: arcsin(h, "toe", 0), "definition", "arcsin"),
+    (
+        lambda h: angle(h, "toe", lambda _: np.arctan(np.sin(arcsin(h, "toe", 0)["wheel"]["toe"]))),
+        "definition",
+        "toe: arctan of the component of a unit vector",
+    ),
     (lambda h: each(h, ("wheel",), np.tan), "definition", "kingpin, toe, caster: the slope, no angle"),
     (lambda h: each(h, ("wheel",), np.sin), "definition", "camber, kingpin, toe, caster: the sine, no angle"),
     (lambda h: angle(h, "toe", lambda v: v - v[0]), "offset", "the value at the first instant is subtracted"),
@@ -116,6 +121,11 @@ FAULTS: list[tuple[Callable[[Solution], Numbers], str, str]] = [
     ),
     (lambda h: each(h, (*STATES, *TURNS, "wheel"), late), "sample", "caster: one sample late, the first"),
     (lambda h: angle(h, "caster", lambda v: v[::-1]), "sample", "caster: its rows in the reverse order"),
+    (
+        lambda h: each(h, ("wheel",), lambda v: v[[*range(5), 9, *range(6, 9), 5, *range(10, len(v))]]),
+        "sample",
+        "camber, kingpin, toe, caster: its rows 6 and 10 in each other's place",
+    ),
     (
         lambda h: angle(h, "toe", lambda v: -np.roll(v, 1)),
         "sample and sign",

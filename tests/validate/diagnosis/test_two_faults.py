@@ -119,3 +119,68 @@ def test_the_same_fault_is_said_once_beside_a_misread_hardpoint() -> None:
     first, second = told(scene, {"wheel": {**wheel, "caster": -wheel["caster"]}})
     assert "wheel_axis_inner.x drawn 1.3 mm" in first
     assert second == "caster: the other sign"
+
+
+def test_another_definition_of_all_angles_hides_no_misread_hardpoint() -> None:
+    content = Scene.load("double-wishbone").model_dump(exclude_none=True)
+    content["inputs"] = {"wheel_travel": {"constant": 0.0}, "rack": {"sweep": (-20.0, 20.0)}}
+    content |= {"time": {"start": 0.0, "stop": 1.0, "samples": 9}, "effects": ("wheel_angles", "toe")}
+    scene = Scene.from_mapping(content)
+    wheel = misread(scene, "lower_ball_joint.z", 2.5)["wheel"]
+    (only,) = told(scene, {"wheel": {name: np.tan(angles) for name, angles in wheel.items()}})
+    assert "lower_ball_joint.z drawn 2.5 mm too high" in only
+    assert only.endswith(", and the slope, no angle")
+
+
+def test_another_unit_of_all_angles_hides_no_misread_hardpoint() -> None:
+    """What the hardpoint changes is as large as the angles themselves."""
+    scene = over_travel("five-link", "camber", "toe")
+    wheel = misread(scene, "upper_front_inner.x", 3.1)["wheel"]
+    (only,) = told(scene, {"wheel": {name: np.degrees(angles) for name, angles in wheel.items()}})
+    assert only.startswith("camber, toe: upper_front_inner.x drawn 3.1 mm too far ")
+    assert only.endswith(", and degrees for radians")
+
+
+def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:
+    """Two hardpoints would do as well, were it not for angles that agree."""
+    content = Scene.load("axle-opposed").model_dump(exclude_none=True)
+    content |= {"effects": ("wheel_angles", "toe", "caster")}
+    content["time"]["samples"] = 11
+    scene = Scene.from_mapping(content)
+    wheel = misread(scene, "right.lower_arm_front.z", -1.0)["wheel"]
+    said = told(scene, {"wheel": {**wheel, "left.camber": wheel["left.camber"] - 0.01}})
+    assert any("right.lower_arm_front.z drawn 1 mm too low" in one for one in said)
+    assert "left.camber: a constant offset of -0.01 rad" in said
+    assert not any(" and left." in one for one in said)
+
+
+def test_what_two_faults_explain_whole_is_not_explained_in_part_besides() -> None:
+    scene = over_travel("off-axis-strut", "wheel_angles", "toe", "caster")
+    wheel = misread(scene, "strut_lower.y", 3.0)["wheel"]
+    said = told(scene, {"wheel": {**wheel, "camber": wheel["camber"] + 0.03}})
+    assert "camber: a constant offset of 0.03 rad" in said
+    assert not any("does not explain all" in one for one in said)
+
+
+def test_the_inner_wheels_angle_under_the_outer_ones_name_is_said_of_both_and_nothing_else() -> None:
+    """From lock to lock, where in the reverse order it would be theirs as well."""
+    content = Scene.load("axle-steer").model_dump(exclude_none=True)
+    held = {"left.wheel_travel": {"constant": 0.0}, "right.wheel_travel": {"constant": 0.0}}
+    content |= {"inputs": {**held, "rack": {"sweep": (-30.0, 30.0)}}, "effects": ("camber", "toe")}
+    content["time"] = {"start": 0.0, "stop": 1.0, "samples": 9}
+    scene = Scene.from_mapping(content)
+    wheel = simulate(scene).numbers["wheel"]
+    wrong = {**wheel, "left.toe": wheel["right.toe"], "right.toe": wheel["left.toe"]}
+    given = {name: wrong[name] for name in ("left.toe", "right.toe", "left.camber", "right.camber")}
+    assert set(told(scene, {"wheel": given})) == {
+        "left.toe: the numbers of right.toe",
+        "right.toe: the numbers of left.toe",
+    }
+
+
+def test_a_wheel_that_stands_as_drawn_shows_a_misread_centre() -> None:
+    scene = Scene.load("axle-single-wheel")
+    wrong = misread(scene, "left.wheel_centre.z", 6.8)["position"]
+    assert told(scene, {"position": wrong}) == [
+        "position of left.wheel_centre: left.wheel_centre.z drawn 6.8 mm too high, at 216.8 for 210"
+    ]

@@ -1,8 +1,8 @@
 """Another definition of an angle.
 
 Ours is projected: atan2(p, q) with p and q the components of a line l along two directions of the car. Other
-sources print arcsin(p / |l|) (camber: Adams' turning tables; toe: OptimumK), the sine p / |l| itself, that of
-the projected angle, and the slope p / q.
+sources print arcsin(p / |l|) (camber: Adams' turning tables; toe: OptimumK), the sine p / |l| itself, its
+arctangent, the sine of the projected angle, and the slope p / q.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 DEFINITIONS: Mapping[str, Callable[[Array, Array, Array], Array]] = {
     "arcsin of the component, not projected": lambda p, q, n: np.arcsin(p / n),
+    "arctan of the component of a unit vector": lambda p, q, n: np.arctan(p / n),
     "the component of a unit vector, no angle": lambda p, q, n: p / n,
     "the slope, no angle": lambda p, q, n: p / q,
     "the sine, no angle": lambda p, q, n: p / np.hypot(p, q),

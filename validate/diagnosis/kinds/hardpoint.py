@@ -48,11 +48,17 @@ TOO: Mapping[Direction, str] = {
 def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
     """A point of the chassis that is given elsewhere than drawn, and otherwise as ours, was misread.
 
-    More than a few that are have something else in common.
+    More than a few that are have something else in common. One of a body that stays as it is drawn counts if
+    no other point of a body is wrong.
     """
-    topology = evidence.scene.mechanism.topology
+    topology, drawn = evidence.scene.mechanism.topology, evidence.scene.mechanism.points
     moving = (*topology.moving, *topology.carried)
-    rest = [r for r in evidence.wrong if kind_of(r) == "point" and order(r) == 0 and r[1] not in moving]
+    wrong = [row for row in evidence.wrong if kind_of(row) == "point" and order(row) == 0]
+    rest, moved = ([row for row in wrong if (row[1] in moving) is of_body] for of_body in (False, True))
+    if len(moved) == 1 and moved[0][1] in drawn:
+        (row,) = moved
+        stays = (np.abs(evidence.held[row] - drawn[row[1]]) <= evidence.allowed[row]).all()
+        rest += moved if stays else []
     for row in rest if len(rest) <= MOST_POINTS else ():
         gap, allowed = evidence.given[row] - evidence.held[row], evidence.allowed[row].max(axis=0)
         off = [i for i in range(3) if abs(gap[0, i]) > allowed[i]]

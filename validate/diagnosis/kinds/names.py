@@ -43,13 +43,19 @@ def sides_exchanged(evidence: Evidence) -> Iterator[Hypothesis]:
 
 
 def anothers(evidence: Evidence) -> Iterator[Hypothesis]:
-    """A row with the numbers of another one of its quantity, such as the wheel centre's for the contact's."""
+    """A row with the numbers of another one of its quantity, such as the wheel centre's for the contact's.
+
+    Of several that have these numbers, as toe and steer angle of a right wheel, one is enough: of its own
+    name on another side, if there is one, or one that is given.
+    """
     numbers = {**evidence.held, **evidence.not_given}
     for row in evidence.wrong:
-        for other in numbers:
+        name = row[1].rpartition(".")[2]
+        for other in sorted(numbers, key=lambda other: other[1].rpartition(".")[2] != name):
             if other[0] != row[0] or other == row:
                 continue
             allowed = np.maximum(evidence.allowed[row], evidence.allowed.get(other, 0.0))
             if evidence.left(row, numbers[other], allowed) <= 1.0:
                 rows = {row: (numbers[other], allowed)}
                 yield Hypothesis((row, other), f"the numbers of {other[1]}", rows, cost=1.3)
+                break

@@ -85,20 +85,39 @@ def _on_the_grid(times: Array, theirs: Array, ours: Array) -> float:
     return float(times[best] - times[0]) if best >= 0 else float(times[0] - times[-best])
 
 
+REVERSED = "its rows in the reverse order"
 SAMPLES: Mapping[str, Callable[[Array], Array]] = {
     "one sample late, the first one twice": lambda x: np.concatenate([x[:1], x[:-1]]),
     "one sample early, the last one twice": lambda x: np.concatenate([x[1:], x[-1:]]),
     "one sample late, the last one first": lambda x: np.roll(x, 1, axis=0),
     "one sample early, the first one last": lambda x: np.roll(x, -1, axis=0),
-    "its rows in the reverse order": lambda x: x[::-1],
+    REVERSED: lambda x: x[::-1],
 }
 """In words, and what is then given of numbers."""
 
 
 def one_sample_off(evidence: Evidence) -> Iterator[Hypothesis]:
-    """Every number stands in the row after or before its own, or as far from the other end."""
-    for words, moved in SAMPLES.items():
+    """Every number is in the row after or before its own, or as far from the other end; or two are exchanged.
+
+    What two wheels have in the reverse order, but for numbers that agree, each has of the other one.
+    """
+    two_wheels = bool(evidence.scene.mechanism.topology.sides)
+    for words, moved in (*SAMPLES.items(), *_exchanged(evidence)):
         # Rows that agree as well, so that it is known whether they would under the fault.
         looked = (*evidence.wrong, *evidence.beside)
         rows = {row: (moved(evidence.held[row]), moved(evidence.allowed[row])) for row in looked}
-        yield Hypothesis(words, words, rows, cost=1.2)
+        yield Hypothesis(words, words, rows, cost=1.2, whole=two_wheels and words == REVERSED)
+
+
+def _exchanged(evidence: Evidence) -> Iterator[tuple[str, Callable[[Array], Array]]]:
+    """Two rows that stand in each other's place, where no other row is wrong."""
+    off = np.zeros(len(evidence.times), bool)
+    for row in evidence.wrong:
+        apart = np.abs(evidence.given[row] - evidence.held[row])
+        near = apart <= evidence.allowed[row] + evidence.own.get(row, 0.0)
+        off |= ~near.reshape(len(off), -1).all(axis=1)
+    if np.count_nonzero(off) == 2:
+        order = np.arange(len(off))
+        order[off] = order[off][::-1]
+        one, two = np.flatnonzero(off) + 1
+        yield f"its rows {one} and {two} in each other's place", lambda numbers: numbers[order]
