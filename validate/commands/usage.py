@@ -20,10 +20,11 @@ from validate.errors import UsageError
 from validate.exit_status import HELP, ExitStatus
 from validate.output.console import Console
 from validate.output.files import require_known_ending, require_writable, write_content
-from validate.plain_text import shown
+from validate.plain_text import one_line, shown
 
 STANDARD_INPUT = "-"
 STANDARD_INPUT_NAME = "standard input"
+LONGEST_OF_A_FILE = 255  # letters of a name, on the usual systems
 SCENE_HELP = "a built-in scene's name, the path of a scene file, or - for standard input"
 TOML = (".toml",)
 
@@ -214,8 +215,11 @@ def to_be_filled_in(target: str, text: str, console: Console) -> ExitStatus:
 
 
 def name_of(scene: str) -> str:
-    """What messages call a scene that the command line names."""
-    return STANDARD_INPUT_NAME if scene == STANDARD_INPUT else shown(scene)
+    """What messages call a scene that the command line names; a name that no file can have is shortened."""
+    if scene == STANDARD_INPUT:
+        return STANDARD_INPUT_NAME
+    of_a_file = all(len(part) <= LONGEST_OF_A_FILE for part in scene.split(os.sep))
+    return shown(scene) if of_a_file else one_line(shown(scene))
 
 
 def require_input_once(names: Sequence[str]) -> None:

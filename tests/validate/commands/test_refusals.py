@@ -283,3 +283,12 @@ def test_a_motion_that_stops_halfway_is_kept_as_far_as_it_goes(
     end = (152.013 * 3.141592653589793 / 180.0 - 0.8) / 0.8
     assert end - 0.02 < last <= end + 1e-4
     assert target.stat().st_size > 500
+
+
+def test_the_table_and_the_verdict_shorten_a_name_that_no_file_can_have(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["validate", LONG]) == 2
+    said = capsys.readouterr()
+    assert LONG[:50] in said.out
+    assert "n" * 256 not in said.out + said.err
