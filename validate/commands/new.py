@@ -30,6 +30,8 @@ name=NAME  of the new files, without .toml; may have a folder
 
 TYPE = re.compile(r"^([ \t]*type[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')", re.MULTILINE)
 
+PATH = re.compile(r"(\b(?:mechanism|table)[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')")
+
 SCENE_NOTE = """\
 # A scene: mechanism, points as drawn (mm), inputs over time, instants, effects.
 # Try: pointcoord plan {name}.toml, pointcoord draw {name}.toml -o {name}.svg, pointcoord validate {name}.toml
@@ -40,9 +42,11 @@ MECHANISM_NOTE = """\
 #                chassis is the ground, every other body has three points or more
 #   [rods]       two points at their drawn distance
 #   [slides]     a point stays on a line of a body, along up, right, down, left, forward, rearward or a point
-#   [inputs]     angle, travel, height, contact, distance, or what moves the chassis
-#   [roles]      knuckle, wheel_axis, steering_axis, inboard, front_and_rear: effects ask for them
+#   [inputs]     angle, travel, steers, height, contact, distance, or what moves or turns the chassis
+#   [roles]      knuckle, wheel_axis, steering_axis, inboard, front_and_rear, damper: effects ask for them
 #   [stand_ins]  points that a drawing may leave out, and the ones that then stand in for them
+#   [closures]   entries that a scene's closure puts in the place of those of the same name
+#   [parts]      other mechanisms, with their own names after the part's, such as left.wheel_centre
 # A scene drives as many inputs as there are freedoms: pointcoord plan says how many these are.
 """
 
@@ -57,14 +61,17 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     written = read_file(source, "a scene")
     of_type = parsed(written, options.scene)["mechanism"].get("type")
     files = {}
-    text = written.decode("utf-8-sig")
+    text = _found_from(written.decode("utf-8-sig"), source.parent, Path(name).parent)
     if of_type is not None:
         own = f"{Path(name).name}-mechanism.toml"
         text, count = TYPE.subn(lambda found: f'{found[1]}"{own}"', text)
         if count != 1:
             raise SceneError(options.scene, "mechanism.type", "is not written as one line type = ...")
         source = source.parent / of_type if is_path(of_type) else MECHANISMS / f"{of_type}.toml"
-        files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + read_file(source, ", ".join(shipped())).decode()
+        tables = read_file(source, ", ".join(shipped())).decode("utf-8-sig")
+        files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + _found_from(
+            tables, source.parent, Path(name).parent
+        )
     files = {f"{name}.toml": SCENE_NOTE.format(name=name) + text, **files}
     for target in files:
         if os.path.exists(target):
@@ -75,6 +82,19 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(options.scene)}")
     console.say(f"for another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
+
+
+def _found_from(text: str, folder: Path, other: Path) -> str:
+    """A file's text with its relative paths of mechanisms and tables, of one folder, counted from another."""
+
+    def counted(found: re.Match[str]) -> str:
+        path, of_table = found[2][1:-1], found[1].startswith("table")
+        elsewhere = folder.resolve() != other.resolve() and not os.path.isabs(path)
+        if not (elsewhere and (of_table or is_path(path))):
+            return found[0]
+        return f"{found[1]}'{os.path.relpath(folder / path, other)}'"
+
+    return PATH.sub(counted, text)
 
 
 COMMANDS = {
