@@ -14,7 +14,7 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.structure import bodies_in_words, joints_in_words
 from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart
-from pointcoord.simulation import effort
+from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
 from validate.commands.usage import SCENE, Command, load_scene, name_of, place_of_picture, told_as
 from validate.exit_status import ExitStatus
@@ -68,9 +68,12 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     scene = load_scene(options.scene)
     plan = plan_effects(scene.effects, unreported=scene.unreported_points)
     part, name, silent = scene.mechanism, name_of(options.scene), scene.unreported_points
+    with told_as(name):
+        scene_mechanism(scene)
+    side = f", {part.side} side" if part.structure.knuckles.get("knuckle") else ""
     lines = [
         f"{name}: {shown(scene.title)}" if scene.title else name,
-        f"mechanism: {part.name}, {part.side} side; inputs: {', '.join(scene.inputs)}",
+        f"mechanism: {part.name}{side}; inputs: {', '.join(scene.inputs)}",
         *_mechanism(part),
         f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
         *(f"computed: {effect.gives}" for effect in ALWAYS),
