@@ -165,7 +165,18 @@ def _roles(structure: Structure) -> None:
                 raise TableFault(place, "is the chassis, which carries no wheel", "a moving body")
         else:
             _point(structure, who, place)
-        points = who if last in ("front_and_rear", "inboard") else ()
-        for name in (points,) if isinstance(points, str) else points:
-            if name not in structure.bodies[CHASSIS]:
-                raise no_such("point of the chassis", name, structure.bodies[CHASSIS], place)
+        _of_body(structure, role, (who,) if isinstance(who, str) else who)
+
+
+def _of_body(structure: Structure, role: str, points: tuple[str, ...]) -> None:
+    """The points of some roles are of one body: the chassis, or what carries the wheel."""
+    last = role.rpartition(".")[2]
+    body, words = str(CHASSIS), "the chassis"
+    if last == "wheel_axis":
+        body = structure.knuckles.get(role.removesuffix(last) + "knuckle", "")
+        words = f"{body}, which carries the wheel,"
+    elif last not in ("front_and_rear", "inboard"):
+        return
+    for name in points if body in structure.bodies else ():
+        if name not in structure.bodies[body]:
+            raise no_such(f"point of {words}", name, structure.bodies[body], ("roles", role))

@@ -158,8 +158,11 @@ class Arm(Input):
     def check(self, bodies: Bodies) -> None:
         if self.of == self.about:
             raise TableFault(("of",), f"is {self.of!r} as about is", "two different points")
-        if self.angle == CHASSIS or self.of not in bodies[self.angle]:
-            raise no_such(f"point of {self.angle}", self.of, bodies[self.angle], ("of",))
+        if self.angle == CHASSIS:
+            raise TableFault(("angle",), "is the chassis, which has no angle from itself", "a moving body")
+        for key, point in (("of", self.of), ("about", self.about)):
+            if point not in bodies[self.angle]:
+                raise no_such(f"point of {self.angle}", point, bodies[self.angle], (key,))
 
     def made(self, name: str, of: Compiled) -> Made:
         value, edge = f"{name} rise", (self.of, self.about)
@@ -253,6 +256,11 @@ class Contact(Input):
     @property
     def directions(self) -> tuple[str, ...]:
         return ("up",)
+
+    def check(self, bodies: Bodies) -> None:
+        if not any({*self.contact} <= {*points} for points in bodies.values()):
+            problem = f"{' and '.join(self.contact)} are of no one body, so they are not the axis of a wheel"
+            raise TableFault((), problem, "two points of one body")
 
     def made(self, name: str, of: Compiled) -> Made:
         value, (inner, centre) = f"value of {name}", self.contact

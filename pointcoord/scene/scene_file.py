@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import IO, Annotated, Any, Literal
@@ -32,7 +32,7 @@ from pointcoord.mechanism.file import (
     shipped,
     whole_tables,
 )
-from pointcoord.mechanism.freedoms import free_directions
+from pointcoord.mechanism.freedoms import askew_hinges, free_directions
 from pointcoord.mechanism.inputs import CHASSIS, LENGTHS
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
@@ -288,21 +288,33 @@ class MechanismPart(Part):
         if not worst <= 1e-12:
             raise ValueError(f"up {self.up} and right {self.right} are not unit vectors at right angles")
 
+    def _wheels(self) -> Iterator[tuple[str, str]]:
+        """What stands before the roles of the whole and of each part, and the side that it is on."""
+        yield "", self.side
+        yield from ((f"{part}.", side) for part, side in self._whole.sides.items())
+
     def _wheel_outboard(self) -> None:
-        inner, axis = self.structure.roles.get("inboard"), self.structure.roles.get("wheel_axis")
-        if not isinstance(inner, str) or axis is None:
-            return
-        wheel = axis[1]
-        with np.errstate(over="ignore", invalid="ignore"):
-            inboard = float((np.array(self.points[inner]) - np.array(self.points[wheel])) @ self.outboard)
-        if inboard >= 0.0:
-            other = "right" if self.side == "left" else "left"
-            raise ValueError(
-                f"{wheel} lies {inboard:.6g} mm inboard of {inner} for side = {self.side!r}; allowed: "
-                f"{wheel} outboard of {inner}, here towards {'-' if self.side == 'left' else '+'}right "
-                f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, 0.0]; "
-                f"if it is a wheel of the other side, try side = {other!r}"
-            )
+        for prefix, side in self._wheels():
+            inner = self.structure.roles.get(f"{prefix}inboard")
+            axis = self.structure.roles.get(f"{prefix}wheel_axis")
+            if not isinstance(inner, str) or axis is None:
+                continue
+            wheel, outboard = axis[1], self.axes.on(side).outboard
+            with np.errstate(over="ignore", invalid="ignore"):
+                inboard = float((np.array(self.points[inner]) - np.array(self.points[wheel])) @ outboard)
+            if inboard >= 0.0:
+                other = "right" if side == "left" else "left"
+                advice = (
+                    f"its part needs side = {other!r}, or to be mirrored"
+                    if prefix
+                    else f"try side = {other!r}"
+                )
+                raise ValueError(
+                    f"{wheel} lies {inboard:.6g} mm inboard of {inner} for side = {side!r}; allowed: "
+                    f"{wheel} outboard of {inner}, here towards {'-' if side == 'left' else '+'}right "
+                    f"{self.right}; if y points to the left in your axes, say so with right = [0.0, -1.0, "
+                    f"0.0]; if it is a wheel of the other side, {advice}"
+                )
 
     def _loads_of_wheels(self) -> None:
         sides = self._whole.sides
@@ -312,12 +324,13 @@ class MechanismPart(Part):
                 raise TableFault(("loads", part) if part else ("loads",), "is of no wheel", known)
 
     def _spin_axis(self) -> None:
-        axis = self._whole.roles.get("wheel_axis")
-        if axis is not None and self.points.get(axis[0]) == self.points[axis[1]]:
-            raise ValueError(
-                f"{axis[0]} and {axis[1]} are at the same place, so that the wheel's spin axis has "
-                "no direction; allowed: two points of the axis apart from each other"
-            )
+        for prefix, *_ in self._wheels():
+            axis = self._whole.roles.get(f"{prefix}wheel_axis")
+            if axis is not None and self.points.get(axis[0]) == self.points[axis[1]]:
+                raise ValueError(
+                    f"{axis[0]} and {axis[1]} are at the same place, so that the wheel's spin axis has "
+                    "no direction; allowed: two points of the axis apart from each other"
+                )
 
     @property
     def driven(self) -> tuple[str, ...] | None:
@@ -562,45 +575,49 @@ class Scene(Part):
         for name in self.effects:
             problem = self.mechanism.refusal(EFFECTS[name])
             if problem:
-                raise ValueError(problem)
+                raise TableFault(("effects",), problem)
 
     def _inputs_fit(self) -> None:
         known = self.mechanism.structure.inputs
         for name in self.inputs:
             if name not in known:
                 hint = MOVES.get(name) or meant(name, known)
-                raise ValueError(f"no input is called {shown(name)}{hint}; allowed: {', '.join(known)}")
+                problem = f"no input is called {shown(name)}{hint}"
+                raise TableFault(("inputs",), problem, ", ".join(known))
         self.mechanism._driven = tuple(name for name in known if name in self.inputs)
         self._inputs_hold_the_mechanism()
         for name, law in self.inputs.items():
             for table in law.tables:
                 if table.times[0] <= self.time.start and self.time.stop <= table.times[-1]:
                     continue
-                raise ValueError(
-                    f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s; "
-                    f"allowed: all of time, {self.time.start} to {self.time.stop} s"
+                raise TableFault(
+                    ("inputs", name),
+                    f"the table of input {name!r} covers {table.times[0]} to {table.times[-1]} s",
+                    f"all of time, {self.time.start} to {self.time.stop} s",
                 )
 
     def _inputs_hold_the_mechanism(self) -> None:
         """As many inputs are driven as there are freedoms; whether they hold these is seen when it is built.
 
         Raises:
-            ValueError: there are too few or too many.
+            TableFault: there are too few or too many, or the points make no mechanism.
         """
         part = self.mechanism
         try:
             topology = part.topology
         except MechanismError as error:
-            raise ValueError(error.problem) from None
+            of_points = ("points",) if set(error.names) <= set(part.points) else ()
+            raise TableFault(("mechanism", *of_points), error.problem) from None
         missing = topology.layout.unknowns - len(topology.labels)
         if not missing and topology.fighting:
             self._name_what_fights(topology)
         if not missing and topology.required_inputs:
             return
         if not missing:
-            raise ValueError(
-                f"the {part.name} has no freedom and no input is driven: it is a structure that nothing moves"
-                "; allowed: a mechanism with one freedom or more, so leave a rod out or give it an input"
+            raise TableFault(
+                ("mechanism",),
+                f"the {part.name} has no freedom and no input is driven: a structure that nothing moves",
+                "a mechanism with one freedom or more, so leave a rod out or give it an input",
             )
         inputs = [name for name, one in part.structure.inputs.items() if not one.moves_the_chassis]
         told = [name for name in inputs if name in self.inputs]
@@ -608,14 +625,20 @@ class Scene(Part):
         count = part.freedoms
         words = f"the {part.name} has {count} freedom{'' if count == 1 else 's'}, and {len(told)} "
         words += f"{'is' if len(told) == 1 else 'are'} driven{': ' if told else ''}{', '.join(told)}"
+        if not count:
+            askew = askew_hinges(part.structure, part.points)
+            exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
+            allowed = f"one freedom or more, so leave a rod or a slide out{exact if askew else ''}"
+            raise TableFault(
+                ("mechanism",), f"the {part.name} is locked: it has no freedom as drawn", allowed
+            )
         if count < len(told):
-            exact = "" if count else "; parallel hinges let it move only if they are drawn exactly so"
-            raise ValueError(f"{words}; allowed: {count} inputs, so leave {len(told) - count} out{exact}")
+            allowed = f"{count} input{'' if count == 1 else 's'}, so leave {len(told) - count} out"
+            raise TableFault(("inputs",), words, allowed)
         named = free_directions(part.topology, part.points, {"up": part.up, "right": part.right})
-        raise ValueError(
-            f"{words}; free are {', '.join(named)}; allowed: {count} inputs, so drive "
-            f"{count - len(told)} more{f' of {others}' if others else ': a new one in [mechanism.inputs]'}"
-        )
+        more = f"{count - len(told)} more{f' of {others}' if others else ': a new one in [mechanism.inputs]'}"
+        allowed = f"{count} input{'' if count == 1 else 's'}, so drive {more}"
+        raise TableFault(("inputs",), f"{words}; free are {', '.join(named)}", allowed)
 
     def _name_what_fights(self, topology: Topology) -> None:
         part, inputs = self.mechanism, ", ".join(topology.fighting)
@@ -628,9 +651,11 @@ class Scene(Part):
         instead = (
             f"instead one of {others}" if others else "a new one, of what is free, in [mechanism.inputs]"
         )
-        raise ValueError(
+        raise TableFault(
+            ("inputs",),
             f"the inputs {inputs} drive more of the {part.name} than it lets them, and leave free "
-            f"{', '.join(named)}; allowed: one of them less, and {instead}"
+            f"{', '.join(named)}",
+            f"one of them less, and {instead}",
         )
 
     @property

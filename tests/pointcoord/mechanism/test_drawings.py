@@ -72,3 +72,18 @@ def test_a_spin_axis_without_a_direction_is_refused(make_scene: Callable[..., Sc
     inner, outer = car.whole.wheel_axis
     with pytest.raises(SceneError, match=f"{inner} and {outer} are at the same place"):
         make_scene(car=car, points={**car.points, inner: car.points[outer]})
+
+
+def test_the_wheels_of_an_axle_are_checked_as_one_wheel_is() -> None:
+    content = Scene.load("axle-opposed").model_dump(exclude_none=True)
+    points = content["mechanism"]["points"]
+    for moved, words in (
+        ({"left.wheel_axis_inner": points["left.wheel_centre"]}, "left.wheel_centre are at the same place"),
+        (
+            {"left.wheel_centre": points["right.wheel_centre"]},
+            "left.wheel_centre lies 1106 mm inboard of left.upper_arm_front for side = 'left'",
+        ),
+    ):
+        part = {**content["mechanism"], "points": {**points, **moved}}
+        with pytest.raises(SceneError, match=words):
+            Scene.from_mapping({**content, "mechanism": part})

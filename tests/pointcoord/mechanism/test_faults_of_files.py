@@ -53,6 +53,12 @@ FAULTS = {
     "role of an unknown body": ('= "knuckle"', '= "upright"', "roles.knuckle", ("knuckle",)),
     "inboard point that moves": ('inboard       = "upper_arm_front"', 'inboard       = "lower_ball_joint"',
         "roles.inboard", ("chassis",)),
+    "angle about a point of another body": ('about = "lower_arm_front"', 'about = "upper_arm_front"',
+        "inputs.arm_angle.about", ("point of lower_arm",)),
+    "wheel axis of two bodies": ('"wheel_centre"]\nsteering_axis', '"rack_centre"]\nsteering_axis',
+        "roles.wheel_axis", ("knuckle, which carries the wheel",)),
+    "contact of two bodies": ('contact = ["wheel_axis_inner"', 'contact = ["upper_arm_front"',
+        "inputs.contact_travel", ("no one body",)),
     "stand-in that is not there": ('rack_centre = "tie_rod_inner"', 'rack_centre = "tie_rod_iner"',
         "stand_ins.rack_centre", ("did you mean 'tie_rod_inner'",)),
     "closure of an unknown table": ("[stand_ins]", "[closures.x]\nslide.a = 1\n[stand_ins]",
@@ -98,6 +104,30 @@ def test_a_fault_names_the_file_the_key_and_what_is_meant(tmp_path: Path, fault:
 def test_a_fault_ends_a_command_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", str(scene_beside(tmp_path, WISHBONE.replace("[bodies]", "[bodys]")))]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("tie_rod_outer = [-120.0, 650.0, 225.0]", "tie_rod_outer = [-10.0, 178.0, 154.0]",
+         "mechanism.points: link tie_rod_inner - tie_rod_outer has no length"),
+        ("upper_ball_joint = [9.0, 646.0, 315.0]", "upper_ball_joint = [9.0, 388.0, 255.0]",
+         "mechanism.points: Double wishbone is not determined: free at the drawing"),
+        ("rack = { constant = 0.0 }", "", "inputs: the Double wishbone has 2 freedoms, and 1 is driven"),
+        ("rack = {", "rak = {", "inputs: no input is called 'rak' (did you mean 'rack'?)"),
+        ('side = "right"', 'side = "left"', "mechanism: wheel_centre lies"),
+    ],
+)  # fmt: skip
+def test_a_fault_of_a_scene_ends_in_one_line_with_file_and_key(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], before: str, after: str, words: str
+) -> None:
+    path = scene_beside(tmp_path, WISHBONE)
+    written = path.read_text()
+    assert written.count(before) == 1
+    path.write_text(written.replace(before, after))
+    assert main(["plan", str(path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"pointcoord: {path}: {words}")
 
 
 def test_a_type_that_is_misspelt_names_the_one_that_is_near() -> None:
