@@ -12,7 +12,10 @@ their signs stay those of the drawing.
 
 From one pose to the next the inputs go straight, and a part of the way is taken where the second Newton step
 is a quarter of the first one at most, so that there is a pose all along it (Deuflhard, Newton Methods for
-Nonlinear Problems, 2011, ch. 5).
+Nonlinear Problems, 2011, ch. 5). Where branches cross, the determinant keeps its sign on a way that goes over
+to another branch, but that way has a corner there (Allgower and Georg, Numerical Continuation Methods, 1990,
+ch. 8). So the direction of the way, (v_u, v_d), changes little on a part of it, and a way that came so near
+to a singular pose that rounding mixes branches is not followed away from it.
 """
 
 from __future__ import annotations
@@ -23,10 +26,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv
+from scipy.linalg.lapack import dgecon, dgesv
 
 from validate.peers.errors import HardpointsError, PoseError
-from validate.peers.linkage import Linkage
+from validate.peers.linkage import UNIT_ROUNDOFF, Linkage
 from validate.peers.motion import Poses, Rates
 from validate.spanning_tree.determined import blocks, independent_rows
 
@@ -38,6 +41,11 @@ LIMIT = 12
 LONGEST_STEP = 0.25
 # The same where the second step is more than this part of the first: then a pose nearby is not sure.
 CONTRACTED = 0.25
+# Of the larger of two directions at the ends of a part of the way: how far they may be apart.
+CORNER = 0.5
+# Branches that cross are 1 / C apart where the condition number is C, and rounding U moves a pose by U C:
+# above an eighth of the inverse root of U a corner between them is not seen.
+BLURRED = 2.0**23
 HALVINGS = 44
 # Car sizes. What depends on other rows is missed by the square of the last step, and by rounding raised by
 # the condition number, some 1e-13 of the car.
@@ -60,6 +68,8 @@ class Program(ABC):
         driven, unknown: places among the joints' rates, of those that are driven, and of all that are free.
         rows: that are solved.
         blocks: rows and columns of the diagonal blocks of J_u. drawn: signs of their determinants as drawn.
+        jacobian: J of the last Newton step.
+        way: direction of the way at the last pose. nearest: the largest condition number on it.
     """
 
     linkage: Linkage
@@ -70,6 +80,9 @@ class Program(ABC):
     rows: slice | NDArray[np.int64] = slice(None)
     blocks: Sequence[tuple[NDArray[np.int64], NDArray[np.int64]]] = ()
     drawn: Array
+    jacobian: Array
+    way: Array
+    nearest: float = 1.0
 
     @property
     @abstractmethod
@@ -156,6 +169,7 @@ class Program(ABC):
         places, steps = np.empty((count, len(self.linkage.points), 3)), np.empty(count)
         here = start.inputs[-1]
         self.put(start.coordinates[-1])
+        self.jacobian, self.way = self.misses()[1], np.zeros(len(self.unknown) + len(self.driven))
 
         def refusal(problem: str, i: int, reached: Array) -> PoseError:
             error = self._refusal(problem, i, inputs[i], reached)
@@ -227,18 +241,48 @@ class Program(ABC):
             The share of the way that is gone, and the last step.
         """
         done, share, last = 0.0, 1.0, 0.0
+        way, _ = self._way(start, goal - start)
+        if not way @ self.way > 0.0:  # it begins, or turns back the way that it came
+            self.nearest = 1.0
+        self.way = way
         while done < 1.0:
             kept, share = self.coordinates, min(share, 1.0 - done)
             there = start + (done + share) * (goal - start) if done + share < 1.0 else goal
             step = self._newton(there, tolerance, counted)
-            if step is None:
+            if step is not None:
+                way, condition = self._way(there, goal - start)
+            if step is None or self._turns_off(way, condition):
                 self.put(kept)
                 share *= 0.5
                 if share < 0.5**HALVINGS:
                     break
             else:
                 done, last, share = done + share, step, 2.0 * share
+                self.way, self.nearest = way, max(condition, self.nearest)
         return done, last
+
+    def _turns_off(self, way: Array, condition: float) -> bool:
+        """Whether the way may have gone over to another branch since the last pose."""
+        largest = max(float(np.abs(each).max(initial=0.0)) for each in (way, self.way))
+        corner = not np.abs(way - self.way).max(initial=0.0) <= CORNER * largest
+        return corner or (self.nearest > BLURRED and condition < 0.5 * self.nearest)
+
+    def _way(self, inputs: Array, rates: Array) -> tuple[Array, float]:
+        """Rates of the joints at the last Newton step, (unknown + driven,), for these of the inputs.
+
+        Returns:
+            These, no numbers at a singular pose, and the condition number of J_u.
+        """
+        driven = self.linkage.coordinates(np.stack([inputs, rates, np.zeros(len(rates))], axis=-1))[:, 1]
+        jacobian, count = self.jacobian[self.rows], len(self.unknown)
+        if not count:
+            return driven, 1.0
+        square = jacobian[:, self.unknown]
+        factors, _, unknown, info = dgesv(square, -jacobian[:, self.driven] @ driven)
+        if info:
+            return np.full(count + len(driven), np.nan), np.inf
+        inverse, _ = dgecon(factors, float(np.abs(square).sum(axis=0).max()))
+        return np.concatenate([unknown, driven]), 1.0 / max(inverse, UNIT_ROUNDOFF)
 
     def _newton(
         self, inputs: Array, tolerance: float, counted: Counter[str], shorten: bool = False
@@ -251,10 +295,12 @@ class Program(ABC):
         self._at(inputs)
         unknown, previous = self.unknown, np.inf
         if not len(unknown):
+            self.jacobian = self.misses()[1]
             return 0.0
         step: Array | None = None
         for number in range(LIMIT):
             missed, jacobian = self.misses()
+            self.jacobian = jacobian
             if step is None:
                 step = np.zeros(jacobian.shape[1])
             counted.update(factorisations=1, jacobians=1, residuals=1)

@@ -192,6 +192,42 @@ def test_two_branches_that_cross_at_once_are_not_exchanged() -> None:
         solved(plain_scene("n-four-bar"), {"crank": held(np.array([-1.0, -1.6]))})
 
 
+def parallelogram(apart: float) -> Any:
+    """Two cranks of 1 m that a coupler keeps parallel, or crossed from where all lie in one line."""
+    mechanism = plain_scene("n-four-bar")
+    del mechanism["bodies"]["crank_2"], mechanism["rods"]["coupler_2"]
+    mechanism["bodies"]["chassis"] = ["A0", "A0_pin", "A1", "A1_pin"]
+    kept = {name for points in mechanism["bodies"].values() for name in points}
+    moved = {"A1": [apart, 0, 0], "A1_pin": [apart, 0, 1000], "B1": [apart, 1000, 0]}
+    mechanism["points"] = {n: moved.get(n, p) for n, p in mechanism["points"].items() if n in kept}
+    return mechanism
+
+
+@pytest.mark.parametrize("program_of", [InPinocchio, InMujoco, InExudyn])
+@pytest.mark.parametrize("apart", [500.0, 1000.0, 2000.0])
+@pytest.mark.parametrize("count", [2, 5, 7, 13, 21, 101])
+def test_a_way_does_not_go_over_to_a_branch_that_crosses_it(
+    program_of: Any, apart: float, count: int
+) -> None:
+    """The determinant changes its sign where cranks stay parallel, and keeps it where they cross."""
+    turns = np.linspace(0.0, 3.0, count)
+    with pytest.raises(PoseError, match="cannot be reached") as caught:
+        solved(parallelogram(apart), {"crank": held(turns)}, program_of)
+    assert caught.value.reached["crank"] == pytest.approx(0.5 * np.pi, abs=1e-6)
+    assert caught.value.partial is None or len(caught.value.partial.inputs) == np.sum(turns < 0.5 * np.pi)
+
+
+@pytest.mark.parametrize("program_of", [InPinocchio, InMujoco, InExudyn])
+def test_a_way_that_turns_back_before_a_fold_is_followed_back(program_of: Any) -> None:
+    """The stroke stops 1e-11 mm short of its dead point, where branches meet to rounding, and goes back."""
+    mechanism = plain_scene("slider-crank", ["stroke"])
+    with pytest.raises(PoseError) as caught:
+        solved(mechanism, {"stroke": held(np.array([15.0, 75.0]))}, program_of)
+    strokes = np.array([15.0, caught.value.reached["stroke"] - 1e-11, 15.0])
+    _, poses = solved(mechanism, {"stroke": held(strokes)}, program_of)
+    assert np.abs(poses.coordinates[0] - poses.coordinates[2]).max() < 1e-11
+
+
 def test_what_makes_no_mechanism_is_told_by_name() -> None:
     strut = GENERAL_STRUT
     with pytest.raises(HardpointsError, match="lower_arm_front is where lower_arm_rear is"):
