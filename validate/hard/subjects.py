@@ -151,8 +151,10 @@ def _others() -> Iterator[Subject]:
 
 _EVERY = tuple(_others())
 OTHERS = tuple(subject for subject in _EVERY if not subject.of_parts)
-# Two corners on one rack solve what each corner solves, in thirty times the time: few families try them.
+# Two corners on one rack take thirty times the time of one: families of which they would repeat each corner's
+# answers leave them out.
 OF_PARTS = tuple(subject for subject in _EVERY if subject.of_parts)
 NAMED: Mapping[str, Subject] = {**OF_CARS, **{subject.name: subject for subject in _EVERY}}
 SUBJECTS = (PAPER, WISHBONE, *OTHERS)
+ALL = (*SUBJECTS, *OF_PARTS)
 HEAVING = tuple(subject for subject in SUBJECTS if subject.heaves)

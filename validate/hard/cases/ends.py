@@ -15,7 +15,7 @@ from validate.hard.cars import SQUARE
 from validate.hard.case import REFUSED, Case, Expected, Values, case, decades
 from validate.hard.cases.reach import End, Lock, driven_beyond, first_three, tie_rod_within
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.subjects import NAMED, OTHERS, Content, Subject, hyphens
+from validate.hard.subjects import NAMED, OF_PARTS, OTHERS, Content, Subject, hyphens
 
 # Down to where each model has to be right; nearer it may refuse with a reason.
 # pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which is at 1e-12 of the way
@@ -144,7 +144,7 @@ OF_OTHERS = tuple(
         f"{hyphens(driven)}-{size}",
         End(subject, driven, ahead, f"{driven} is at its {size}, the others as drawn"),
     )
-    for subject in OTHERS
+    for subject in (*OTHERS, *OF_PARTS)
     for driven, ahead in ends_of(subject)
     for size in (("least", "greatest")[ahead],)
 )

@@ -21,7 +21,7 @@ from validate.formulations.protocol import Accuracy, Solution
 from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import SQUARE
 from validate.hard.case import RIGHT, Expected, case, decades, family, values_of
-from validate.hard.subjects import BESIDE, HEAVING, SUBJECTS, WISHBONE, Content, Subject
+from validate.hard.subjects import ALL, BESIDE, HEAVING, SUBJECTS, WISHBONE, Content, Subject
 from validate.hard.trial import Trial, solved
 
 Array = NDArray[np.float64]
@@ -135,7 +135,7 @@ CASES = (
             why=WHYS.get(subject, ""),
             judged=as_at_home,
         )
-        for subject in (SUBJECTS[0], BESIDE, *SUBJECTS[1:])
+        for subject in (ALL[0], BESIDE, *ALL[1:])
     ),
     *_far(
         far_and_heaved_back,
@@ -148,7 +148,7 @@ CASES = (
         for name, why, values, subjects in (
             ("sizes-by-powers-of-two", TWOS, tuple(2.0**k for k in range(11, -20, -3)), SUBJECTS[:1]),
             ("sizes-by-powers-of-ten", TENS, decades(-6, 4), SUBJECTS[:1]),
-            ("sizes", TENS, decades(-6, 4), (BESIDE, *SUBJECTS[1:])),
+            ("sizes", TENS, decades(-6, 4), (BESIDE, *ALL[1:])),
         )
         for one in _far(
             *(scaled_car, "size, in parts of a car of some 500 mm", values),

@@ -18,7 +18,7 @@ from validate.cars.scene_content import Law
 from validate.hard.case import RIGHT, RIGHT_OR_REFUSED, SOLVERS, Case, Expected, decades, family
 from validate.hard.cases.ends import NEAR_END
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.subjects import HEAVING, SUBJECTS, Content, Subject, hyphens, moved_by
+from validate.hard.subjects import ALL, HEAVING, SUBJECTS, Content, Subject, hyphens, moved_by
 from validate.hard.trial import Trial
 
 OURS = dict.fromkeys(SOLVERS, RIGHT)
@@ -237,8 +237,8 @@ CASES = (
     # A hundred swings are few enough for any solver.
     *_laws(long_sine, "duration, s", _long, BY_STEPS, also_answered=(1e2,)),
     *_laws(phase_of_many_turns, "turns in the phase of a sine", RISING),
-    *_laws(start_from_rest, "time since the start, s", WITHIN),
-    *_laws(come_to_rest, "time to the end, s", WITHIN),
+    *_laws(start_from_rest, "time since the start, s", WITHIN, subjects=ALL),
+    *_laws(come_to_rest, "time to the end, s", WITHIN, subjects=ALL),
     *_laws(seen_at_rest_only, "size of the motion: 0.2 rad and 30 mm times this", FALLING),
     *_laws(kink_of_a_table, "time before and after the kink, s", WITHIN),
     *_laws(close_times_of_a_table, "distance of the times, s", WITHIN),

@@ -35,7 +35,7 @@ from validate.hard.case import (
     values_of,
 )
 from validate.hard.last_values import last_value
-from validate.hard.subjects import BESIDE, SUBJECTS, Content, Kind, Subject, hyphens
+from validate.hard.subjects import ALL, BESIDE, Content, Kind, Subject, hyphens
 from validate.hard.trial import Trial
 
 GROUP = "Links and numbers that make no mechanism"
@@ -301,12 +301,12 @@ def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject]
 
 PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
-EVERY = (*SUBJECTS, BESIDE)
-WITH_RODS = [subject for subject in SUBJECTS if subject.plain["rods"]]
+EVERY = (*ALL, BESIDE)
+WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
 PIECES = _numbers(lambda subject: pieces(subject.plain))
 
 CASES = (
-    *_changes(link_missing, PIECE, PIECES, SUBJECTS),
+    *_changes(link_missing, PIECE, PIECES, ALL),
     *_changes(link_missing, PIECE, PIECES, [BESIDE], name="constraint-missing"),
     *_changes(
         link_twice,

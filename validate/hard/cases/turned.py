@@ -26,7 +26,7 @@ from validate.cars.car import Car, any_rotation, rotation, turned
 from validate.cars.scene_content import content_of
 from validate.hard.cars import ASKED, PAPER_CAR, SQUARE, UPRIGHT_CAR, Array, drawn_angle, drawn_at
 from validate.hard.case import FAILS, REFUSED, RIGHT, SOLVERS, Expected, case, decades, family
-from validate.hard.subjects import OF_PARTS, SUBJECTS, Content, Subject
+from validate.hard.subjects import ALL, Content, Subject
 
 Turn = Callable[[float], Array]
 VALUES = (*decades(-12, -1), 0.0)
@@ -108,7 +108,7 @@ CASES = (
         partial(all_moving, lambda seed: any_rotation(int(seed))),
         "number of a random rotation",
         tuple(float(seed) for seed in range(1, 13)),
-        subjects=(*SUBJECTS, *OF_PARTS),
+        subjects=ALL,
         name="turned-at-random",
         why="No axis of the car lies along an axis of the frame, so nothing cancels by chance.",
     ),
