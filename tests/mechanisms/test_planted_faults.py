@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import pytest
 from mechanism_checks import PRINTED, closed_form_check
-from mechanism_files import Tables
+from mechanism_files import MECHANISMS, Tables
 
 from validate.reference import NoReferenceError
 
@@ -199,6 +199,10 @@ def test_a_fault_in_a_mechanism_file_is_noticed(fault: Fault) -> None:
     else:
         with pytest.raises(NoReferenceError, match=fault.notice):
             check.deviations_of(check.plain(fault.change))
+
+
+def test_faults_are_planted_in_every_shipped_mechanism() -> None:
+    assert {fault.mechanism for fault in FAULTS} == set(MECHANISMS)
 
 
 def test_a_rod_that_is_written_twice_changes_nothing() -> None:
