@@ -13,26 +13,19 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from pointcoord import AssemblyError, Motion, MotionNotMapped, Scene, built_in_scenes, simulate
-from pointcoord.linkage.mechanism import Mechanism
+from pointcoord import AssemblyError, Motion, MotionNotMapped, Scene, simulate
 from pointcoord.method import METHODS
-from pointcoord.numerics.newton import newton_refine, rounding_of
 from pointcoord.simulation import TRUNCATION_SHARE
 from pointcoord.solve import taylor
-from pointcoord.solve.assembly import Pose, assemble
 from validate.strategies import scenes
 
 Array = NDArray[np.float64]
-EPS = np.finfo(float).eps
 FINEST = 1e-13
 # Random cars that were found to come to a lock within the time of a few long segments.
 THAT_LOCK = json.loads((Path(__file__).parent / "scenes_that_lock.json").read_text())
-few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 8))
 # From 1e-2 mm to 1e-12 mm.
 tolerances = st.integers(2, 12).map(lambda digits: 10.0**-digits)
 Make = Callable[..., Scene]
-by_method = pytest.mark.parametrize("method", METHODS)
-by_scene = pytest.mark.parametrize("scene", [Scene.load(n) for n in built_in_scenes()], ids=built_in_scenes())
 
 
 def asking(scene: Scene, tolerance: float) -> Scene:
@@ -67,9 +60,8 @@ def rounding(exact: Motion) -> float:
     return 4.0 * max(float(proof.bound.max()), float(proof.carried_bound.max()))
 
 
-@by_method
-@few
-@given(scene=scenes(), tolerance=tolerances)
+@settings(deadline=None, max_examples=max(30, settings.default.max_examples // 4))
+@given(method=st.sampled_from([*METHODS]), scene=scenes(), tolerance=tolerances)
 def test_what_is_left_out_is_within_the_tolerance_what_is_proven_and_what_is_claimed(
     method: str, scene: Scene, tolerance: float
 ) -> None:
@@ -100,42 +92,16 @@ def test_what_is_left_out_is_within_the_tolerance_what_is_proven_and_what_is_cla
         assert off(motion, exact, quantity) <= allowed
 
 
-# -------------------------------------------------------------------------------- Newton's promise
-
-
-@pytest.fixture(scope="module")
-def pose(strut: Mechanism) -> Pose:
-    return assemble(strut, {"arm_angle": np.array(1.3), "rack": np.array(20.0)})
-
-
-@few
-@given(seed=st.integers(0, 2**32 - 1), away=st.floats(-9.0, -1.5), digits=st.floats(2.0, 16.0))
-def test_newton_stops_where_what_is_left_is_proven_to_be_below_the_tolerance(
-    strut: Mechanism, pose: Pose, seed: int, away: float, digits: float
-) -> None:
-    tolerance, n = 10.0**-digits, strut.layout.unknowns
-    start = pose.y.copy()
-    start[:n] += 10.0**away * np.random.default_rng(seed).uniform(-1.0, 1.0, size=n)
-    reached = newton_refine(strut.map, start, tolerance=tolerance)
-    finished = newton_refine(strut.map, start)
-    assume(finished.converged and np.abs(finished.y - pose.y).max() < 1e-12)
-    noise = float(rounding_of(strut.map, finished)) + 64 * EPS
-    assert reached.converged
-    assert reached.left <= tolerance
-    assert np.abs(reached.y - finished.y).max() <= float(reached.left) + noise
-    assert reached.iterations <= finished.iterations
-
-
-# ----------------------------------------------------------------------------------- less for less
-
-
 def cost(motion: Motion) -> float:
     """Of a chain in orders: what a segment costs beside its orders counts as SEGMENT of these."""
     return motion.work.segments * taylor.SEGMENT + motion.work.series_orders
 
 
-@by_scene
-def test_a_coarser_tolerance_costs_no_more_work_and_the_coarsest_much_less(scene: Scene) -> None:
+@pytest.mark.parametrize(
+    "name", ["bounce", "off-axis-strut", "double-wishbone", "five-link", "axle-roll", "andrews-squeezer"]
+)
+def test_a_coarser_tolerance_is_kept_without_waste_and_costs_less(name: str) -> None:
+    scene = Scene.load(name)
     motions = [simulate(asking(scene, 10.0**-digits)) for digits in range(2, 14)]
     costs = [cost(motion) for motion in motions]
     # Orders are whole numbers and a motion is a whole number of segments: one more or less of either a step.
@@ -143,29 +109,20 @@ def test_a_coarser_tolerance_costs_no_more_work_and_the_coarsest_much_less(scene
         assert coarse <= fine + taylor.SEGMENT + taylor.MOST
     # Of as many segments the orders alone are fewer: (25 + 26) / (25 + 40).
     assert costs[0] <= 0.8 * costs[-1]
-    solves = [motion.work.factorisations for motion in motions]
-    assert solves[0] <= solves[-1]
-
-
-def test_errors_are_below_what_is_allowed_and_not_many_orders() -> None:
-    found = []
-    for name in built_in_scenes():
-        scene = Scene.load(name)
-        exact = simulate(asking(scene, FINEST))
-        for tolerance in (1e-3, 1e-4, 1e-5, 1e-6):
-            motion = simulate(asking(scene, tolerance))
-            part = tolerance / motion.unit
-            # Positions may be off by the tolerance, rates by the same part of themselves as it is of the car;
-            # the one that is hardest to keep decides how long a segment is.
-            shares = [off(motion, exact, "position") / tolerance]
-            shares += [
-                off(motion, exact, quantity) / (part * largest(exact, quantity))
-                for quantity in ("velocity", "acceleration")
-                if motion.numbers[quantity].computed
-            ]
-            found.append(max(shares))
+    assert motions[0].work.factorisations <= motions[-1].work.factorisations
+    exact, found = motions[-1], []
+    for digits, motion in enumerate(motions[1:5], 3):
+        # Positions may be off by the tolerance, rates by the same part of themselves as it is of the car;
+        # the one that is hardest to keep decides how long a segment is.
+        part = 10.0**-digits / motion.unit
+        shares = [off(motion, exact, "position") / 10.0**-digits]
+        shares += [
+            off(motion, exact, quantity) / (part * largest(exact, quantity))
+            for quantity in ("velocity", "acceleration")
+            if motion.numbers[quantity].computed
+        ]
+        found.append(max(shares))
     assert max(found) <= 1.0
-    # Terms that swing, as of the four-bar, are taken to go on as the largest of them.
     assert np.median(found) >= 1e-3
 
 
@@ -181,21 +138,17 @@ def test_the_order_that_was_chosen_costs_least(monkeypatch: pytest.MonkeyPatch) 
             assert chosen <= 1.1 * fixed
 
 
-# ---------------------------------------------------------------------------------- planted faults
-
-
 # Scenes in which a method leaves something. Each pose is corrected by one step of Newton's method at least:
 # from the drawing of off-axis-strut a series leads so near that this one already leaves only rounding.
 LEAVING = [("newton", "off-axis-strut"), ("newton-cold", "bounce"), ("chord", "off-axis-strut")]
 
 
 @pytest.mark.parametrize(("method", "name"), LEAVING, ids=[method for method, _ in LEAVING])
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
 def test_a_claim_without_what_the_tolerance_left_is_caught(
-    tolerance: float, method: str, name: str, monkeypatch: pytest.MonkeyPatch
+    method: str, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = Scene.load(name)
-    exact, motion = (simulate(asking(scene, t), method) for t in (FINEST, tolerance))
+    exact, motion = (simulate(asking(scene, t), method) for t in (FINEST, 1e-3))
     gap = np.abs(motion.position["wheel_centre"] - exact.position["wheel_centre"])
 
     def claimed() -> Array:
@@ -232,16 +185,3 @@ def test_rates_that_are_no_numbers_at_high_orders_limit_the_order(make_scene: Ma
     motion = simulate(make_scene(law, (0.0, 20.0 / duration), stop=duration, tolerance=FINEST))
     same = simulate(make_scene((1.5, 0.3, 0.3), (0.0, 20.0), stop=1.0, tolerance=FINEST))
     assert off(motion, same, "position") <= FINEST + rounding(same)
-
-
-@by_method
-@pytest.mark.parametrize("tolerance", [1e-2, 1e-9])
-def test_no_method_passes_the_end_of_its_branch(make_scene: Make, method: str, tolerance: float) -> None:
-    # With the rack a tenth of a millimetre off the middle the arm cannot go below 35.27 degrees.
-    scene = make_scene((1.0, -0.42), (-0.1,), stop=1.0, samples=41, tolerance=tolerance)
-    with pytest.raises(AssemblyError, match="bring 'arm_angle' back") as caught:
-        simulate(scene, method)
-    assert np.rad2deg(caught.value.reached["arm_angle"]) == pytest.approx(35.27, abs=0.01)
-    partial = caught.value.partial
-    assert isinstance(partial, Motion)
-    assert np.rad2deg(1.0 - 0.42 * partial.times[-1]) >= 35.27 - 0.01

@@ -16,8 +16,6 @@ from pointcoord.solve.taylor import SHORT, Settings, gone_on, last_magnitudes, l
 Array = NDArray[np.float64]
 SLOW = {
     "t^3": [0.0, 0.0, 1.0],
-    "t^5": [0.0, 0.0, 0.0, 0.0, 1.0],
-    "t^9": [*[0.0] * 8, 1.0],
     "t^13": [*[0.0] * 12, 1.0],
     "t^3, and t hardly": [2e-6, 0.0, 1.0],
     "t^8, and t^2 hardly": [0.0, 2e-8, *[0.0] * 5, 1.0],
@@ -72,7 +70,7 @@ def random_logs(rng: np.random.Generator, members: int) -> Array:
     return logs
 
 
-@pytest.mark.parametrize("seed", range(200))
+@given(seed=st.integers(0, 2**32 - 1))
 def test_a_segment_is_as_long_as_its_last_two_terms_allow_in_every_derivative(seed: int) -> None:
     rng = np.random.default_rng(seed)
     logs = random_logs(rng, int(rng.integers(1, 4)))
@@ -143,24 +141,16 @@ def test_terms_that_swing_leave_out_no_more_than_is_said(
     assert left <= said(every[: order + 1], at, length)
 
 
-@pytest.mark.parametrize("unit", [2.0**-6, 1.0, 2.0**6])
-def test_the_unit_of_time_changes_nothing(unit: float) -> None:
-    plain = swinging(0.4, 1.0, 0.3)[:25]
-    scaled = plain * unit ** np.arange(25)
-    at = 0.3
-    assert said(scaled, at / unit, 0.4 / unit) == pytest.approx(said(plain, at, 0.4), rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("angle", "phase", "odd", "order", "part", "at"),
-    [
-        # Looked for: 24 times what is said if the fall is taken in this unit, in which terms rise.
-        (0.3531510656, 0.0831998326, 0.9315690877, 23, 0.6792952857, 0.6663665443),
-    ],
-)
-def test_a_dip_at_the_end_is_not_taken_for_the_end(
-    angle: float, phase: float, odd: float, order: int, part: float, at: float
-) -> None:
+def test_a_dip_at_the_end_is_not_taken_for_the_end() -> None:
+    # Looked for: 24 times what is said if the fall is taken in this unit, in which terms rise.
+    angle, phase, odd, order, part, at = (
+        0.3531510656,
+        0.0831998326,
+        0.9315690877,
+        23,
+        0.6792952857,
+        0.6663665443,
+    )
     k = np.arange(MANY)
     swing = np.cos(k * angle + phase)
     every = (swing + odd * (-1.0) ** k * swing) * np.maximum(k, 1) ** -1.5 * 8.0**k

@@ -13,13 +13,12 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.quadratic import Product, quadratic_map
-from pointcoord.solve import assembly, follower
+from pointcoord.solve import follower
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
 from pointcoord.solve.follower import follow
 from pointcoord.solve.proven_step import ROOM, Proof, prove
 
 Array = NDArray[np.float64]
-EPS = np.finfo(float).eps
 MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}
 by_mechanism = pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS.keys())
 few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
@@ -119,28 +118,9 @@ def test_most_paths_inside_the_range_take_a_few_steps(mechanism: Mechanism) -> N
 
 
 @by_mechanism
-@pytest.mark.parametrize("moved", ["arm_angle", "rack"])
-def test_the_input_that_goes_on_is_the_one_to_bring_back(mechanism: Mechanism, moved: str) -> None:
-    start, held = at(mechanism, 1.5, 20.0), {"arm_angle": 1.5, "rack": 20.0}
-    far = {"arm_angle": (0.1, 3.0, 0.01, 3.13), "rack": (1000.0,)}[moved]
-    stopped = 0
-    for value in far:
-        wanted = {**held, moved: value}
-        known = mechanism.known_series({name: np.array([v]) for name, v in wanted.items()})[0]
-        path = follow(mechanism.map, start.y, known, start.factors)
-        if path.done < 1.0:
-            stopped += 1
-            status = assembly.blocked(mechanism, "no way", path.y, path.factors, known, path.done < 1.0, None)
-            assert status.reduce == moved
-            assert status.wanted == pytest.approx(wanted, abs=1e-9)
-    assert stopped > 0
-
-
-@by_mechanism
-@pytest.mark.parametrize("bow", [0.0, 0.05])
-@pytest.mark.parametrize("off", [0.0, 1e-3])
-def test_a_law_leads_where_the_straight_path_leads(mechanism: Mechanism, bow: float, off: float) -> None:
+def test_a_law_leads_where_the_straight_path_leads(mechanism: Mechanism) -> None:
     """Also from a pose that is not closed: what it lacks is taken back along either path."""
+    bow, off = 0.05, 1e-3
     start, end = at(mechanism, 1.5, 0.0), at(mechanism, 1.2, 20.0)
     n, y = mechanism.layout.unknowns, start.y.copy()
     y[:n] += off * np.random.default_rng(8).uniform(-1.0, 1.0, n)
