@@ -360,14 +360,8 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "instant_centres": _instant_centres,
     "anti_features": _anti_features,
 }
-DIFFERENTIATED = (
-    "wheel_angles",
-    "steer_angle",
-    "angles_by_arcsine",
-    "wheel_travel",
-    "steering_axis",
-    "damper",
-)
+# An angle of two lines, an angle by its sine, and lengths of a point that turns.
+DIFFERENTIATED = ("wheel_angles", "angles_by_arcsine", "wheel_travel")
 BY_HAND |= {
     f"{name}_by_{by}": _derived(name, by) for name in DIFFERENTIATED for by in ("travel", "rack", "time")
 }

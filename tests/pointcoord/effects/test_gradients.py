@@ -3,9 +3,8 @@
 from typing import Any
 
 import numpy as np
-import pytest
 
-from pointcoord import MapError, Scene, kinematic_map, simulate
+from pointcoord import Scene, simulate
 from pointcoord.effects.registry import EFFECTS
 
 ALONG = {name for name, effect in EFFECTS.items() if effect.way or effect.base}
@@ -58,14 +57,3 @@ def test_where_the_wheel_does_not_travel_there_is_no_number_and_a_note_says_why(
     motion = simulate(Scene.from_mapping(content))
     assert np.isfinite(motion.angle_gradient["toe_by_travel"]).tolist() == [False, True, True]
     assert any("does not travel" in note for note in motion.notes)
-
-
-def test_a_map_says_that_it_takes_no_derivatives_by_an_input() -> None:
-    scene = asking("pushrod", {"wheel_travel": TRAVEL, "rack": STEER})
-    with pytest.raises(MapError, match="without derivatives by an input"):
-        kinematic_map(scene, {"wheel_travel": (-5.0, 5.0), "rack": (-1.0, 1.0)})
-
-
-def test_without_exactly_one_input_to_go_along_there_is_none() -> None:
-    scene = asking("five-link")
-    assert not {name for name in scene.effects if name.endswith("_by_rack")}

@@ -1,7 +1,6 @@
 """Forces of rods, dampers and joints: closed forms, balances of bodies, laws of mirrors and turns."""
 
 from collections.abc import Mapping
-from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -51,11 +50,8 @@ def assert_balanced(about: Array, *forces: tuple[Array, Array | str], moment: An
     assert np.abs(turn).max() < 1e-10 * scale * 1000.0
 
 
-@pytest.mark.parametrize("bodies", list(permutations(("chassis", "arm", "knuckle"))))
-def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm(
-    bodies: tuple[str, ...],
-) -> None:
-    motion = simulate(hinged_knuckle(LOAD, RADIUS, bodies=bodies))
+def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm() -> None:
+    motion = simulate(hinged_knuckle(LOAD, RADIUS))
     at, contact = motion.position, contact_of(motion, "inner", "centre")
     hinges = {}
     for first, second in (("king_top", "king_low"), ("arm_front", "arm_rear")):
@@ -74,11 +70,15 @@ def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm(
     up[:, 2] = -sum(force[:, 2] for force, _ in acting)
     assert_balanced(contact, *acting, (up, at["centre"]), moment=LOAD["moment"])
     assert_balanced(at["arm_front"], *((-f, place) for f, place in hinges["king_top"]), *hinges["arm_front"])
+    with pytest.raises(AssertionError):  # what is a billionth off is no balance
+        assert_balanced(
+            contact, (acting[0][0] * 1e-9, contact), *acting, (up, at["centre"]), moment=LOAD["moment"]
+        )
 
 
-@pytest.mark.parametrize("driven", ["near", "far"])
-def test_a_knuckle_that_an_arm_guides_is_in_balance_and_so_is_the_arm(driven: str) -> None:
-    motion = simulate(guided_knuckle(LOAD, RADIUS, driven=driven))
+def test_a_knuckle_that_an_arm_guides_is_in_balance_and_so_is_the_arm() -> None:
+    """The point that is driven along the guide is held along it too."""
+    motion = simulate(guided_knuckle(LOAD, RADIUS, driven="far"))
     at, contact, joint = motion.position, contact_of(motion, "inner", "centre"), motion.joint_force
     guides = [(joint[name], at[name]) for name in ("near", "far")]
     forces = [
@@ -90,79 +90,11 @@ def test_a_knuckle_that_an_arm_guides_is_in_balance_and_so_is_the_arm(driven: st
     up[:, 2] = -sum(force[:, 2] for force, _ in forces)
     assert_balanced(contact, *forces, (up, at["centre"]), moment=LOAD["moment"])
     along = {name: np.abs(np.vecdot(joint[name], at["far"] - at["near"])) for name in ("near", "far")}
-    (other,) = {"near", "far"} - {driven}
-    assert along[other].max() < 1e-6 < 1e4 < along[driven].min()
+    assert along["near"].max() < 1e-6 < 1e4 < along["far"].min()
     hinge = at["arm_rear"] - at["arm_front"]
     thrust = (motion.hinge_thrust["arm_front"] / np.linalg.norm(hinge, axis=-1))[:, None] * hinge
     held = [(joint["arm_front"] + thrust, at["arm_front"]), (joint["arm_rear"], at["arm_rear"])]
     assert_balanced(contact, *((-force, place) for force, place in guides), *held)
-
-
-def test_a_force_that_is_off_by_a_billionth_is_no_balance() -> None:
-    motion = loaded("pushrod", LOAD)
-    contact = contact_of(motion)
-    force = np.broadcast_to(LOAD["force"], contact.shape)
-    ball = [(each, motion.position[name]) for name, each in motion.joint_force.items() if "ball" in name]
-    tie_rod = pull(motion, "tie_rod", "tie_rod_outer", "tie_rod_inner"), motion.position["tie_rod_outer"]
-    with pytest.raises(AssertionError):
-        assert_balanced(contact, (force * (1.0 + 1e-9), contact), tie_rod, *ball, moment=LOAD["moment"])
-
-
-ON_A_BALL = {
-    "bodies": {
-        "chassis": ["ball", "in_1", "in_2"],
-        "knuckle": ["ball", "out_1", "out_2", "inner", "centre"],
-    },
-    "rods": {"one": ["in_1", "out_1"], "two": ["out_2", "in_2"]},
-    "inputs": {"travel": {"height": "centre"}},
-    "roles": {"knuckle": "knuckle", "wheel_axis": ["inner", "centre"]},
-}
-
-
-@pytest.mark.parametrize("roll", [0.0, 0.3])
-def test_a_knuckle_on_a_ball_joint_of_the_chassis_is_in_balance(roll: float) -> None:
-    """Of a car that rolls the force is along the axes of the ground, and so is what the input holds with."""
-    tables = {
-        **ON_A_BALL,
-        "inputs": {**ON_A_BALL["inputs"], "roll": {"turns": "chassis", "about": "ball", "along": "forward"}},
-    }
-    points = {
-        "ball": (0.0, 600.0, 200.0),
-        "in_1": (-300.0, 640.0, 400.0),
-        "out_1": (10.0, 640.0, 420.0),
-        "in_2": (150.0, 300.0, 215.0),
-        "out_2": (140.0, 630.0, 210.0),
-        "inner": (0.0, 650.0, 300.0),
-        "centre": (0.0, 750.0, 310.0),
-    }
-    motion = simulate(
-        Scene.from_mapping(
-            {
-                "effects": ["loads"],
-                "mechanism": {
-                    **tables,
-                    "side": "right",
-                    "points": points,
-                    "wheel_radius": RADIUS,
-                    "loads": LOAD,
-                },
-                "inputs": {"travel": {"polynomial": [-10.0, 20.0]}, "roll": {"constant": roll}},
-                "time": {"start": 0.0, "stop": 1.0, "samples": 5},
-            }
-        )
-    )
-    contact = contact_of(motion, "inner", "centre")
-    forces = [
-        (np.broadcast_to(LOAD["force"], contact.shape), contact),
-        (motion.joint_force["ball"], motion.position["ball"]),
-        (pull(motion, "one", "out_1", "in_1"), motion.position["out_1"]),
-        (pull(motion, "two", "out_2", "in_2"), motion.position["out_2"]),
-    ]
-    # The height is that in the chassis, whose up has rolled about forward, -x.
-    up = np.array([0.0, np.sin(roll), np.cos(roll)])
-    rest = -sum(force for force, _ in forces)
-    held = (rest @ up)[:, None] * up
-    assert_balanced(contact, *forces, (held, motion.position["centre"]), moment=LOAD["moment"])
 
 
 TRAVEL = {f"{side}.wheel_travel": {"polynomial": [-15.0, 40.0]} for side in ("left", "right")}
@@ -177,18 +109,11 @@ def test_a_wheels_load_makes_forces_as_of_a_wheel_alone_and_none_at_the_other() 
     for quantity in FORCES:
         for name, force in axle.numbers[quantity].items():
             side, _, own = name.partition(".")
+            assert (proven[quantity][name] <= 1e-11 * 1e4).all(), name
             if side == "left":
                 assert (np.abs(force) <= proven[quantity][name]).all(), name
             else:
                 assert force == pytest.approx(single.numbers[quantity][own], rel=1e-10, abs=1e-8), name
-
-
-def test_forces_are_linear_in_the_loads() -> None:
-    doubled = {name: (2.0 * np.array(vector)).tolist() for name, vector in LOAD.items()}
-    one, twice = loaded("pushrod", LOAD), loaded("pushrod", doubled)
-    for quantity in FORCES:
-        for name, array in one.numbers[quantity].items():
-            assert np.array_equal(twice.numbers[quantity][name], 2.0 * array)
 
 
 def test_a_load_in_other_units_has_its_moment_in_these() -> None:
@@ -203,19 +128,6 @@ def test_a_load_in_other_units_has_its_moment_in_these() -> None:
     metres = Scene.from_mapping({**content, "effects": ["loads"], "units": "m"}).mechanism
     assert metres.plain(())["loads"][""]["force"] == plain.plain(())["loads"][""]["force"]
     assert metres.plain(())["loads"][""]["moment"] == pytest.approx(plain.plain(())["loads"][""]["moment"])
-
-
-@pytest.mark.parametrize(
-    "name", ["pushrod", "double-wishbone", "off-axis-strut", "five-link", "pushrod-by-damper"]
-)
-def test_every_force_is_proven_to_some_roundings(name: str) -> None:
-    motion = loaded(name, LOAD)
-    proof = motion.proof(rates=True)
-    largest = max(float(np.abs(a).max()) for q in FORCES for a in motion.numbers[q].values())
-    for quantity in FORCES:
-        for number, array in motion.numbers[quantity].items():
-            assert np.isfinite(array).all()
-            assert (proof.proven[quantity][number] <= 1e-11 * largest).all(), number
 
 
 def test_a_mechanism_that_is_held_twice_has_no_forces() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Motion, MotionTooLong, PointcoordError, Scene, simulate
-from pointcoord.method import NEWTON, SERIES, Method
+from pointcoord.method import METHODS, NEWTON, SERIES, Method
 from pointcoord.solve.status import COMPLETE
 from validate.paper.printed import PRINTED
 
@@ -21,7 +21,7 @@ def stopped_by(kind: type[PointcoordError], scene: Scene, method: Method) -> Poi
     return caught.value
 
 
-@pytest.mark.parametrize("method", [SERIES, NEWTON, PRINTED], ids=str)
+@pytest.mark.parametrize("method", [*METHODS.values(), PRINTED], ids=str)
 def test_a_whole_motion_is_complete_and_a_part_of_one_says_what_stopped_it(
     make_scene: Callable[..., Scene], method: Method
 ) -> None:
@@ -34,9 +34,14 @@ def test_a_whole_motion_is_complete_and_a_part_of_one_says_what_stopped_it(
     assert isinstance(part, Motion)
     assert not part.status.complete
     assert str(part.status.error(part)) == str(error)
-    assert repr(part).startswith(f"<part of a Motion by {method}")
+    assert repr(part).startswith(f"<part of a Motion by {'series' if method.name == 'auto' else method}")
     # Both scenes have an instant every 0.05 s, and up to the end they ask for the same.
     assert np.array_equal(part.times, whole.times)
+    assert error.reduce == "arm_angle"
+    assert error.wanted["arm_angle"] > error.reached["arm_angle"]
+    # A map ends with a box, and the printed formulas at an instant.
+    short = {"map": 1e-3, "printed": 0.05}.get(method.name, np.deg2rad(1e-3))
+    assert np.deg2rad(152.013) - short <= error.reached["arm_angle"] <= np.deg2rad(152.014)
     again = pickle.loads(pickle.dumps(part))
     assert str(again.status.error()) == str(error)
 
