@@ -121,7 +121,6 @@ class Certificate:
 
     Attributes:
         radius: exactly one assembly lies within it, (..., m); infinite where nothing could be proven.
-        unique_within: no other assembly lies within this distance, (..., m).
         contraction: z + omega radius >= |I - X C_u| everywhere within the radius, (..., m); infinite
             where nothing could be proven.
         defect: |I - X C_u(y)| element by element at any pose of the group, (..., unknowns, unknowns).
@@ -132,7 +131,6 @@ class Certificate:
     """
 
     radius: Array
-    unique_within: Array
     contraction: Array
     defect: Array
     residual: Array
@@ -166,7 +164,6 @@ def certify(system: QuadraticMap, pose: Enclosed, factors: Factors) -> Certifica
         found = ball(eta, z[..., None], system.lipschitz(inverse)[..., None])
     return Certificate(
         radius=found.radius,
-        unique_within=found.outer,
         contraction=found.contraction,
         defect=defect,
         residual=middle,

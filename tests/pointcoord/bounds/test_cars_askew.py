@@ -41,13 +41,12 @@ def check(scene: Scene, instants: int) -> int:
     return checked
 
 
-@pytest.mark.parametrize("seed", [1, 2, 5])
-@pytest.mark.parametrize("name", ["axle-roll", "bounce-on-a-heaving-chassis"])
+@pytest.mark.parametrize(("name", "seed"), [("axle-roll", 1), ("bounce-on-a-heaving-chassis", 5)])
 def test_bounds_hold_of_a_car_that_stands_askew(name: str, seed: int) -> None:
     assert check(askew(name, seed), 3) > 200
 
 
-@pytest.mark.parametrize("number", [238, 478, 2490])
+@pytest.mark.parametrize("number", [238, 2490])
 def test_bounds_hold_whichever_rows_of_a_redundant_mechanism_are_left_out(number: int) -> None:
     """Bricard's ring drawn askew: the reference leaves out other rows, which differ in the last digits.
 
@@ -58,7 +57,7 @@ def test_bounds_hold_whichever_rows_of_a_redundant_mechanism_are_left_out(number
     assert check(scene, 1) == 108
 
 
-@pytest.mark.parametrize("first", range(0, 40, 5))
+@pytest.mark.parametrize("first", range(0, 20, 5))
 def test_bounds_hold_of_random_cars(first: int) -> None:
     """Of every mechanism, turned anyhow, moved and scaled, as far as both sides answer."""
     checked = 0

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from pointcoord import Scene, SceneError, built_in_scenes
-from pointcoord.mechanism import mechanism_file, shipped
+from pointcoord import Scene, SceneError
 from pointcoord.mechanism.file import MECHANISMS
 from validate.cli import main
 
@@ -151,21 +150,3 @@ def test_a_fault_of_tables_in_a_scene_has_the_key_of_the_scene() -> None:
     with pytest.raises(SceneError) as caught:
         Scene.from_mapping({**SCENE, "mechanism": part}, "here")
     assert caught.value.key == "mechanism.slides.rack.along"
-
-
-# Without a drawing every equation counts, so that a mechanism with redundant ones seems to have no freedom.
-WITHOUT_REDUNDANT_ROWS = [name for name in shipped() if mechanism_file(name).freedoms() > 0]
-
-
-@pytest.mark.parametrize("name", WITHOUT_REDUNDANT_ROWS)
-def test_a_shipped_mechanism_has_as_many_first_inputs_as_freedoms(name: str) -> None:
-    file = mechanism_file(name)
-    topology = file.topology()
-    assert len(topology.labels) == topology.layout.unknowns
-    assert len(topology.required_inputs) == file.freedoms()
-
-
-@pytest.mark.parametrize("name", built_in_scenes())
-def test_the_drawing_of_a_shipped_scene_has_as_many_equations_as_unknowns(name: str) -> None:
-    topology = Scene.load(name).mechanism.topology
-    assert len(topology.labels) == topology.layout.unknowns
