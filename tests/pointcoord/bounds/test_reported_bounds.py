@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import fields, replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -17,9 +16,6 @@ from pointcoord.bounds import certified_poses
 from pointcoord.bounds.certified_poses import SHARED
 from pointcoord.bounds.proof import Numbers, Proof
 from pointcoord.bounds.solved_coordinates import Summed
-from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.in_body import Normal, carrier_weights
-from pointcoord.linkage.drawing import Drawing
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.ways import ByChain
 
@@ -141,13 +137,6 @@ def test_a_number_near_where_its_divisor_is_0_is_bounded_as_each_instant_alone()
         assert np.isfinite(proven[quantity][name][np.isfinite(numbers)]).all(), name
 
 
-BODY = Normal("", "base", "first", "second")
-
-
-def cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
-    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
-
-
 def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_makes_of_it(
     make_scene: Callable[..., Scene],
 ) -> None:
@@ -178,40 +167,3 @@ def test_terms_that_cancel_are_rounded_with_the_condition_number() -> None:
     found = summed.expected(value, np.array([100.0, 100.0]), np.ones(2))
     # Of the first pose 3 - 1 of the first coordinate has cancelled, of the second nothing.
     np.testing.assert_allclose(found, EPS * np.array([[203.0, 201.0], [3.0, 1.0]]), rtol=1e-12)
-
-
-@pytest.mark.parametrize("thin", [(-15.0, -14.0), (-14.0, -6.0), (-6.0, 0.0)])
-def test_weights_of_carriers_however_nearly_in_line_are_within_their_doubt(thin: tuple[float, float]) -> None:
-    closest, told = 0.0, 0
-    for seed in range(200):
-        rng = np.random.default_rng(seed)
-        base, e1, rider = rng.normal(size=(3, 3))
-        e2 = e1 * rng.uniform(0.5, 2.0) + 10.0 ** rng.uniform(*thin) * rng.normal(size=3)
-        vectors = {"base": base, "first": base + e1, "second": base + e2, "rider": rider}
-        try:
-            found = carrier_weights(Drawing(vectors, np.array(1.0)), "rider", BODY)
-        except MechanismError:
-            continue
-        told += 1
-        for exact, *parts in zip(by_cramer(vectors), *(part.tolist() for part in found), strict=True):
-            value, lacks, doubt = map(Fraction, parts)
-            assert abs(exact - value - lacks) <= doubt, seed
-            closest = max(closest, float(abs(exact - value - lacks) / doubt))
-    assert told > 50
-    assert closest > 1e-4
-
-
-def by_cramer(vectors: Mapping[str, Array]) -> list[Fraction]:
-    """By Cramer's rule."""
-    p = {name: [Fraction(float(c)) for c in place] for name, place in vectors.items()}
-    e1, e2, target = (
-        [a - b for a, b in zip(p[name], p["base"], strict=True)] for name in ("first", "second", "rider")
-    )
-    frame = [e1, e2, cross(e1, e2)]
-
-    def volume(*columns: list[Fraction]) -> Fraction:
-        a, b, c = columns
-        return sum((x * y for x, y in zip(a, cross(b, c), strict=True)), Fraction(0))
-
-    whole = volume(*frame)
-    return [volume(*(target if i == j else frame[j] for j in range(3))) / whole for i in range(3)]

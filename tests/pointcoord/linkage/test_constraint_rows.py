@@ -188,7 +188,7 @@ def test_every_kind_of_constraint_takes_part_in_the_properties_below() -> None:
 
 
 @pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)
-@settings(deadline=None)
+@settings(deadline=None, max_examples=max(20, settings.default.max_examples // 5))
 @given(y=states())
 def test_rows_are_the_equation(constraint: Constraint, equation: Callable[[Read], Array], y: Array) -> None:
     rows = constraint.rows(LAYOUT)
@@ -197,11 +197,3 @@ def test_rows_are_the_equation(constraint: Constraint, equation: Callable[[Read]
     # Four terms of differences up to 2 LARGEST, two evaluations with fewer than 10 roundings each.
     tolerance = 2 * 10 * U * 4 * (2 * LARGEST) ** 2
     assert np.abs(system.residual(y) - equation(Read(y))).max() <= tolerance
-
-
-@pytest.mark.parametrize(("constraint", "equation"), CASES, ids=lambda case: type(case).__name__)
-def test_every_row_reacts_to_an_unknown(constraint: Constraint, equation: Callable[[Read], Array]) -> None:
-    system = quadratic_map(constraint.rows(LAYOUT), LAYOUT.unknowns, LAYOUT.size)
-    y = np.random.default_rng(1).normal(size=LAYOUT.size)
-    y[LAYOUT.zero], y[LAYOUT.one] = 0.0, 1.0
-    assert (np.abs(system.jacobian(y)).max(axis=1) > 0.0).all()

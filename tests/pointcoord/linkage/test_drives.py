@@ -104,7 +104,7 @@ def test_the_series_of_a_coordinate_are_its_equations_derivatives(kind: str) -> 
 
 @by_kind
 # Of 4 terms most of the doubt is what they leave out; of 20 it is what they are rounded by.
-@pytest.mark.parametrize("order", [4, 7, 20])
+@pytest.mark.parametrize("order", [4, 20])
 def test_a_series_over_a_range_is_as_near_as_it_says_with_its_derivatives(kind: str, order: int) -> None:
     drive, equation, (least, most, half) = CASES[kind]
     shares: list[Any] = []

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sample_cars import SampleCar, by_car
+from sample_cars import GENERAL_STRUT, SampleCar, by_car
 
 from pointcoord import MechanismError, Scene, simulate
 from pointcoord.linkage.constraints.link import Link
@@ -87,13 +87,11 @@ def test_origin_and_size_are_taken_off_without_rounding(
         assert np.abs(own).max() < 8.0  # the origin lies near the car, within four of its sizes
 
 
-@pytest.mark.parametrize("power", [-300, 1, 300])
-@pytest.mark.parametrize("method", [SERIES, NEWTON], ids=str)
-@by_car
+@pytest.mark.parametrize(("power", "method"), [(-300, SERIES), (300, NEWTON)], ids=str)
 def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(
-    car: SampleCar, make_scene: Callable[..., Scene], power: int, method: Method
+    make_scene: Callable[..., Scene], power: int, method: Method
 ) -> None:
-    rack = np.array([10.0, 30.0, 5.0])
+    car, rack = GENERAL_STRUT, np.array([10.0, 30.0, 5.0])
     plain = simulate(make_scene(car=car, rack=rack, samples=5), method)
     scaled = simulate(
         make_scene(
@@ -106,10 +104,8 @@ def test_car_scaled_by_a_power_of_two_gives_the_scaled_bits(
         method,
     )
     for quantity in ("position", "velocity", "acceleration"):
-        for name in car.points:
-            expected = np.ldexp(getattr(plain, quantity)[name], power)
-            assert np.array_equal(getattr(scaled, quantity)[name], expected)
-    for quantity in ("angular_velocity", "angular_acceleration"):
-        assert np.array_equal(getattr(scaled, quantity)["knuckle"], getattr(plain, quantity)["knuckle"])
-    for angle in plain.wheel:
-        assert np.array_equal(scaled.wheel[angle], plain.wheel[angle])
+        for name, array in plain.numbers[quantity].items():
+            assert np.array_equal(scaled.numbers[quantity][name], np.ldexp(array, power))
+    for quantity in ("angular_velocity", "angular_acceleration", "wheel"):
+        for name, array in plain.numbers[quantity].items():
+            assert np.array_equal(scaled.numbers[quantity][name], array)
