@@ -41,9 +41,9 @@ def fractions(placed: Placed) -> list[Fraction]:
 
 
 def drawn(seed: int, place: str, height: float) -> dict[str, Array]:
-    """Seven points: a triangle of some height, an axis somewhere in or beside it, a point near the axis."""
+    """A triangle of some height, an axis somewhere in or beside it, and a point near the axis."""
     rng = np.random.default_rng(seed)
-    base, along, off, tail, rider = rng.uniform(-1.0, 1.0, (5, 3))
+    base, along, off, tail = rng.uniform(-1.0, 1.0, (4, 3))
     first, second = base + along, base + rng.uniform(0.3, 0.8) * along + height * off
     if place == "an edge":
         tail, head = base, base + rng.uniform(1.0, 3.0) * (second - base)
@@ -52,8 +52,7 @@ def drawn(seed: int, place: str, height: float) -> dict[str, Array]:
     else:
         head = tail + rng.uniform(-1.0, 1.0, 3)
     end = head + rng.uniform(-1.0, 1.0) * (head - tail) + 1e-3 * rng.uniform(-1.0, 1.0, 3)
-    names = ("base", "first", "second", "tail", "head", "end", "rider")
-    return dict(zip(names, (base, first, second, tail, head, end, rider), strict=True))
+    return {"base": base, "first": first, "second": second, "tail": tail, "head": head, "end": end}
 
 
 def by_cramer(p: dict[str, Vector], target: Vector) -> Iterator[Fraction]:
@@ -111,9 +110,11 @@ def test_a_point_is_held_at_its_drawn_distance_on_its_drawn_side(seed: int, plac
 @pytest.mark.parametrize("thin", [(-15.0, -14.0), (-14.0, -6.0), (-6.0, 0.0)])
 def test_weights_of_carriers_however_nearly_in_line_are_within_their_doubt(thin: tuple[float, float]) -> None:
     shares = []
-    for seed in range(100):
+    for seed in range(200):
         rng = np.random.default_rng(seed)
-        points = drawn(seed, "anywhere", 10.0 ** rng.uniform(*thin))
+        base, along, rider = rng.normal(size=(3, 3))
+        second = base + along * rng.uniform(0.5, 2.0) + 10.0 ** rng.uniform(*thin) * rng.normal(size=3)
+        points = {"base": base, "first": base + along, "second": second, "rider": rider}
         try:
             found = carrier_weights(alone(points), "rider", BODY)
         except MechanismError:
@@ -124,7 +125,7 @@ def test_weights_of_carriers_however_nearly_in_line_are_within_their_doubt(thin:
             value, lacks, doubt = map(Fraction, parts)
             assert abs(meant - value - lacks) <= doubt, seed
             shares.append(float(abs(meant - value - lacks) / doubt))
-    assert len(shares) > 75
+    assert len(shares) > 150
     assert max(shares) > 1e-4
 
 

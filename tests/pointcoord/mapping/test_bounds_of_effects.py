@@ -20,7 +20,6 @@ States = tuple[dict[str, Array], dict[str, Array], dict[str, Array]]
 
 POSES = 8
 RANGES = {
-    "bounce-and-steer": {"arm_angle": (1.5, 1.9), "rack": (-30.0, 30.0)},
     "double-wishbone": {"arm_angle": (1.45, 1.65), "rack": (-15.0, 15.0)},
     "off-axis-strut": {"arm_angle": (1.5, 1.7), "rack": (-15.0, 15.0)},
 }
@@ -89,20 +88,17 @@ def test_every_number_is_within_its_bound_of_the_reference(name: str) -> None:
     assert max(bound.max() for bound in found.bounds["wheel"].values()) < 1e-10
 
 
-@pytest.mark.parametrize("derivative", range(3))
-def test_a_map_that_is_off_by_more_than_it_says_is_found_out(derivative: int) -> None:
+def test_a_map_that_is_off_by_more_than_it_says_is_found_out() -> None:
     """Errors of its sums, of their first or of their second derivatives are told a millionth as large."""
     name = "double-wishbone"
     scene = with_all_effects(name)
     map = kinematic_map(scene, RANGES[name], tolerance=1e-3)  # its errors are seen beside rounding
-    parts = [part * (1e-6 if d == derivative else 1.0) for d, part in enumerate(map.series.off.parts)]
-    wrong = KinematicMap(scene, map.tolerance, replace(map.series, off=Jet(*parts)), map.gaps)
     states = states_of(scene, name, 23)
     truth = exact(scene, states)
-    told, honest = (shares(m(*states, bounds=True), truth) for m in (wrong, map))
-    assert max(honest.values()) <= 1.0
-    seen = ("position", "velocity", "acceleration")[derivative]
-    assert told[seen] > 1.0
+    for derivative, seen in enumerate(("position", "velocity", "acceleration")):
+        parts = [part * (1e-6 if d == derivative else 1.0) for d, part in enumerate(map.series.off.parts)]
+        wrong = KinematicMap(scene, map.tolerance, replace(map.series, off=Jet(*parts)), map.gaps)
+        assert shares(wrong(*states, bounds=True), truth)[seen] > 1.0
 
 
 def test_bounds_have_the_shape_of_the_numbers_and_are_none_unless_asked_for() -> None:

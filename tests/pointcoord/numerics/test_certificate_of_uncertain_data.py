@@ -21,9 +21,11 @@ plain = settings(deadline=None)
 
 
 def certify_alone(system: QuadraticMap, y: Array, data: Array) -> Certificate:
-    """The certificate of one pose, of which the known coordinates may be off by `data`, by its own inverse."""
+    """The certificate of one pose, whose known coordinates may be off by `data`, by its own inverse."""
     found = certify(system, Enclosed.of(y[None], 0.0, data[None]), factorise(system.jacobian(y)))
-    return replace(found, radius=found.radius[0], step=found.step[0], spread=found.spread[0], tail=found.tail[0])
+    return replace(
+        found, radius=found.radius[0], step=found.step[0], spread=found.spread[0], tail=found.tail[0]
+    )
 
 
 def linear_map(n: int) -> QuadraticMap:

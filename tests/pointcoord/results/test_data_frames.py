@@ -15,8 +15,6 @@ from pointcoord import MissingLibrary, Scene, UnknownName, simulate
 from pointcoord.results.named_columns import LIBRARIES
 from validate.output.columns import write_csv
 
-ROOT = Path(__file__).parents[3]
-
 
 class Frame:
     """What the constructor of either library takes: columns by name."""

@@ -17,6 +17,7 @@ from pointcoord.results.ways import ByChain
 EPS = float(np.finfo(float).eps)
 EVERY = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster", "damper")
 SCENES = ("bounce-on-a-heaving-chassis", "double-wishbone")
+RATES = ("velocity", "acceleration")
 AT_REST = {"constant": 1.5}
 Numbers = Mapping[str, Mapping[str, np.ndarray]]
 
@@ -62,8 +63,7 @@ def most_of_what_is_claimed(motion: Motion, samples: Samples) -> float:
     return worst
 
 
-@pytest.mark.parametrize("effects", [(), ("knuckle_rates",), ("acceleration", "toe"), EVERY], ids="+".join)
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(("name", "effects"), [(SCENES[0], ("knuckle_rates",)), (SCENES[1], EVERY)])
 def test_numbers_at_any_instants_are_as_near_the_exact_ones_as_they_claim(
     name: str, effects: tuple[str, ...]
 ) -> None:
@@ -76,8 +76,7 @@ def test_numbers_at_any_instants_are_as_near_the_exact_ones_as_they_claim(
     assert most_of_what_is_claimed(motion, motion.at([motion.times[-1] / 3.0])) <= 1.0
 
 
-@pytest.mark.parametrize("tolerance", [1e-9, 1e-3])
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize(("name", "tolerance"), [(SCENES[0], 1e-3), (SCENES[1], 1e-9)])
 def test_numbers_of_close_instants_are_as_near_the_exact_ones_as_they_claim(
     name: str, tolerance: float
 ) -> None:
@@ -120,36 +119,15 @@ def test_instants_far_from_time_zero_lose_nothing_to_the_rounding_of_time() -> N
         assert np.abs(array - slow.position[name]).max() < 2e-12
 
 
-HEAVES = {
-    "a spline's third derivative jumps": (
-        {"table": {"times": [0.0, 0.5, 0.61, 0.8, 1.3, 2.6], "values": [0.0, 9.0, -7.0, 12.0, 3.0, -5.0]}},
-        (0.0, 0.0, 0.0),
-    ),
-    "a sine": (
-        {"sine": {"amplitude": 30.0, "angular_frequency": 7.0, "phase": 0.3, "offset": 4.0}},
-        (30.0, 30.0 * 7.0, 30.0 * 49.0),
-    ),
-    "at rest": ({"constant": 12.5}, (0.0, 0.0, 0.0)),
-}
-
-
-@pytest.mark.parametrize(("heave", "swing"), HEAVES.values(), ids=HEAVES)
-def test_what_the_chassis_does_is_added_to_close_instants_as_exactly_as_to_others(
-    heave: dict[str, object], swing: tuple[float, ...]
-) -> None:
+def test_close_instants_are_not_summed_over_where_a_table_of_the_chassis_jumps() -> None:
+    """In its third derivative."""
+    values = {"times": [0.0, 0.5, 0.61, 0.8, 1.3, 2.6], "values": [0.0, 9.0, -7.0, 12.0, 3.0, -5.0]}
     scene = Scene.load("bounce-on-a-heaving-chassis")
+    motion = solved("bounce-on-a-heaving-chassis", RATES, inputs={**scene.inputs, "heave": {"table": values}})
     instants = np.linspace(0.0, 2.6, 50_000)
-    which = np.concatenate([np.arange(0, 50_000, 1009), np.arange(19_200, 19_260)])
-    motion = solved("bounce-on-a-heaving-chassis", inputs={**scene.inputs, "heave": heave})
     assert share_in_cells(motion, instants) > 0.3
-    quick, slow = some(motion.at(instants), which), motion.at(instants[which])
-    for quantity, own in zip(("position", "velocity", "acceleration"), swing, strict=True):
-        for name in scene.mechanism.topology.chassis:
-            exact = slow.numbers[quantity][name]
-            # Some eight roundings of the law by its own size, of a sine by its swing.
-            off = np.abs(quick.numbers[quantity][name] - exact)
-            assert (off <= 8 * EPS * (np.abs(exact) + own)).all()
-    assert most_of_what_is_claimed(motion, quick) <= 1.0
+    which = np.unique([*range(0, 50_000, 1009), *range(9_600, 9_660), *range(11_700, 11_760)])
+    assert most_of_what_is_claimed(motion, some(motion.at(instants), which)) <= 1.0
 
 
 def test_an_angle_that_jumps_is_read_on_its_own_side() -> None:
@@ -166,8 +144,7 @@ def test_an_angle_that_jumps_is_read_on_its_own_side() -> None:
     assert np.abs(quick - slow)[aside].max() < 40 * EPS * 600 / 90
 
 
-@pytest.mark.parametrize("bad", [-1e-9, 2.6 + 1e-9, np.nan, np.inf])
-@pytest.mark.parametrize("count", [0, 1, 5000])
+@pytest.mark.parametrize(("bad", "count"), [(-1e-9, 0), (2.6 + 1e-9, 1), (np.nan, 5000)])
 def test_an_instant_outside_the_motion_is_refused_among_others_too(bad: float, count: int) -> None:
     motion = solved("bounce", ())
     asked = np.insert(np.linspace(0.0, 2.6, count), count // 2, bad)
@@ -192,7 +169,7 @@ def test_results_are_written_where_they_are_wanted_and_nowhere_else() -> None:
             motion.at(np.zeros(4), out=wrong)
 
 
-@pytest.mark.parametrize("asked", [0.3, [0.3], [], [1.7, 0.2, 1.9, 0.2], [[0.1, 1.5], [0.3, 0.0]]])
+@pytest.mark.parametrize("asked", [0.3, [], [[1.7, 0.2], [1.9, 0.2]]])
 def test_instants_of_any_shape_and_order_give_arrays_of_that_shape(asked: object) -> None:
     motion, instants = solved("bounce"), np.array(asked, dtype=float)
     samples = motion.at(instants)
@@ -206,8 +183,7 @@ def test_instants_of_any_shape_and_order_give_arrays_of_that_shape(asked: object
                 assert np.abs(array[place] - alone).max() <= 1e4 * EPS * max(1.0, np.abs(array).max())
 
 
-@pytest.mark.parametrize("method", ["series", "newton"])
-@pytest.mark.parametrize("size", [1, 7, 131, 1000])
+@pytest.mark.parametrize(("method", "size"), [("series", 7), ("newton", 1000)])
 def test_blocks_of_a_motion_are_its_parts_in_order(method: str, size: int) -> None:
     motion = simulate(Scene.load("bounce"), method)
     blocks = list(motion.blocks(size=size))
@@ -219,7 +195,7 @@ def test_blocks_of_a_motion_are_its_parts_in_order(method: str, size: int) -> No
             np.testing.assert_array_equal(joined, array)
 
 
-@pytest.mark.parametrize("count", [1, 2, 131, 16384, 20001])
+@pytest.mark.parametrize("count", [1, 131, 20001])
 def test_any_number_of_instants_comes_in_blocks_as_a_scene_has_them(count: int) -> None:
     motion, scene = solved("steer", ("velocity",)), Scene.load("steer")
     blocks = list(motion.blocks(count, size=4096))

@@ -55,7 +55,7 @@ def test_a_misdrawn_axis_is_doubted_with_its_angle(
     assert any(words in doubt for doubt in doubts)
 
 
-@pytest.mark.parametrize("name", ["double-wishbone", "off-axis-strut"])
+@pytest.mark.parametrize("name", ["double-wishbone"])
 def test_a_point_with_the_wrong_sign_to_the_right_is_doubted_and_a_rack_near_the_middle_is_not(
     name: str,
 ) -> None:

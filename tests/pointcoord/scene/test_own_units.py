@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from pointcoord import Scene, SceneError, built_in_scenes, simulate
+from pointcoord import Scene, SceneError, simulate
 from pointcoord.scene.own_units import UNITS, in_mm
 
 CAR: dict[str, Any] = {
@@ -28,8 +28,11 @@ def of_length(name: str) -> set[str]:
     return {input for input, one in structure.inputs.items() if one.unit == "mm"}
 
 
-@pytest.mark.parametrize("name", built_in_scenes())
-@pytest.mark.parametrize("units", [units for units in UNITS if units != "mm"])
+# Inputs that are angles, heights, distances and travels; parts; a law of each form.
+@pytest.mark.parametrize(
+    "name", ["bounce-on-a-heaving-chassis", "pushrod-by-damper", "axle-roll", "slider-crank"]
+)
+@pytest.mark.parametrize("units", ["m", "in"])
 def test_every_length_of_a_scene_is_in_its_units_and_nothing_else_is(name: str, units: str) -> None:
     content, factor = plain(name), UNITS[units]
     there = in_mm({**content, "units": "mm"}, ())

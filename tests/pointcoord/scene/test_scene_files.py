@@ -186,11 +186,3 @@ def test_points_to_report_are_points_of_the_car_each_once(points: object, proble
         Scene.from_mapping(content)
     assert caught.value.key.split(".")[0] == "points"
     assert problem in str(caught.value)
-
-
-def test_points_are_reported_in_the_order_of_the_car() -> None:
-    scene = Scene.load("bounce").model_copy(update={"points": ["wheel_centre", "strut_top"]})
-    assert scene.reported_points == ("strut_top", "wheel_centre")
-    every = Scene.load("bounce")
-    assert every.reported_points == every.mechanism.topology.points
-    assert not every.unreported_points

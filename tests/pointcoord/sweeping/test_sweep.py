@@ -2,7 +2,6 @@
 
 import pickle
 import tracemalloc
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -25,7 +24,6 @@ from pointcoord import (
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.simulation import effort
 from pointcoord.solve import box
-from pointcoord.solve.designs import solve_designs
 from pointcoord.sweeping import solving
 
 WISHBONE = Scene.load("double-wishbone")
@@ -90,13 +88,19 @@ def assert_same_as_alone(found: Samples, scene: Scene) -> None:
             assert (difference <= most[quantity][name]).all(), (quantity, name, difference.max())
 
 
-@pytest.mark.parametrize("varied", ["lower_ball_joint.z", "tie_rod_outer.x"])
-@pytest.mark.parametrize("scene", [WISHBONE, STRUT, few_instants(Scene.load("bounce"), 11)])
+@pytest.mark.parametrize(
+    ("scene", "varied"),
+    [
+        (WISHBONE, "lower_ball_joint.z"),
+        (STRUT, "tie_rod_outer.x"),
+        (few_instants(Scene.load("bounce"), 11), "lower_ball_joint.z"),
+    ],
+)
 def test_a_design_among_many_is_the_design_alone(scene: Scene, varied: str) -> None:
     found = sweep(scene, offsets={varied: np.linspace(-4.0, 3.0, 40)})
     assert found.solved.all()
     point, _, axis = varied.partition(".")
-    for number in (0, 17, 39):
+    for number in (0, 39):
         own = found.scene(number)
         assert_same_as_alone(found.of(number), own)
         assert found.closing[number] == pytest.approx(simulate(own).closing.largest, rel=1e-9, abs=1e-12)
@@ -105,20 +109,15 @@ def test_a_design_among_many_is_the_design_alone(scene: Scene, varied: str) -> N
 
 @pytest.mark.parametrize(
     ("name", "point"),
-    [
-        ("wheel-travel", "upper_ball_joint"),
-        ("axle-opposed", "left.tie_rod_outer"),
-        ("pushrod", "lower_ball_joint"),
-        ("off-axis-strut", "strut_top"),
-        ("five-link", "toe_inner"),
-    ],
+    [("axle-opposed", "left.tie_rod_outer"), ("pushrod", "lower_ball_joint")],
 )
 def test_designs_have_gradients_and_what_else_is_along_a_way_as_each_has_alone(name: str, point: str) -> None:
-    scene = few_instants(Scene.load(name), 5)
-    along = tuple(effect for effect in scene.mechanism.effects if EFFECTS[effect].way)
-    assert len(along) > 5
-    scene = scene.model_copy(update={"effects": along})
-    found = sweep(scene, offsets={f"{point}.z": [-3.0, 0.0, 4.0]})
+    content = few_instants(Scene.load(name), 5).model_dump(exclude_none=True)
+    load = {"force": [400.0, -2500.0, 4000.0]}
+    content["mechanism"] |= {"loads": {"left": load} if "." in point else load, "wheel_radius": 270.0}
+    along = [effect for effect in Scene.from_mapping(content).mechanism.effects if EFFECTS[effect].way]
+    assert "loads" in along
+    found = sweep(Scene.from_mapping({**content, "effects": along}), offsets={f"{point}.z": [-3.0, 0.0, 4.0]})
     alone = simulate(found.scene(2))
     ours, theirs = found.proof(2, rates=True).proven, alone.proof(rates=True).proven
     for quantity, numbers in theirs.items():
@@ -128,25 +127,6 @@ def test_designs_have_gradients_and_what_else_is_along_a_way_as_each_has_alone(n
             assert (difference <= ours[quantity][number] + bounds).all(), number
             # A number that is not this design's has a proof as wide as it is wrong.
             assert ours[quantity][number].max() <= 1e-8 * (1.0 + np.abs(values).max()), number
-
-
-def test_forces_of_designs_are_those_of_each_alone() -> None:
-    part = WISHBONE.mechanism.model_copy(
-        update={"loads": {"force": [400.0, -2500.0, 4000.0]}, "wheel_radius": 270.0}
-    )
-    scene = Scene.from_mapping(
-        WISHBONE.model_copy(update={"mechanism": part, "effects": ("loads",)}).model_dump(exclude_none=True),
-        "loaded",
-    )
-    found = sweep(scene, offsets={"upper_ball_joint.y": [0.0, 6.0]})
-    alone = simulate(found.scene(1))
-    bounds = alone.proof(rates=True).proven["rod_force"]
-    assert [*bounds]
-    for rod, force in alone.rod_force.items():
-        # Both poses are within the scene's 1e-9 mm, of links of 60 mm and more that carry some 1e4 N.
-        room = bounds[rod] + 1e4 * 1e-9 / 60.0
-        assert (np.abs(found.rod_force[rod][1] - force) <= room).all(), rod
-    assert np.abs(found.rod_force["tie_rod"][1] - found.rod_force["tie_rod"][0]).max() > 1.0
 
 
 def test_a_point_of_a_part_is_varied_by_its_whole_name() -> None:
@@ -193,7 +173,6 @@ def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other()
         ("wheel_centre", (100.0, -3000.0, 0.0)),
         ("wheel_axis_inner", WISHBONE.mechanism.points["wheel_centre"]),
         ("tie_rod_outer", (np.nan, 0.0, 0.0)),
-        ("upper_ball_joint", (1e120, 0.0, 0.0)),
         ("upper_ball_joint", WISHBONE.mechanism.points["lower_ball_joint"]),
     ],
 )
@@ -271,8 +250,8 @@ def test_blocks_are_the_sweep_in_parts() -> None:
             )
 
 
-@pytest.mark.parametrize(("samples", "count", "memory"), [(101, 300, 20e6), (2001, 30, 40e6)])
-def test_blocks_take_no_more_memory_than_is_stated(samples: int, count: int, memory: float) -> None:
+def test_blocks_take_no_more_memory_than_is_stated() -> None:
+    samples, count, memory = 1001, 40, 30e6
     scene = few_instants(WISHBONE, samples)
     designs = designs_of(scene, offsets={"lower_ball_joint.z": np.linspace(-3.0, 3.0, count)})
     next(sweep_blocks(designs_of(scene)))  # what is made once stays
@@ -338,7 +317,8 @@ def test_a_law_of_more_swings_than_a_chain_can_follow_is_followed_by_its_inputs_
 ) -> None:
     monkeypatch.setattr(box, "INPUTS", inputs)
     swings = {"sine": {"amplitude": 5.0, "angular_frequency": 3e4}}
-    scene = few_instants(STRUT).model_copy(update={"inputs": {**STRUT.inputs, "rack": swings}})
+    laws = {"inputs": {**STRUT.inputs, "rack": swings}, "effects": ()}
+    scene = few_instants(STRUT).model_copy(update=laws)
     found = sweep(scene, offsets={"strut_top.y": [1.0]})
     assert found.solved.all()
     assert [note.count for note in found.notes if note.kind == "alone"] == ([] if inputs else [1])
@@ -348,9 +328,3 @@ def test_a_law_of_more_swings_than_a_chain_can_follow_is_followed_by_its_inputs_
         # Each of the two is within the tolerance; followed alone they are the same numbers.
         difference = np.abs(found.position[name][0] - places).max()
         assert difference <= (2.0 * scene.tolerance if inputs else 0.0)
-
-
-def test_a_failure_that_is_lost_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(solving, "solve_designs", lambda *given: replace(solve_designs(*given), failures={}))
-    with pytest.raises(AssertionError):
-        sweep(WISHBONE, offsets={"lower_ball_joint.z": [0.0, 150.0]})
