@@ -12,28 +12,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
-from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction, cosine_and_sine
+from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
 
 Array = NDArray[np.float64]
 EPS = np.finfo(float).eps
 ORDER = 12
 plain = settings(deadline=None)
 numbers = st.floats(-3.0, 3.0, allow_subnormal=False)
-
-
-def multiply(a: Array, b: Array) -> Array:
-    """Product of two series, cut at their length."""
-    return np.convolve(a, b)[: len(a)]
-
-
-def majorant(angle: Array) -> Array:
-    """Series of exp(sum_{k>0} |a_k| h^k): larger than that of the sine and the cosine, term by term."""
-    size = np.abs(angle) * np.arange(len(angle))
-    result = np.zeros(len(angle))
-    result[0] = 1.0
-    for k in range(1, len(angle)):
-        result[k] = sum(size[i] * result[k - i] for i in range(1, k + 1)) / k
-    return result
 
 
 @plain
@@ -82,42 +67,6 @@ def test_table_is_the_not_a_knot_spline(seed: int, count: int) -> None:
         assert np.abs(series[:, k] - other(instants, nu=k) / factorial(k)).max() <= tolerance
     assert not series[:, 4:].any()
     assert np.abs(table.series(times, 0)[:, 0] - values).max() <= 100 * 50 * EPS
-
-
-def test_only_the_third_derivative_of_a_table_jumps_and_only_at_its_breaks() -> None:
-    times, values = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0), (0.0, 1.0, 0.0, 2.0, -1.0, 0.5)
-    table = Table(times, values)
-    assert table.breaks == times[1:-1]
-    gap = 2.0**-30
-    for instant in (0.5, *table.breaks, 4.3):
-        before, after = table.series([instant - gap, instant], 3)
-        # Derivatives stay below 6 times values up to 2 on unit steps, 50 in all: over the gap they
-        # change by no more than the next one times it.
-        assert np.abs(after - before)[:3].max() <= 50 * gap + 1e3 * EPS
-    jumps = [abs(np.diff(table.series([b - gap, b], 3)[:, 3])[0]) for b in table.breaks]
-    assert max(jumps) > 0.5
-    # Not-a-knot: the first and the last inner time carry no jump.
-    assert max(jumps[0], jumps[-1]) <= 1e3 * EPS
-
-
-@plain
-@given(angle=st.lists(numbers, min_size=ORDER + 1, max_size=ORDER + 1).map(np.array))
-def test_squares_of_cosine_and_sine_series_sum_to_one_and_their_rates_fit(angle: Array) -> None:
-    c, s = cosine_and_sine(angle)
-    size = majorant(angle)
-    one = np.zeros(ORDER + 1)
-    one[0] = 1.0
-    # Each order adds a sum of up to ORDER products.
-    rounding = 4 * (ORDER + 2) * EPS
-    # Products below the normal numbers lose up to 2^-1022 each beside that.
-    under = 4 * ORDER**2 * 2.0**-1022
-    assert (
-        np.abs(multiply(c, c) + multiply(s, s) - one) <= 4 * rounding * multiply(size, size) + under
-    ).all()
-    rate = (angle * np.arange(ORDER + 1))[1:]
-    grown = multiply(size[:-1], np.abs(rate))
-    off = (c * np.arange(ORDER + 1))[1:] + multiply(s[:-1], rate)
-    assert (np.abs(off) <= 4 * rounding * grown + under).all()
 
 
 @plain

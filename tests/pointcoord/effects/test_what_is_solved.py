@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from every_effect import OF_A_WHEEL
+from every_effect import OF_A_WHEEL, every_effect
 
 import pointcoord.solve.follower
 import pointcoord.solve.place
@@ -128,6 +128,22 @@ def test_reading_what_was_not_asked_for_names_the_effect(
     with pytest.raises(NotComputed, match=f"add '{effect}' to the scene's effects") as caught:
         [motion.numbers[quantity][n] for quantity, names in gives.items() for n in names or ("knuckle",)]
     assert caught.value.effect == effect
+
+
+def test_an_effect_of_a_scene_that_reports_another_point_is_what_it_is_among_all() -> None:
+    """It is made of the points that it names and of no others."""
+    asked = every_effect("pushrod")
+    asked = asked.model_copy(update={"time": asked.time.model_copy(update={"samples": 2})})
+    whole = simulate(asked)
+    bounds = whole.proof(rates=True).proven
+    for effect in (name for name in asked.effects if EFFECTS[name].own_names):
+        alone = simulate(asked.model_copy(update={"effects": (effect,), "points": ("rocker_front",)}))
+        own = alone.proof(rates=True).proven
+        for quantity in EFFECTS[effect].quantities:
+            assert {*own[quantity.name]} == {*EFFECTS[effect].own_names}
+            for name, array in alone.numbers[quantity.name].items():
+                allowed = own[quantity.name][name] + bounds[quantity.name][name]
+                assert (np.abs(array - whole.numbers[quantity.name][name]) <= allowed).all(), name
 
 
 @pytest.mark.parametrize(

@@ -144,18 +144,6 @@ def test_an_exact_coordinate_has_the_rates_of_the_chain_rule(kind: str) -> None:
                 assert float(part.radius[0, i]) <= 1e-27
 
 
-@by_kind
-def test_a_coordinate_tells_its_input(kind: str) -> None:
-    drive, equation, _ = CASES[kind]
-    for (x,) in laws(kind, 0):
-        coordinate = drive.series(np.array([x]), DRAWING)
-        told = drive.input_value(coordinate, DRAWING)
-        # A turn is told up to its rounds and its sign, which another coordinate tells.
-        assert float(equation(mpf(float(told[0])))) == pytest.approx(float(coordinate[0]), abs=1e-14)
-        if "turn" not in kind:
-            assert told[0] == pytest.approx(x, rel=1e-13)
-
-
 @pytest.mark.parametrize("angle", [-1e-3, 3.2, 90.0, 180.0, 181.0, 6.0, np.nan])
 def test_an_angle_that_no_rise_tells_is_refused_and_degrees_are_seen(angle: float) -> None:
     for law in (np.array([angle, 1.0]), np.array([[1.0, 2.0], [angle, 1.0], [-5.0, 0.0]])):

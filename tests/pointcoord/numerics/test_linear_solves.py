@@ -16,38 +16,10 @@ from pointcoord.numerics.linear import (
 )
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
-from pointcoord.simulation import scene_mechanism
-from pointcoord.solve import dense_output
-from pointcoord.solve.assembly import assemble, close_drawing
-from pointcoord.solve.dense_output import FEWEST, narrow_product
-from pointcoord.solve.taylor import Settings, build_chain
-from validate.cost.chain import SWING, FourBarChain
 
 Array = NDArray[np.float64]
 seeds = st.integers(0, 2**32 - 1)
 plain = settings(deadline=None)
-
-
-def graded(rng: np.random.Generator, n: int, condition: float) -> Array:
-    """A matrix with singular values spread over a range, columns and rows in no special place."""
-    q, r = (np.linalg.qr(rng.normal(size=(n, n)))[0] for _ in range(2))
-    return q @ np.diag(np.geomspace(1.0, 1.0 / condition, n)) @ r
-
-
-@plain
-@given(seed=seeds, n=st.integers(1, 17), power=st.integers(0, 12))
-def test_solution_has_the_accuracy_of_an_lu_solve(seed: int, n: int, power: int) -> None:
-    rng = np.random.default_rng(seed)
-    # Entries on a grid of 2^-30 and small whole numbers as solution: the right-hand side is exact.
-    matrix = np.round(graded(rng, n, 10.0**power) * 2**30) / 2**30
-    x = rng.integers(-8, 9, size=n).astype(float)
-    factors = factorise(matrix)
-    if factors.singular or factors.condition > 1e13:
-        return
-    # LU with partial pivoting: error below 3 n eps times the condition number (Higham, theorem 9.4, with
-    # the growth factor of about n seen in practice taken into the margin of the bound).
-    error = np.abs(factors.solve(matrix @ x) - x).max()
-    assert error <= 3 * n * EPS * float(factors.condition) * max(np.abs(x).max(), 1.0)
 
 
 def test_condition_number_is_that_of_the_maximum_norm() -> None:
@@ -216,43 +188,3 @@ def test_the_lipschitz_constant_is_the_sum_over_all_pairs_of_unknowns(unknowns: 
     plain = np.abs(np.einsum("kjr,mir->mkji", curvature, inverse)).sum(axis=(1, 2)).max(axis=-1)
     assert system.lipschitz(inverse) == pytest.approx(plain, rel=1e-12)
     assert system.lipschitz(inverse[0]) == pytest.approx(plain[0], rel=1e-12)
-
-
-def test_a_long_chain_goes_the_same_way_by_blocks_as_without(monkeypatch: pytest.MonkeyPatch) -> None:
-    chain = FourBarChain.with_unknowns(114)
-    settings, stop = Settings(1e-12, 0), 0.25
-
-    def solved() -> tuple[np.ndarray, object]:
-        mechanism = scene_mechanism(chain.scene())
-        start = assemble(mechanism, {"arm_angle": SWING.series(0.0, 0)[0]}, closed=close_drawing(mechanism))
-        built = build_chain(mechanism, {"arm_angle": SWING}, start, 0.0, stop, settings)
-        last = built.segments[-1]
-        s = (stop - last.start) / last.scale
-        return s ** np.arange(last.order + 1.0) @ last.coefficients, (start.work, built.work)
-
-    by_blocks, work = solved()
-    monkeypatch.setattr(block_inverse, "LARGE", np.inf)
-    plain, plain_work = solved()
-    assert work == plain_work
-    # Truncation of either, and rounding of poses of condition numbers near 1000.
-    assert np.abs(by_blocks - plain).max() <= 2e-12 + 1e3 * 4 * EPS
-
-
-def test_no_part_is_larger_than_what_one_thread_takes(monkeypatch: pytest.MonkeyPatch) -> None:
-    sizes, product = [], np.matmul
-
-    def counted(left: np.ndarray, right: np.ndarray, out: np.ndarray) -> None:
-        sizes.append(left.shape[-2] * left.shape[-1] * right.shape[-1])
-        product(left, right, out=out)
-
-    monkeypatch.setattr(dense_output.np, "matmul", counted)
-    rng = np.random.default_rng(2)
-    for rows, inner in ((1, 10), (60, 10), (500, 10), (10, 600)):
-        sizes.clear()
-        narrow_product(rng.random((rows, inner)), rng.random((inner, 9000)), np.empty((rows, 9000)))
-        # OpenBLAS shares out none of 2^19 multiplications. Half of that is no smaller than it has to be.
-        assert min(2**18, rows * inner * 9000) <= max(sizes) <= 2**19
-    # But a part is never so narrow that calling costs more than computing.
-    sizes.clear()
-    narrow_product(rng.random((3000, 40)), rng.random((40, 100)), np.empty((3000, 100)))
-    assert sizes == [3000 * 40 * FEWEST, 3000 * 40 * (100 - FEWEST)]

@@ -117,16 +117,3 @@ def test_the_blocks_of_a_long_chain_or_circle_are_no_recursion() -> None:
     assert len(structure_of([*chain, {n - 1, 0}], n).blocks) == 1
     # The last row finds its unknown taken, and so does each that gives way to it.
     assert len(structure_of([*chain, {0}], n).blocks) == n
-
-
-def test_rows_that_cannot_be_paired_with_unknowns_are_one_block_of_everything() -> None:
-    for reads, unknowns in (
-        ([{0}, {0, 5}, {1, 2}], 3),  # two rows for one unknown
-        ([{0, 5}, {1, 6}], 3),  # too few rows
-        ([{0}, {1}, {0, 1}], 2),  # too many
-        ([{7}], 1),  # nothing reads the unknown
-    ):
-        (block,) = structure_of(reads, unknowns).blocks
-        assert block.rows == tuple(range(len(reads)))
-        assert block.unknowns == tuple(range(unknowns))
-        assert set(block.reads) == set().union(*reads) - set(range(unknowns))

@@ -1,19 +1,16 @@
 """What a series leaves out, and is said to; inputs that begin as a high power of time lack most terms."""
 
 from collections.abc import Callable
-from math import perm
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from pointcoord import Motion, Scene, simulate
 from pointcoord.bounds.solved_coordinates import Summed
-from pointcoord.solve.taylor import SHORT, Settings, gone_on, last_magnitudes, lengths_by_sizes
+from pointcoord.solve.taylor import last_magnitudes
 
-Array = NDArray[np.float64]
 SLOW = {
     "t^3": [0.0, 0.0, 1.0],
     "t^13": [*[0.0] * 12, 1.0],
@@ -56,50 +53,6 @@ def test_a_motion_from_rest_keeps_what_it_claims(
     fastest = max(float(np.abs(array).max()) for array in exact.acceleration.values())
     gap = max(float(np.abs(motion.acceleration[n] - exact.acceleration[n]).max()) for n in exact.acceleration)
     assert gap <= fastest * (tolerance / motion.unit + 1e-12)
-
-
-def random_logs(rng: np.random.Generator, members: int) -> Array:
-    """Logarithms of coefficients that fall, some of them missing."""
-    count = int(rng.integers(SHORT + 2, 42))
-    logs = -rng.uniform(0.2, 4.0) * np.arange(count) + rng.normal(size=(members, count))
-    if rng.random() < 0.3:
-        logs[:, 1::2] = -np.inf
-    elif rng.random() < 0.2:
-        logs[:, 1::3] = logs[:, 2::3] = -np.inf
-    logs[:, 0] = 0.0
-    return logs
-
-
-@given(seed=st.integers(0, 2**32 - 1))
-def test_a_segment_is_as_long_as_its_last_two_terms_allow_in_every_derivative(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    logs = random_logs(rng, int(rng.integers(1, 4)))
-    settings = Settings(10.0 ** rng.uniform(-15.0, -5.0), int(rng.integers(0, 3)))
-    count = logs.shape[-1]
-    length = float(lengths_by_sizes(logs, settings).min())
-    logs[:, -2:] = carried_on(logs)
-
-    def parts(s: float) -> Array:
-        """Last two terms of each derivative over what they may be, (members, derivatives)."""
-        found = []
-        for d in range(settings.derivative + 1):
-            factors = np.array([float(perm(k, d)) for k in range(count)])
-            terms = factors * np.exp(logs) * s ** np.arange(count)
-            whole = 1.0 if d == 0 else terms.max(axis=-1)
-            found.append((terms[:, -2] + terms[:, -1]) / (settings.tolerance * whole))
-        return np.array(found)
-
-    # Rounding of logarithms up to some 200.
-    assert parts(length).max() <= 1.0 + 1e-9
-    # Each of the two takes at most half; in the d-th derivative a term grows against another one as s to the
-    # difference of their orders, which is at least one.
-    assert parts(2.05 * length).max() > 1.0
-
-
-def carried_on(logs: Array) -> Array:
-    """What the last two terms come to, of a batch in which each member is twice."""
-    twice = np.concatenate([logs, logs])
-    return np.asarray(gone_on(twice))[: len(logs)]
 
 
 MANY = 200

@@ -5,8 +5,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 from one_by_one import one_by_one
 from sample_cars import SampleCar, by_car
@@ -55,7 +53,6 @@ def test_one_factorisation_serves_many_instants_by_chord(strut: Mechanism) -> No
     assert solved.work.factorisations < 40
 
 
-few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
 EPS = np.finfo(float).eps
 
 
@@ -89,30 +86,6 @@ def plainly(scene: Scene) -> tuple[Array, float, float]:
     allowed = pose_tolerance(scene, NEWTON, mechanism)
     poses = one_by_one(mechanism, task.functions, task.start, scene.instants, allowed)
     return poses, allowed, float(mechanism.unit)
-
-
-@by_car
-@few
-@given(
-    swing=st.floats(0.02, 0.25),
-    speed=st.floats(0.5, 40.0),
-    travel=st.floats(-25.0, 25.0),
-    samples=st.integers(2, 60),
-)
-def test_poses_ahead_are_those_one_after_the_other(
-    make_scene: Make, car: SampleCar, swing: float, speed: float, travel: float, samples: int
-) -> None:
-    # Up to a whole swing between two instants.
-    offset = car.drawn_inputs["arm_angle"]
-    arm = {"sine": {"amplitude": swing, "angular_frequency": speed, "offset": offset}}
-    scene = make_scene(arm, (0.0, travel), car=car, samples=samples, stop=1.0, effects=())
-    plain, allowed, unit = plainly(scene)
-    motion = simulate(scene, "newton")
-    assert len(plain) == samples
-    found = motion.solved.coordinates(scene.instants, 0)[0]
-    # Each is within what its tolerance left, and within the proof's rounding, of the one assembly there.
-    off = unit * np.abs(found - plain).max()
-    assert off <= 2.0 * (unit * allowed + float(motion.proof().bound.max()))
 
 
 def past_a_fold(make_scene: Make) -> Scene:
