@@ -18,7 +18,7 @@ from absolute.mechanism import Mechanism
 from absolute.newton import Configurations, newton
 
 # One with ends that height and angle drive, one with more rows than unknowns, one that moves as a whole.
-SCENES = ("bounce-and-steer", "pushrod-by-damper", "five-link", "bricard", "axle-roll")
+SCENES = ("pushrod-by-damper", "bricard", "axle-roll")
 
 
 def one_arm() -> Motion:
@@ -31,7 +31,7 @@ def one_arm() -> Motion:
 
 @pytest.fixture(scope="module", params=[*SCENES, "one arm"])
 def motion(request: pytest.FixtureRequest) -> Motion:
-    return one_arm() if request.param == "one arm" else shipped(request.param, 12)
+    return one_arm() if request.param == "one arm" else shipped(request.param, 6)
 
 
 def rounding(solution: absolute.Solution, order: int) -> Array:
@@ -45,7 +45,7 @@ def rounding(solution: absolute.Solution, order: int) -> Array:
 
 def test_instants_do_not_depend_on_each_other_nor_positions_on_rates(motion: Motion) -> None:
     whole = motion.solve(conditions=True)
-    places = np.random.default_rng(1).permutation(len(whole.residual))[:3]
+    places = np.random.default_rng(1).permutation(len(whole.residual))[:2]
     chassis = None if motion.chassis is None else motion.chassis[places]
     some = Motion(motion.plain, {name: law[places] for name, law in motion.inputs.items()}, chassis)
     other = some.solve()
