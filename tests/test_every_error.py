@@ -1,16 +1,33 @@
 """Every error class can be met, says what is wrong, where and what to try, and carries the data it speaks of.
 
-A class without a recipe fails the first test here: whoever adds an error shows how to meet it.
+Whoever adds an error shows how to meet it: in a test that is beside what raises it, or here.
 """
 
+import ast
 import importlib
 import inspect
 import pickle
 import pkgutil
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from math import comb
 from pathlib import Path
+from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
-from error_recipes import RECIPES
+from plain_mechanisms import solve_car
+
+import absolute.backend
+import pointcoord
+import validate.reference.route
+from pointcoord.effects.knuckle_rates import ByEdges
+from pointcoord.linkage.hardpoints import build_mechanism
+from pointcoord.mechanism import mechanism_file
+from validate.cost.way import LeftOut
+from validate.cost.ways.registry import ways_named
+from validate.reference.errors import TooManyStepsError
 
 PACKAGES = ("pointcoord", "absolute", "validate")
 # Families, which are caught and never raised themselves.
@@ -21,8 +38,163 @@ BASES = {
 }
 # Says inside the solver that members take another form, or what is wrong with a mechanism's tables, of which
 # the scene's error then says in which file; both are caught there.
-# SIGTERM ends the program as Ctrl-C does, which `tests/validate/commands/test_door.py` tries.
-CAUGHT = {"pointcoord.mechanism.faults.TableFault", "validate.exit_status.Terminated"}
+# SIGTERM ends the program as Ctrl-C does, which `tests/validate/commands/test_door.py` tries, and so does
+# what the program answers without working: its version.
+CAUGHT = {"pointcoord.mechanism.faults.TableFault", "validate.exit_status.Terminated", "validate.cli.Answer"}
+
+BOUNCE = pointcoord.Scene.load("bounce")
+TABLE = dict(BOUNCE.mechanism.points)
+COLLINEAR = mechanism_file("macpherson").topology("collinear", points=TABLE)
+UPRIGHT = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
+IN_LINE = {name: np.array([1.0, 2.0, 3.0]) * i for i, name in enumerate("abc")}
+
+
+class Recipe(NamedTuple):
+    """What raises an error, parts of its message, and its attributes: values, or tests of them."""
+
+    cook: Callable[[pytest.MonkeyPatch], object]
+    words: tuple[str, ...]
+    data: Mapping[str, object] = {}
+
+
+def changed(**sections: Mapping[str, Any]) -> pointcoord.Scene:
+    """The built-in bounce with other inputs, times or points."""
+    content = BOUNCE.model_dump(exclude_none=True)
+    for section, changes in sections.items():
+        content[section].update(changes)
+    return pointcoord.Scene.from_mapping(content, "mine")
+
+
+def jumping() -> pointcoord.Scene:
+    """The arm jumps by 0.01 rad within a nanosecond: cubics of size 1e25 that rounding cannot hold."""
+    times = (0.0, 0.2, 0.5, 0.5 + 1e-9, 0.8, 1.0)
+    arm = {"table": {"times": times, "values": [1.6, 1.6, 1.6, 1.61, 1.61, 1.61]}}
+    return changed(inputs={"arm_angle": arm}, time={"start": 0.5 - 2e-8, "stop": 0.5 + 2e-9})
+
+
+def cancelling(power_of_two: int) -> pointcoord.Scene:
+    """The rack goes 16 (t - start)^6 mm, multiplied out: terms of up to 20 start^6 each cancel to that."""
+    start = 2.0**power_of_two
+    terms = [16.0 * comb(6, k) * (-start) ** (6 - k) for k in range(7)]
+    laws = {"rack": {"polynomial": terms}, "arm_angle": {"constant": 1.6}}
+    return changed(inputs=laws, time={"start": start, "stop": start + 1.0, "samples": 5})
+
+
+def frame_without(patch: pytest.MonkeyPatch, *libraries: str) -> object:
+    for name in libraries:
+        patch.setitem(sys.modules, name, None)
+    return pointcoord.simulate(BOUNCE).to_dataframe()
+
+
+RECIPES: dict[str, Recipe] = {
+    "SceneError": Recipe(
+        lambda _: changed(time={"stop": -1.0}),
+        ("mine: time:", "-1.0", "allowed: start < stop"),
+        {"source": "mine", "key": "time"},
+    ),
+    "UnknownName": Recipe(
+        lambda _: pointcoord.simulate(BOUNCE).position["wheel_center"],
+        ("wheel_center", "did you mean 'wheel_centre'?", "lower_arm_front"),
+        {"kind": "position", "name": "wheel_center", "valid": lambda names: "wheel_centre" in names},
+    ),
+    "NotComputed": Recipe(
+        lambda _: pointcoord.simulate(BOUNCE.model_copy(update={"effects": ()})).wheel["camber"],
+        ("camber was not computed", "add 'camber'"),
+        {"effect": "camber", "quantity": lambda name: "camber" in name},
+    ),
+    "MissingLibrary": Recipe(
+        lambda pretend: frame_without(pretend, "pandas", "polars"),
+        ("pandas or polars", "is not installed", "pip install 'pointcoord[pandas]'", "pointcoord[polars]"),
+        {"part": "a data frame", "libraries": ("pandas", "polars")},
+    ),
+    "MechanismError": Recipe(
+        lambda _: build_mechanism(COLLINEAR, {**TABLE, "strut_lower": TABLE["lower_ball_joint"]}, UPRIGHT),
+        ("link", "lower_ball_joint", "strut_lower", "no length", "move one"),
+        {"names": lambda names: set(names) == {"lower_ball_joint", "strut_lower"}, "problem": bool},
+    ),
+    "InputOutOfRange": Recipe(
+        lambda _: pointcoord.simulate(changed(inputs={"arm_angle": {"constant": 3.5}})),
+        ("input 'arm_angle' is 3.5 at t = 0 s", "allowed: 0 to pi rad"),
+        {"name": "arm_angle", "value": 3.5, "instant": 0.0, "allowed": bool},
+    ),
+    "InputNotKnown": Recipe(
+        lambda _: pointcoord.simulate(cancelling(15)),
+        ("input 'rack' is not known at t = 32768 s", "its polynomial cancel to 0", "off by 3.1", "a table"),
+        {"name": "rack", "law": "polynomial", "value": 0.0, "doubt": lambda doubt: 3.0 < doubt < 3.2},
+    ),
+    "AssemblyError": Recipe(
+        lambda _: pointcoord.simulate(
+            changed(inputs={"rack": {"polynomial": (0.0, 100.0)}, "arm_angle": {"constant": 1.6}})
+        ),
+        ("t = ", "wanted", "rack = ", "stopped at", "condition number", "tie_rod", "bring 'rack' back"),
+        {
+            "reduce": "rack",
+            "reached": lambda values: 0.0 < values["rack"] < 260.0,
+            "instant": np.isfinite,
+            "limits": lambda links: any("tie_rod" in link for link in links),
+            "partial": lambda motion: isinstance(motion, pointcoord.Motion) and len(motion.times) > 1,
+        },
+    ),
+    "MotionTooLong": Recipe(
+        lambda pretend: (
+            pretend.setattr("pointcoord.solve.taylor.MOST_SEGMENTS", 5),
+            pointcoord.simulate(changed(inputs={"rack": {"polynomial": (0.0, *[1e-6] * 30)}}), "series"),
+        ),
+        ("from 0 to 2.6 s", "segments; allowed: 5", "reach t = ", "slow the inputs down", "'newton'"),
+        {"limit": 5, "stop": 2.6, "instant": np.isfinite, "partial": bool},
+    ),
+    "MotionTooRough": Recipe(
+        lambda _: pointcoord.simulate(jumping(), "series"),
+        ("input 'arm_angle' changes too fast", "after t = 0.4999999", "'newton'"),
+        {"name": "arm_angle", "instant": 0.5 - 2e-8, "partial": lambda motion: motion is None},
+    ),
+    "MotionNotMapped": Recipe(
+        lambda pretend: (
+            pretend.setattr("pointcoord.patches.way_map.ENOUGH", 0),
+            pointcoord.simulate(BOUNCE, "map"),
+        ),
+        ("does not cover their way after t = 0 s", "arm_angle = 0.8", "the most patches", "'newton'"),
+        {
+            "instant": 0.0,
+            "inputs": lambda inputs: set(inputs) == {"arm_angle", "rack"},
+            "reason": bool,
+            "partial": lambda motion: motion is None,
+        },
+    ),
+    "SingularConfiguration": Recipe(
+        lambda _: ByEdges().rates(IN_LINE, IN_LINE, IN_LINE),
+        ("in one line", "turn about that line is free", "condition number", "move an input or a point"),
+        {"free": bool, "condition": lambda number: number > 1e14},
+    ),
+    "OutsideMotion": Recipe(
+        lambda _: pointcoord.simulate(BOUNCE).at(2.7),
+        ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
+        {"instant": 2.7, "start": 0.0, "stop": 2.6},
+    ),
+    "WrongArgument of a map": Recipe(
+        lambda _: pointcoord.kinematic_map(BOUNCE, {"arm_angle": (1.0, 0.9), "rack": (0.0, 1.0)}),
+        ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers within 1e+12, the lower first"),
+        {"what": "ranges['arm_angle']", "problem": "is (1.0, 0.9)", "allowed": bool},
+    ),
+    "WrongArgument of a sweep": Recipe(
+        lambda _: pointcoord.sweep(BOUNCE, {"strut_top.x": [1.0, 2.0], "strut_top.y": [1.0, 2.0, 3.0]}),
+        ("strut_top.x has 2 values where strut_top.y has 3", "as many of each"),
+        {"what": "strut_top.x", "problem": bool, "allowed": "as many of each"},
+    ),
+    "NotCovered": Recipe(
+        # One box of a range that reaches beyond what the links allow, and not to be cut.
+        lambda _: pointcoord.kinematic_map(
+            BOUNCE, {"arm_angle": (0.5, 2.5), "rack": (-90.0, 90.0)}, halvings=0
+        ),
+        ("the map does not cover arm_angle = ", "a fold", "make the map of a smaller range"),
+        {
+            "inputs": lambda inputs: set(inputs) == {"arm_angle", "rack"},
+            "reason": bool,
+            "count": 1,
+            "asked": 1,
+        },
+    ),
+}
 
 
 def every_error_class() -> dict[str, type[BaseException]]:
@@ -39,23 +211,47 @@ def every_error_class() -> dict[str, type[BaseException]]:
 CLASSES = every_error_class()
 
 
-def class_of(recipe: str) -> str:
-    """The name of a recipe's class; where several lead to one, what is at fault is named behind it."""
-    return recipe.partition(": ")[0]
+@cache
+def member(module: str, name: str) -> object:
+    """What a module of the packages calls so, if anything."""
+    if module.partition(".")[0] not in PACKAGES:
+        return None
+    return getattr(importlib.import_module(module), name, None)
 
 
-def test_every_error_class_has_a_recipe_and_every_recipe_a_class() -> None:
-    assert set(CLASSES) - BASES - CAUGHT == set(map(class_of, RECIPES))
+def met_in(path: Path) -> Iterator[object]:
+    """What a test's `pytest.raises` are given by name."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names: dict[str, object] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            names |= {alias.asname or alias.name: member(node.module, alias.name) for alias in node.names}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "raises":
+            for one in ast.walk(node.args[0]):
+                if isinstance(one, ast.Name):
+                    yield names.get(one.id)
+                elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
+                    yield member(one.value.id, one.attr)
+
+
+def test_every_error_class_is_met_by_some_test() -> None:
+    met = {kind for path in Path(__file__).parent.rglob("test_*.py") for kind in met_in(path)}
+    here = {getattr(pointcoord, name.partition(" ")[0]) for name in RECIPES}
+    missing = {name for name, kind in CLASSES.items() if kind not in met | here}
+    assert missing - BASES - CAUGHT == set()
+    assert {kind for kind in CLASSES.values() if kind.__module__ == "pointcoord.errors"} == here | {
+        pointcoord.PointcoordError
+    }
 
 
 @pytest.mark.parametrize("name", RECIPES)
 def test_error_can_be_met_speaks_clearly_carries_its_data_and_comes_back_from_another_process(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    recipe = RECIPES[name]
-    kind = CLASSES[class_of(name)]
+    recipe, kind = RECIPES[name], getattr(pointcoord, name.partition(" ")[0])
     with pytest.raises(kind) as caught:
-        recipe.cook(tmp_path, monkeypatch)
+        recipe.cook(monkeypatch)
     error, message = caught.value, str(caught.value)
     assert type(error) is kind
     assert "\n" not in message
@@ -63,8 +259,6 @@ def test_error_can_be_met_speaks_clearly_carries_its_data_and_comes_back_from_an
     for attribute, expected in recipe.data.items():
         value = getattr(error, attribute)
         assert expected(value) if callable(expected) else value == expected, (attribute, value)
-    if not name.startswith("pointcoord."):
-        return
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is type(error)
     assert (str(again), again.args) == (message, error.args)
@@ -72,6 +266,26 @@ def test_error_can_be_met_speaks_clearly_carries_its_data_and_comes_back_from_an
     assert {key: repr(value) for key, value in vars(again).items()} == (
         {key: repr(value) for key, value in vars(error).items()}
     )
+
+
+def test_a_way_that_does_not_apply_says_of_what_it_is() -> None:
+    with pytest.raises(LeftOut, match="the strut that the paper prints"):
+        ways_named(["printed"])[0].prepare(pointcoord.Scene.load("double-wishbone"), 1e-9)
+
+
+def test_a_way_of_the_reference_that_takes_too_long_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(validate.reference.route, "MOST_STEPS", 0)
+    with pytest.raises(TooManyStepsError, match=r"is given up after.*nothing is said of the pose") as caught:
+        solve_car(TABLE, {"arm_angle": (1.1, 0, 0)})
+    assert caught.value.steps == 0
+
+
+def test_without_pinocchio_the_absolute_model_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pinocchio", None)
+    with pytest.raises(
+        absolute.MissingPinocchioError, match=r"Pinocchio.*pip install 'pointcoord\[validate\]'"
+    ):
+        importlib.reload(absolute.backend)
 
 
 @pytest.mark.parametrize("name", sorted(BASES))

@@ -19,10 +19,7 @@ class Car:
     """A car at an instant; mm, s, rad.
 
     Attributes:
-        points: by name, position, velocity, acceleration and so on in the chassis' frame.
-        added: what the chassis' motion and the user's origin add to each of these.
-        turn: angular velocity and acceleration of every body.
-        bodies: their names.
+        points: by name, position and velocity in the chassis' frame.
         wheel_axis: from the inner point to the outer one. steering_axis: from the lower to the upper one.
         damper: its two ends, if there is one.
         in_chassis, rates_in_chassis: positions and velocities before the turns of the chassis.
@@ -35,9 +32,6 @@ class Car:
     """
 
     points: Mapping[str, Sequence[Vector]]
-    added: Sequence[Vector]
-    turn: tuple[Vector, Vector]
-    bodies: tuple[str, ...]
     wheel_axis: tuple[str, str]
     steering_axis: tuple[str, str]
     damper: tuple[str, ...]
@@ -94,19 +88,6 @@ def cross(a: Vector, b: Vector) -> Vector:
     """Vector product."""
     (x, y, z), (u, v, w) = a, b
     return y * w - z * v, z * u - x * w, x * v - y * u
-
-
-def _of_points(quantity: str, derivative: int) -> Callable[[Car], Numbers]:
-    def numbers(car: Car) -> Numbers:
-        added = car.added[derivative]
-        return {quantity: {name: [*plus(p[derivative], added)] for name, p in car.points.items()}}
-
-    return numbers
-
-
-def _rates(car: Car) -> Numbers:
-    names = ("angular_velocity", "angular_acceleration")
-    return {name: {body: [*turn] for body in car.bodies} for name, turn in zip(names, car.turn, strict=True)}
 
 
 def _wheel_angles(car: Car) -> Numbers:
@@ -335,14 +316,6 @@ def _arm_roll_centre(car: Car) -> Numbers:
 PER_MM = {"wheel": "angle_gradient", "dimension": "dimension_gradient"}
 PER_SECOND = {"wheel": "angle_rate", "dimension": "dimension_rate"}
 BY_HAND: dict[str, Callable[[Car], Numbers]] = {
-    "position": _of_points("position", 0),
-    "velocity": _of_points("velocity", 1),
-    "acceleration": _of_points("acceleration", 2),
-    "jerk": _of_points("jerk", 3),
-    "snap": _of_points("snap", 4),
-    "crackle": _of_points("crackle", 5),
-    "pop": _of_points("pop", 6),
-    "knuckle_rates": _rates,
     "wheel_angles": _wheel_angles,
     "camber": _camber,
     "toe": _toe,
@@ -359,11 +332,6 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "arm_roll_centre": _arm_roll_centre,
     "instant_centres": _instant_centres,
     "anti_features": _anti_features,
-}
-# An angle of two lines, an angle by its sine, and lengths of a point that turns.
-DIFFERENTIATED = ("wheel_angles", "angles_by_arcsine", "wheel_travel")
-BY_HAND |= {
-    f"{name}_by_{by}": _derived(name, by) for name in DIFFERENTIATED for by in ("travel", "rack", "time")
 }
 
 

@@ -142,9 +142,6 @@ def _car(given: Mapping[str, list[float]], time: float, by: str) -> Car:
     zero = (mpf(0),) * 3
     return Car(
         points={n: [tuple(place(n, here)), moved(n, BOTH)] for n in points},
-        added=[zero, zero],
-        turn=(zero, zero),
-        bodies=(),
         wheel_axis=tuple(ROLES["wheel_axis"]),
         steering_axis=tuple(ROLES["steering_axis"]),
         damper=tuple(ROLES["damper"]),

@@ -6,7 +6,6 @@ from functools import partial
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from one_by_one import one_by_one
 from sample_cars import SampleCar, by_car
 
 from pointcoord import AssemblyError, Scene, simulate
@@ -17,6 +16,7 @@ from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.simulation import pose_tolerance, prepare_task
 from pointcoord.solve import pointwise
 from pointcoord.solve.assembly import Pose, assemble
+from pointcoord.solve.follower import follow
 from pointcoord.solve.pointwise import solve_instants
 from pointcoord.solve.proven_step import ROOM
 from pointcoord.time_functions import Sine, TimeFunction
@@ -80,12 +80,18 @@ Make = Callable[..., Scene]
 
 
 def plainly(scene: Scene) -> tuple[Array, float, float]:
-    """Poses one after the other, what they may be off in units, and the unit, mm."""
+    """Poses by proven steps from each to the next, what they may be off in units, and the unit, mm."""
     task = prepare_task(scene, NEWTON)
     mechanism = task.readout.mechanism
     allowed = pose_tolerance(scene, NEWTON, mechanism)
-    poses = one_by_one(mechanism, task.functions, task.start, scene.instants, allowed)
-    return poses, allowed, float(mechanism.unit)
+    known = mechanism.known_series({n: f.series(scene.instants, 0) for n, f in task.functions.items()})[:, 0]
+    poses = [task.start.y]
+    for goal in known[1:]:
+        path = follow(mechanism.map, poses[-1], goal, None, allowed)
+        if path.done < 1.0:
+            break
+        poses.append(path.y)
+    return np.array(poses), allowed, float(mechanism.unit)
 
 
 def past_a_fold(make_scene: Make) -> Scene:
