@@ -4,7 +4,6 @@ That its numbers are right is in tests/mechanisms, for all mechanics.
 """
 
 import pickle
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +13,6 @@ from shipped import EPS, Array, Motion, shipped
 
 import absolute
 import absolute.follow
-from absolute.mechanism import Mechanism
-from absolute.newton import Configurations, newton
 
 # One with ends that height and angle drive, one with more rows than unknowns, one that moves as a whole.
 SCENES = ("pushrod-by-damper", "bricard", "axle-roll")
@@ -113,23 +110,6 @@ def test_no_instants_give_an_empty_motion() -> None:
     empty = Motion(motion.plain, {name: np.zeros((0, 3)) for name in motion.inputs}).solve(effects=["toe"])
     assert empty.position["wheel_centre"].shape == (0, 3)
     assert empty.effects["toe"].shape == (0,)
-
-
-def test_a_step_is_predicted_to_the_second_order(monkeypatch: pytest.MonkeyPatch) -> None:
-    assembled, missed = absolute.Assembled(absolute.compile(shipped("bounce").plain)), list[float]()
-
-    def watched(within: Mechanism, near: Configurations, q: Array, *rest: Any) -> Configurations:
-        found = newton(within, near, q, *rest)
-        missed.append(float(np.linalg.norm(q - found.q)))
-        return found
-
-    monkeypatch.setattr(absolute.follow, "newton", watched)
-    for step in (0.02, 0.01):
-        goal = {name: value + step for name, value in assembled.drawn_inputs.items()}
-        assembled.solve({name: np.array([[value, 0.0, 0.0]]) for name, value in goal.items()})
-    # Half of a step leaves an eighth; by a prediction of first order it leaves a quarter.
-    assert len(missed) == 2
-    assert missed[0] / missed[1] == pytest.approx(8.0, rel=0.1)
 
 
 def test_models_solutions_and_refusals_travel_between_processes_and_results_cannot_be_changed() -> None:

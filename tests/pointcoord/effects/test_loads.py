@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from knuckles_on_arms import guided_knuckle, hinged_knuckle
+from knuckles_on_arms import guided_knuckle
 from numpy.typing import NDArray
 
 from pointcoord import MapError, Motion, Scene, SceneError, kinematic_map, simulate
@@ -48,32 +48,6 @@ def assert_balanced(about: Array, *forces: tuple[Array, Array | str], moment: An
     # Places are right to some 1e-13 of 1 m, by which forces are off with a factor of tens.
     assert np.abs(total).max() < 1e-10 * scale
     assert np.abs(turn).max() < 1e-10 * scale * 1000.0
-
-
-def test_a_knuckle_on_a_hinge_of_a_moving_arm_is_in_balance_and_so_is_the_arm() -> None:
-    motion = simulate(hinged_knuckle(LOAD, RADIUS))
-    at, contact = motion.position, contact_of(motion, "inner", "centre")
-    hinges = {}
-    for first, second in (("king_top", "king_low"), ("arm_front", "arm_rear")):
-        line = (at[second] - at[first]) / np.linalg.norm(at[second] - at[first], axis=-1, keepdims=True)
-        thrust = motion.hinge_thrust[first][:, None] * line
-        hinges[first] = [
-            (motion.joint_force[first] + thrust, at[first]),
-            (motion.joint_force[second], at[second]),
-        ]
-    acting = [
-        (np.broadcast_to(LOAD["force"], contact.shape), contact),
-        (pull(motion, "link", "link_outer", "link_inner"), at["link_outer"]),
-        *hinges["king_top"],
-    ]
-    up = np.zeros_like(contact)
-    up[:, 2] = -sum(force[:, 2] for force, _ in acting)
-    assert_balanced(contact, *acting, (up, at["centre"]), moment=LOAD["moment"])
-    assert_balanced(at["arm_front"], *((-f, place) for f, place in hinges["king_top"]), *hinges["arm_front"])
-    with pytest.raises(AssertionError):  # what is a billionth off is no balance
-        assert_balanced(
-            contact, (acting[0][0] * 1e-9, contact), *acting, (up, at["centre"]), moment=LOAD["moment"]
-        )
 
 
 def test_a_knuckle_that_an_arm_guides_is_in_balance_and_so_is_the_arm() -> None:

@@ -7,13 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_cars import PAPER_STRUT, SampleCar, by_car
+from sample_cars import PAPER_STRUT, SampleCar, by_drawn_car
 
 from pointcoord import NotCovered, Scene, kinematic_map, standing
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
-from pointcoord.patches.lookup import Marked
 from pointcoord.patches.patches import ProvenPatches
 from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.follower import follow
@@ -40,7 +39,7 @@ def scene_of(car: SampleCar) -> Scene:
     )
 
 
-@by_car
+@by_drawn_car
 def test_a_range_beyond_the_reach_is_covered_up_to_the_fold_and_refused_beyond(car: SampleCar) -> None:
     scene = scene_of(car)
     stand = standing(scene)
@@ -127,15 +126,3 @@ def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_an
         monkeypatch.undo()
         assert seamed.patches.low.tolist() == kept.low[:-1].tolist()
         assert [reason for _, reason in seamed.given_up] == [SEAM]
-
-
-def test_only_what_is_wanted_of_a_range_is_covered_and_all_of_that() -> None:
-    domain = paper_domain()
-    marks = np.zeros((64, 64), dtype=bool)
-    marks[30:34, 30:34] = marks[:4, :4] = True
-    wanted = Marked.of(marks)
-    cover = flood(domain, 8, Limits(1e-9), entry(domain), 4096, wanted)
-    assert cover.given_up == ()
-    assert wanted.any_in(cover.patches.low, cover.patches.high).all()
-    assert (cover.patches.lookup.table[marks] >= 0).all()
-    assert (cover.patches.lookup.table < 0).any()

@@ -7,6 +7,46 @@ import pytest
 from sample_cars import SampleCar, by_drawn_car
 
 from pointcoord import Scene, SceneError, simulate
+from pointcoord.results.closing import NOTICED
+
+CAR = dict(Scene.load("off-axis-strut").mechanism.points)
+
+
+def moved(name: str, by: tuple[float, float, float]) -> dict[str, tuple[float, ...]]:
+    return {**CAR, name: tuple(np.add(CAR[name], by).tolist())}
+
+
+def test_closing_says_what_moves_and_what_the_drawing_misses(make_scene: Callable[..., Scene]) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    aside = 0.5 * aside / np.linalg.norm(aside)
+    car = moved("strut_rod_end", tuple(aside))
+    motion = simulate(make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn"))
+    closing = motion.closing
+    assert closing.point == "strut_rod_end"
+    assert closing.largest == pytest.approx(0.5, rel=1e-3)
+    assert closing.noticeable
+    assert closing.largest > NOTICED
+    assert not closing.changes_the_car
+    assert closing.misses == {"strut_rod_end on the strut axis": pytest.approx(0.5, rel=1e-3)}
+    # No other point feels it.
+    assert max(far for name, far in closing.movements.items() if name != "strut_rod_end") < 1e-9
+
+
+@pytest.mark.parametrize(("share", "refused"), [(0.0099, False), (0.0101, True)])
+def test_one_percent_of_the_size_is_the_limit_of_closing(
+    make_scene: Callable[..., Scene], share: float, refused: bool
+) -> None:
+    aside = np.cross(np.subtract(CAR["strut_top"], CAR["strut_lower"]), (1.0, 0.0, 0.0))
+    far = share * 645.0  # mm: the car is 645 mm high
+    car = moved("strut_rod_end", tuple(far * aside / np.linalg.norm(aside)))
+    scene = make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn")
+    if refused:
+        with pytest.raises(SceneError, match="another car") as caught:
+            simulate(scene)
+        assert "strut_rod_end on the strut axis" in caught.value.problem
+    else:
+        # The rod's end keeps its distance from the top, so that it moves a little more than across.
+        assert simulate(scene).closing.largest == pytest.approx(far, rel=0.01)
 
 
 @by_drawn_car

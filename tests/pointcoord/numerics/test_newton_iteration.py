@@ -45,25 +45,6 @@ def test_error_of_a_step_is_the_square_of_the_error_before(
     assert abs(np.polyfit(np.log(before), np.log(after), 1)[0] - 2.0) < 0.01
 
 
-BAD = {"not a number": np.nan, "infinite": np.inf, "huge": 1e200, "zero": 0.0}
-
-
-@pytest.mark.parametrize("value", BAD.values(), ids=BAD.keys())
-def test_member_that_fails_is_marked_and_disturbs_no_other(
-    strut: Mechanism, pose: Pose, value: float
-) -> None:
-    batch = np.stack([displaced(pose, seed, 1e-3) for seed in range(4)]).reshape(2, 2, -1)
-    batch[0, 1, :17] = value
-    reached = newton_refine(strut.map, batch)
-    assert not reached.converged[0, 1]
-    for member in ((0, 0), (1, 0), (1, 1)):
-        alone = newton_refine(strut.map, batch[member][None])
-        assert reached.converged[member]
-        assert reached.iterations[member] == alone.iterations
-        # The same operations on each member: at most the order of a sum differs.
-        assert np.abs(reached.y[member] - alone.y).max() <= 2 * float(pose.bound / strut.unit)
-
-
 @pytest.mark.parametrize("start", [2.0, 1.2, 1.01, 0.9])
 def test_what_a_step_leaves_is_known_where_the_theorem_is_sharp(start: float) -> None:
     """u^2 = 1 from above, which is the equation that Newton and Kantorovich's bound is reached by."""

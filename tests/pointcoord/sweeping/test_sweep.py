@@ -2,9 +2,11 @@
 
 import pickle
 import tracemalloc
+from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from pointcoord import (
     InputOutOfRange,
@@ -23,7 +25,7 @@ from pointcoord import (
 )
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.simulation import effort
-from pointcoord.solve import box
+from pointcoord.solve import box, taylor
 from pointcoord.sweeping import solving
 
 WISHBONE = Scene.load("double-wishbone")
@@ -165,6 +167,27 @@ def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other()
         assert failure.instant == pytest.approx(own.instant, abs=1e-6)
         with pytest.raises(type(own)):
             together.of(number)
+
+
+@pytest.mark.parametrize("inputs", [2, 0])
+def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
+    inputs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of series in the inputs, and of chains in time."""
+    monkeypatch.setattr(box, "INPUTS", inputs)
+    right = taylor.on_branch
+
+    def all_but_the_third(*arguments: Any) -> NDArray[np.bool_]:
+        good = np.array(right(*arguments))
+        if good.shape[:1] == (9,):
+            good[2] = False
+        return good
+
+    monkeypatch.setattr(taylor, "on_branch", all_but_the_third)
+    found = sweep(WISHBONE, offsets={"lower_ball_joint.z": np.linspace(-20.0, 20.0, 9)})
+    assert found.solved.all()
+    for number in (0, 2, 8):
+        assert_same_as_alone(found.of(number), found.scene(number))
 
 
 @pytest.mark.parametrize(
