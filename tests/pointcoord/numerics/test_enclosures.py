@@ -204,6 +204,10 @@ def test_cosine_and_sine_are_right_to_twice_the_working_precision() -> None:
         {"polynomial": (0.3, -7.0, 11.0, 0.01)},
         {"sine": {"amplitude": 0.37, "angular_frequency": 5.3, "phase": 1.1, "offset": 1.6}},
         {"sine": {"amplitude": 30.0, "angular_frequency": 1e4, "phase": 0.3}},
+        # Terms of 16 to 192 that cancel before it comes to rest at 1.
+        {"polynomial": (0.0, 0.0, 16.0, -32.0, 16.0)},
+        # An offset that cancels the swing at 0.7.
+        {"sine": {"amplitude": 350.0, "angular_frequency": 2.0, "offset": -350.0 * np.sin(1.4)}},
         {"table": {"times": (0.0, 0.2, 0.5, 1.0), "values": (1.0, 1.2, 0.9, 1.1)}},
         {"sum": [{"polynomial": (0.8, 0.25)}, {"sine": WAVE}, {"polynomial": (-0.8, 1e-9)}]},
     ],
@@ -211,7 +215,8 @@ def test_cosine_and_sine_are_right_to_twice_the_working_precision() -> None:
 )
 def test_a_law_is_its_own_value_rounded_once_whatever_its_series_gives(law: dict[str, Any]) -> None:
     """As the comparison rounds it, by intervals; a table is the spline that scipy makes."""
-    part, instants = InputPart.model_validate(law), np.random.default_rng(2).uniform(0.0, 1.0, 40)
+    part, anywhere = InputPart.model_validate(law), np.random.default_rng(2).uniform(0.0, 1.0, 40)
+    instants = np.concatenate([anywhere, 1.0 - 10.0 ** -np.arange(1.0, 13.0), [0.7]])
     function = part.function
     for derivative, (found, true) in enumerate(
         zip(function.enclosed(instants), rates(part, instants).T, strict=True)

@@ -21,9 +21,8 @@ def with_angle(make_scene: Callable[..., Scene], car: Car, **more: object) -> Sc
     return make_scene([1.63], [0.0], stop=0.0, samples=1, points=car, closure="drawn", **more)
 
 
-@pytest.mark.parametrize("name", built_in_scenes())
-def test_nothing_is_doubted_of_the_built_in_scenes(name: str) -> None:
-    assert Scene.load(name).mechanism.doubts == ()
+def test_nothing_is_doubted_of_the_built_in_scenes() -> None:
+    assert {name: doubts for name in built_in_scenes() if (doubts := Scene.load(name).mechanism.doubts)} == {}
 
 
 @pytest.mark.parametrize(("factor", "length"), [(1e-3, "0.645 mm"), (0.039, "25.2 mm"), (1e3, "6.45e+05 mm")])
