@@ -70,6 +70,16 @@ def test_a_wrong_number_is_proven_to_be_off_and_is_not_expected_to_be() -> None:
             assert expected == pytest.approx(right.expected[quantity][name], rel=1e-6, abs=1e-300)
 
 
+def test_numbers_of_an_axle_that_turns_to_either_side_are_as_well_proven_as_expected() -> None:
+    effects = ("steer_angle", "ackermann", "axle")
+    motion = simulate(Scene.load("axle-steer").model_copy(update={"effects": effects}))
+    turn, proof = motion.wheel["left.steer_angle"], motion.proof(rates=True)
+    assert turn.min() < -0.1 < 0.1 < turn.max()
+    for (quantity, name), proven in named(proof.proven).items():
+        if quantity != "position":
+            assert (proven <= proof.expected[quantity][name] + 1e-24).all(), name
+
+
 def test_rates_too_slow_and_too_fast_to_be_squared_are_bounded_as_others_are() -> None:
     """Time counts in units of its own, so a motion that takes 1e-100 of the time has the same bounds."""
 
