@@ -11,7 +11,6 @@ from shipped import Array, Motion, error, exact, off, shipped
 
 import absolute
 import absolute.follow
-from absolute.mechanism import Mechanism
 from absolute.newton import Configurations, newton
 
 STRUT, WISHBONE = (
@@ -111,19 +110,6 @@ def test_a_long_way_close_by_a_fold_does_not_cross_it() -> None:
         return
     for name, place in exact(ways)[-1][0].items():
         assert error(solution.position[name][0], place) <= off(solution)[0], name
-
-
-def test_groups_of_bodies_have_signs_of_their_own_that_multiply_to_that_of_the_whole() -> None:
-    seen = set()
-    for planes in ((), (UPPER,), (OUTER,), (UPPER, OUTER)):
-        mechanism = Mechanism(absolute.compile(WISHBONE | {"points": over(short_lower_arm(), *planes)}))
-        jacobian = mechanism.stack.jacobian(mechanism.stack.place(*mechanism.poses(mechanism.drawn)))
-        signs = mechanism.signs(jacobian)
-        seen.add((*signs.tolist(), float(np.prod(signs) * np.sign(np.linalg.det(jacobian)))))
-    # The arm and the rack have signs of their own; what hangs between upper arm and tie rod has one for both.
-    assert len({signs[:-1] for signs in seen}) == 2
-    assert len({signs[-1] for signs in seen}) == 1
-    assert {len(signs) for signs in seen} == {4}
 
 
 def test_a_strut_that_closing_moves_as_far_as_the_car_is_large_is_refused() -> None:

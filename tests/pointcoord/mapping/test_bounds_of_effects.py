@@ -9,7 +9,7 @@ import pytest
 from every_effect import asking_for_all
 from numpy.typing import NDArray
 
-from pointcoord import KinematicMap, Scene, kinematic_map
+from pointcoord import KinematicMap, Scene, kinematic_map, solve_poses
 from pointcoord.effects.point_states import STATES
 from pointcoord.mapping.kinematic_map import MappedPoses
 from pointcoord.patches.jet import Jet
@@ -22,6 +22,12 @@ POSES = 8
 RANGES = {
     "double-wishbone": {"arm_angle": (1.45, 1.65), "rack": (-15.0, 15.0)},
     "off-axis-strut": {"arm_angle": (1.5, 1.7), "rack": (-15.0, 15.0)},
+    # Three inputs at once.
+    "axle-steer": {
+        "left.wheel_travel": (-25.0, 25.0),
+        "right.wheel_travel": (-25.0, 25.0),
+        "rack": (5.0, 25.0),
+    },
 }
 
 
@@ -41,7 +47,7 @@ def with_all_effects(name: str) -> Scene:
 def states_of(scene: Scene, name: str, seed: int) -> States:
     """Values, rates and accelerations of every input, at random."""
     rng, ranges = np.random.default_rng(seed), RANGES[name]
-    values = {n: rng.uniform(*ranges.get(n, (-50.0, 50.0)), POSES) for n in scene.mechanism.topology.inputs}
+    values = {n: rng.uniform(*ranges.get(n, (-50.0, 50.0)), POSES) for n in scene.inputs}
     sizes = {n: 3.0 if n == "arm_angle" else 200.0 for n in values}
     rates = {n: size * rng.normal(size=POSES) for n, size in sizes.items()}
     return values, rates, {n: 10.0 * size * rng.normal(size=POSES) for n, size in sizes.items()}
@@ -84,6 +90,11 @@ def test_every_number_is_within_its_bound_of_the_reference(name: str) -> None:
                 assert bound.shape == found.numbers[quantity][number].shape
         parts = shares(found, truth)
         assert max(parts.values()) <= 1.0, parts
+    # Unrelated poses, of which many are on patches.
+    poses = solve_poses(scene, {name: np.tile(values, 80) for name, values in states[0].items()})
+    for point, place in truth["position"].items():
+        bound = np.maximum(poses.bound, poses.carried_bound)[:POSES, None] + 2.0**-53 * np.abs(place)
+        assert (np.abs(poses.position[point][:POSES] - place) <= bound).all(), point
     # Of a wheel that turns about points some 100 mm apart: 1e-9 mm are 1e-11 rad.
     assert max(bound.max() for bound in found.bounds["wheel"].values()) < 1e-10
 

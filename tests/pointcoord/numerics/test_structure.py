@@ -75,27 +75,3 @@ def test_blocks_of_a_random_pattern_are_those_of_scipy(pattern: Pattern) -> None
         return
     require_blocks(found, pattern)
     assert {(frozenset(b.rows), frozenset(b.unknowns)) for b in found.blocks} == wanted
-
-
-@given(patterns(), st.data())
-def test_what_is_needed_and_what_moves_is_what_the_arrows_reach(
-    pattern: Pattern, data: st.DataObject
-) -> None:
-    structure = structure_of(*pattern)
-    n, blocks = pattern.unknowns, structure.blocks
-    home = {u: number for number, block in enumerate(blocks) for u in block.unknowns}
-    reached = np.eye(len(blocks), dtype=bool)
-    for number, block in enumerate(blocks):
-        for i in block.reads:
-            if i in home:
-                reached[number] |= reached[home[i]]
-    asked = data.draw(st.sets(st.integers(0, n - 1)))
-    wanted = np.zeros(len(blocks), dtype=bool)
-    for i in asked:
-        wanted |= reached[home[i]]
-    assert structure.needed(asked) == tuple(np.flatnonzero(wanted).tolist())
-    known = data.draw(st.sets(st.integers(n, n + 2)))
-    moved = structure.moved_by({i: frozenset({i - n}) for i in known})
-    for cause in (0, 1, 2):
-        driven = [cause + n in known and cause + n in block.reads for block in blocks]
-        assert [cause in causes for causes in moved] == (reached @ np.array(driven)).tolist()
