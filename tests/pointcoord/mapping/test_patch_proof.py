@@ -1,4 +1,4 @@
-r"""The proof of a patch: no term of its bound can be left out or halved, and real cars keep to it.
+r"""The proof of a patch: no term of its bound can be left out or halved.
 
 The bounds are sums of magnitudes. So they are reached, in the corner of the box, by an equation all of whose
 terms pull the same way: u^2 = w v with w = 1 - a s_1 - b s_2 and v = 1, whose root has no coefficient above
@@ -7,29 +7,21 @@ zero but the first.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import perm
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_cars import PAPER_STRUT, SampleCar, by_car
 
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.linear import Factors, factorise
-from pointcoord.numerics.monomials import monomials
 from pointcoord.numerics.multi_index import powers
-from pointcoord.numerics.newton import newton_refine
 from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.patches import patch_proof
-from pointcoord.patches.domain import Domain
 from pointcoord.patches.jet import Jet
-from pointcoord.patches.patch_proof import PatchProof, prove_patches
-from pointcoord.solve.assembly import close_drawing
-from pointcoord.solve.follower import follow
+from pointcoord.patches.patch_proof import prove_patches
 
 Array = NDArray[np.float64]
 
@@ -85,104 +77,6 @@ def test_how_far_the_jacobian_changes_is_bounded() -> None:
     value, first, second = in_the_corner(whole)
     parts = zip((1.0 - value, -first, -second), found.parts, strict=True)
     assert all((e <= b[0, ..., 0, 0] * INFLATION).all() for e, b in parts)
-
-
-ORDER = 10
-
-
-@dataclass(frozen=True)
-class Series:
-    """A series about a pose, with all that its proof needs."""
-
-    mechanism: Mechanism
-    domain: Domain
-    middle: Array
-    half: Array
-    factors: Factors
-    series: Array
-    lacking: Array
-    data: Jet
-
-    def proof(self) -> PatchProof:
-        return prove_patches(self.mechanism.map, self.factors, self.series, ORDER, self.lacking, self.data)
-
-    def at(self, shares: Array) -> Array:
-        """All coordinates by the series, (N, size), the known ones as they are."""
-        (each,) = monomials([shares.T], ORDER)
-        y = each.T @ self.series[0]
-        y[:, self.mechanism.map.unknowns :] = self.domain.known_at(self.middle[0] + shares * self.half[0])
-        return y
-
-
-def series_of(car: SampleCar, angle: float = 0.0625, travel: float = 6.0) -> Series:
-    mechanism = car.mechanism()
-    drawn = car.drawn_inputs
-    middle = 1.0 if car is PAPER_STRUT else drawn["arm_angle"]
-    rack = drawn["rack"]
-    ranges = {"arm_angle": (middle - angle, middle + angle), "rack": (rack - travel, rack + travel)}
-    domain = Domain(mechanism, ranges, 0)
-    low, high = np.zeros((1, 2), dtype=np.int64), np.ones((1, 2), dtype=np.int64)
-    centre, half = domain.middle_and_half(low, high)
-    known, lacking, data = domain.known_over(centre, half, ORDER)
-    y = follow(mechanism.map, close_drawing(mechanism).y[None], known[:, 0]).y
-    factors = factorise(mechanism.map.jacobian(y))
-    found = expand(mechanism.map, factors, y, known, inputs=2)
-    return Series(mechanism, domain, centre, half, factors, found, lacking, data)
-
-
-@by_car
-def test_errors_are_within_their_bounds_of_the_solved_poses_and_not_far_below(car: SampleCar) -> None:
-    series = series_of(car, 0.125, 12.0)
-    system, n = series.mechanism.map, series.mechanism.map.unknowns
-    proof = series.proof()
-    shares = np.random.default_rng(8).uniform(-1.0, 1.0, (40, 2))
-    y = series.at(shares)
-    solved = newton_refine(system, y).y
-    found, least = np.abs(solved - y)[:, :n].max(axis=0), proof.error.value[0]
-    # Newton's method itself is off by some hundred roundings of coordinates below 1.
-    assert (found <= least + 1e-14).all()
-    assert least.max() <= 20.0 * found.max()
-    factors = factorise(system.jacobian(solved))
-    known, _, _ = series.domain.known_over(
-        series.middle + shares * series.half, np.broadcast_to(series.half, (40, 2)), 3
-    )
-    every = powers(2, 3)
-    local = expand(system, factors, solved, known, inputs=2)
-    for direction in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0)):
-        along = np.broadcast_to(np.array(direction)[:, None], (2, 40))
-        states = [shares.T, along, np.zeros((2, 40))]
-        _, first, second = monomials(states, ORDER)
-        d = np.array(direction)
-        speed = d @ np.stack([local[:, every.power_of(i, 1), :n] for i in range(2)], axis=-2)
-        wanted = 2.0 * sum(local[:, k, :n] * np.prod(d ** every.exponents[k]) for k in range(3, 6))
-        bound = np.einsum("i,iu->u", d, proof.error.first[0])
-        curve = np.einsum("i,j,iju->u", d, d, proof.error.second[0])
-        # A few hundred roundings of numbers below 1 beside.
-        assert (np.abs(first.T @ series.series[0, :, :n] - speed) <= bound + 1e-13).all()
-        assert (np.abs(second.T @ series.series[0, :, :n] - wanted) <= curve + 1e-13).all()
-
-
-@by_car
-def test_no_other_assembly_is_proven_to_be_near_where_another_one_is(car: SampleCar) -> None:
-    # Mirrored about the plane of its three carriers, a point that three links hold is an assembly too.
-    series = series_of(car)
-    proof = series.proof()
-    system, n = series.mechanism.map, series.mechanism.map.unknowns
-    middle = series.series[0, 0]
-    generator = np.random.default_rng(9)
-    start = np.tile(middle, (400, 1))
-    start[:, :n] += generator.normal(scale=0.5, size=(400, n))
-    solved = newton_refine(system, start)
-    others = solved.y[solved.converged]
-    apart = np.abs(others - middle)[:, :n]
-    other = (apart > 1e-6).any(axis=-1)
-    assert other.sum() > 5
-    assert (apart[other] > proof.unique_within[0]).any(axis=-1).all()
-
-
-def test_a_patch_that_reaches_over_a_fold_is_not_proven() -> None:
-    # The strut of the paper stops somewhere in this range.
-    assert not series_of(PAPER_STRUT, 0.7, 90.0).proof().proven.any()
 
 
 def one_row(generator: np.random.Generator) -> QuadraticMap:
