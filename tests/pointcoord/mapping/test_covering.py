@@ -13,9 +13,12 @@ from pointcoord import NotCovered, Scene, kinematic_map, standing
 from pointcoord.patches import flood as flooding
 from pointcoord.patches.domain import Domain
 from pointcoord.patches.flood import FOLD, SEAM, UNREACHED, Limits, flood
+from pointcoord.patches.lookup import Lookup
 from pointcoord.patches.patches import ProvenPatches
+from pointcoord.patches.path import Spans, covered_until, way_of
 from pointcoord.solve.assembly import assemble, close_drawing
 from pointcoord.solve.follower import follow
+from pointcoord.time_functions import Polynomial, Sine
 
 Array = NDArray[np.float64]
 
@@ -126,3 +129,21 @@ def test_neighbours_are_the_same_assembly_if_either_is_alone_around_the_other_an
         monkeypatch.undo()
         assert seamed.patches.low.tolist() == kept.low[:-1].tolist()
         assert [reason for _, reason in seamed.given_up] == [SEAM]
+
+
+def test_a_way_is_followed_up_to_what_is_not_covered_and_no_further() -> None:
+    domain = Domain(PAPER_STRUT.mechanism(), {"arm_angle": (1.4, 1.8), "rack": (-20.0, 20.0)}, 6)
+    laws, table = [Polynomial((1.4, 0.4)), Sine(19.0, 3.0)], np.zeros((64, 64), dtype=np.int64)
+    spans = way_of(dict(zip(domain.free, laws, strict=True)), 0.0, 1.0)
+    assert covered_until(laws, spans, Lookup(domain, table)) == 1.0
+    # A gap beside the way, that a coarse span touches, and one on it.
+    where = np.array([laws[0].series(0.7, 0)[0], laws[1].series(0.7, 0)[0]])
+    column, row = ((where - [1.4, -20.0]) * 64 / [0.4, 40.0]).astype(int)
+    table[column, row + 4] = -1
+    coarse = Spans.of(laws, np.array([0.0, 0.5]), np.array([0.5, 1.0]))
+    assert covered_until(laws, coarse, Lookup(domain, table)) == 1.0
+    table[column, row] = -1
+    # Up to where the arm enters the column, or the rack the row, less a part of a box.
+    assert column / 64.0 - 0.5 / 64 <= covered_until(laws, coarse, Lookup(domain, table)) <= 0.7
+    table[0, 32] = -1
+    assert covered_until(laws, coarse, Lookup(domain, table)) == -np.inf
