@@ -4,8 +4,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from many_digits import DIGITS, vector
 from mechanism_closed_forms import NoPoseError, raised, turn
 from mechanism_files import mechanism_file, plain, plain_scene
@@ -198,22 +196,6 @@ def test_a_drawing_that_locks_before_it_closes_names_its_links() -> None:
     with pytest.raises(absolute.AssemblyError, match=r"limited by .*rod tie_rod") as caught:
         absolute.close_drawing(absolute.compile(STRUT | {"points": points}))
     assert caught.value.residual > 0
-
-
-@settings(max_examples=5, deadline=None)
-@given(racks=st.lists(st.floats(-60.0, 90.0), min_size=1, max_size=6), angles=st.integers(0, 10**6))
-def test_jumping_about_gives_the_pose_that_going_there_directly_gives(
-    racks: list[float], angles: int
-) -> None:
-    angle = np.random.default_rng(angles).uniform(np.radians(45.0), np.radians(145.0), len(racks))
-    inputs = {"arm_angle": angle, "rack": np.array(racks)}
-    inputs = {name: np.stack([values, 0 * values, 0 * values], -1) for name, values in inputs.items()}
-    jumping = Motion(STRUT, inputs).solve(rates=False)
-    for k in range(len(racks)):
-        alone = {name: law[k : k + 1] for name, law in inputs.items()}
-        direct = Motion(STRUT, alone).solve(rates=False, conditions=True)
-        for name, place in direct.position.items():
-            assert np.abs(jumping.position[name][k] - place[0]).max() <= 2 * off(direct)[0]
 
 
 def test_where_the_straight_way_is_blocked_inputs_go_one_by_one() -> None:

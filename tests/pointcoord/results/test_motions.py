@@ -2,19 +2,14 @@
 
 import pickle
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import fields
-from multiprocessing import get_context
 
 import numpy as np
 import pytest
 
-from pointcoord import AssemblyError, Motion, Samples, Scene, UnknownName, simulate
+from pointcoord import Motion, Samples, Scene, UnknownName, simulate
 from pointcoord.method import METHODS, Method
 from validate.paper.printed import PRINTED
-
-SINE = {"sine": {"amplitude": 0.3, "angular_frequency": 2.3, "phase": 0.4, "offset": 1.5}}
-HEAVE = {"sine": {"amplitude": 5.0, "angular_frequency": 2.0}}
 
 
 def assert_same(one: Motion, other: Motion) -> None:
@@ -50,23 +45,6 @@ def test_a_motion_is_pickled_with_all_that_it_can_be_asked_for_and_stays_read_on
                 array[0] = 0.0
         with pytest.raises(TypeError):
             one.closing.movements["strut_top"] = 1.0
-
-
-def test_motions_and_errors_come_back_from_a_process_pool(make_scene: Callable[..., Scene]) -> None:
-    good, locked = make_scene(SINE, heave=HEAVE), make_scene([1.6], [0.0, 100.0])
-    # A new interpreter, that shares nothing with this one.
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        motion = pool.submit(simulate, good).result()
-        with pytest.raises(AssemblyError, match="bring 'rack' back") as caught:
-            pool.submit(simulate, locked).result()
-    assert_same(motion, simulate(good))
-    with pytest.raises(AssemblyError) as alone:
-        simulate(locked)
-    assert caught.value.reached == alone.value.reached
-    partial, own = caught.value.partial, alone.value.partial
-    assert isinstance(partial, Motion)
-    assert isinstance(own, Motion)
-    assert_same(partial, own)
 
 
 def test_what_a_motion_is_fits_on_a_line(make_scene: Callable[..., Scene]) -> None:

@@ -4,19 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from sample_cars import SAMPLES
 
 from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import Pose, assemble
-from pointcoord.solve.follower import follow
 
 Points = dict[str, tuple[float, float, float]]
-MECHANISMS = {car.name: car.mechanism() for car in SAMPLES}
-by_mechanism = pytest.mark.parametrize("mechanism", MECHANISMS.values(), ids=MECHANISMS.keys())
-few = settings(deadline=None, max_examples=max(10, settings.default.max_examples // 4))
 # The ends of what can be assembled with the other input held, certified apart from this package.
 LOWEST_ANGLE, HIGHEST_ANGLE = np.deg2rad(32.228), np.deg2rad(152.013)
 LOWEST_RACK, HIGHEST_RACK = -89.066, 130.101
@@ -24,28 +17,6 @@ LOWEST_RACK, HIGHEST_RACK = -89.066, 130.101
 
 def at(mechanism: Mechanism, angle: object, rack: object) -> Pose:
     return assemble(mechanism, {"arm_angle": np.asarray(angle, float), "rack": np.asarray(rack, float)})
-
-
-@by_mechanism
-@few
-@given(angle=st.floats(0.05, 3.1), rack=st.floats(-140.0, 190.0), steps=st.sampled_from([2, 5, 2000]))
-def test_one_pose_takes_the_steps_that_it_takes_in_a_batch(
-    mechanism: Mechanism, angle: float, rack: float, steps: int
-) -> None:
-    """To the end, up to where the path ends, or until no steps are left."""
-    start = at(mechanism, 1.5, 0.0)
-    values = {"arm_angle": np.array([[1.2], [angle], [1.9]]), "rack": np.array([[-20.0], [rack], [160.0]])}
-    known = mechanism.known_series(values)[:, 0]
-    together = follow(mechanism.map, start.y, known, None, 1e-10, steps)
-    alone = [follow(mechanism.map, start.y, goal, start.factors, 1e-10, steps) for goal in known]
-    for number, one in enumerate(alone):
-        # Near the end of a path a pose is off as the root of rounding.
-        np.testing.assert_allclose(one.done, together.done[number], atol=1e-12)
-        np.testing.assert_allclose(one.y, together.y[number], atol=1e-7 if one.done < 1.0 else 1e-10)
-        np.testing.assert_allclose(one.left, together.left[number], atol=1e-10)
-    # Whether a last correction is noise is told by rounding: one Newton step more or less at either end.
-    each, all_of_them = sum(one.work.factorisations for one in alone), together.work.factorisations
-    assert abs(each + 3 - all_of_them) <= 6 + 0.02 * all_of_them
 
 
 @pytest.mark.parametrize(
