@@ -1,4 +1,4 @@
-"""Large matrices by their blocks, and how fast a Jacobian may change."""
+"""Singular members of a batch, large matrices by their blocks, and how fast a Jacobian may change."""
 
 from itertools import product
 
@@ -9,6 +9,25 @@ from pointcoord.numerics.block_inverse import inverse_by_blocks
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.quadratic import Product, QuadraticMap, quadratic_map
 from pointcoord.numerics.rounding import EPS
+
+SINGULAR = {
+    "equal rows": [[1.0, 2.0, 3.0], [1.0, 2.0, 3.0], [0.0, 1.0, 5.0]],
+    "zero column": [[1.0, 0.0, 3.0], [4.0, 0.0, 1.0], [1.0, 0.0, 5.0]],
+    "not a number": [[1.0, 2.0, 3.0], [np.nan, 1.0, 0.0], [0.0, 1.0, 5.0]],
+    "equal up to rounding": [[1.0, 2.0, 3.0], [1.0 + EPS, 2.0, 3.0], [0.0, 1.0, 5.0]],
+    "inverse above the largest number": [[1.0, 1e-310, 0.0], [1.0, 2e-310, 0.0], [0.0, 0.0, 1.0]],
+}
+
+
+@pytest.mark.parametrize("bad", SINGULAR.values(), ids=SINGULAR.keys())
+def test_singular_member_of_a_batch_marks_only_itself(bad: list[list[float]]) -> None:
+    matrices = np.random.default_rng(5).normal(size=(2, 2, 3, 3))
+    matrices[1, 0] = bad
+    factors = factorise(matrices)
+    assert factors.singular.tolist() == [[False, False], [True, False]]
+    for member in ((0, 0), (0, 1), (1, 1)):
+        assert factors.condition[member] == factorise(matrices[member]).condition
+
 
 N = 120
 
