@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from pointcoord import (
     InputOutOfRange,
-    Motion,
     PointcoordError,
-    Samples,
     Scene,
     SceneError,
+    Sweep,
     SweepError,
     UnknownName,
     designs_of,
@@ -24,7 +23,6 @@ from pointcoord import (
     sweep_blocks,
 )
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.simulation import effort
 from pointcoord.solve import box, taylor
 from pointcoord.sweeping import solving
 
@@ -45,49 +43,17 @@ def few_instants(scene: Scene, samples: int = 7) -> Scene:
 WISHBONE, STRUT, PAPER = (few_instants(scene) for scene in (WISHBONE, STRUT, PAPER))
 
 
-# No two points of a knuckle here, and no two ends of an axis, are nearer to each other, mm.
-LEVER = 50.0
-
-
-def allowed(motion: Motion, part: float) -> dict[str, dict[str, np.ndarray]]:
-    """How far two solutions of one design may differ.
-
-    Both may be off by what a method is expected to make of a number in doubles, and each is cut to a part of
-    the car's size, its velocities and accelerations to the same part of the largest of these. Two ends of a
-    line that are each off by d turn it by 2 d / length; a body's rates are off by what its points' rates are
-    and by what their places make of these, over the length of its shortest edge.
-    """
-    size = part * motion.unit
-    fastest, quickest = (
-        part * max(float(np.linalg.norm(array, axis=-1).max()) for array in channel.values())
-        for channel in (motion.velocity, motion.acceleration)
-    )
-    turn, spin = (
-        float(np.linalg.norm(channel["knuckle"], axis=-1).max())
-        for channel in (motion.angular_velocity, motion.angular_acceleration)
-    )
-    cut = {
-        "position": size,
-        "velocity": fastest,
-        "acceleration": quickest,
-        "wheel": 2.0 * size / LEVER,
-        # From the end of a line that is LEVER long to the road, a wheel's radius below.
-        "dimension": 2.0 * size * (1.0 + 300.0 / LEVER),
-        "angular_velocity": 2.0 * (fastest + turn * size) / LEVER,
-        "angular_acceleration": 2.0 * (quickest + (spin + turn * turn) * size + turn * fastest) / LEVER,
-    }
-    expected = motion.proof(rates=True).expected
-    return {q: {n: 2.0 * (e + cut[q]) for n, e in arrays.items()} for q, arrays in expected.items()}
-
-
-def assert_same_as_alone(found: Samples, scene: Scene) -> None:
-    motion = simulate(scene)
-    most = allowed(motion, effort(scene).part)
+def assert_same_as_alone(found: Sweep, number: int) -> None:
+    """Each number of a design is what it is alone, within what both prove."""
+    motion, own = simulate(found.scene(number)), found.of(number)
+    ours, theirs = found.proof(number, rates=True).proven, motion.proof(rates=True).proven
     for quantity, channel in motion.numbers.items():
-        assert set(channel) == set(found.numbers[quantity])
+        assert set(channel) == set(own.numbers[quantity])
         for name, array in channel.items():
-            difference = np.abs(found.numbers[quantity][name] - array)
-            assert (difference <= most[quantity][name]).all(), (quantity, name, difference.max())
+            difference, bound = np.abs(own.numbers[quantity][name] - array), ours[quantity][name]
+            assert (difference <= bound + theirs[quantity][name]).all(), (quantity, name, difference.max())
+            # A number that is not this design's has a proof as wide as it is wrong.
+            assert bound.max() <= 1e-8 * (1.0 + np.abs(array).max()), (quantity, name)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +70,7 @@ def test_a_design_among_many_is_the_design_alone(scene: Scene, varied: str) -> N
     point, _, axis = varied.partition(".")
     for number in (0, 39):
         own = found.scene(number)
-        assert_same_as_alone(found.of(number), own)
+        assert_same_as_alone(found, number)
         assert found.closing[number] == pytest.approx(simulate(own).closing.largest, rel=1e-9, abs=1e-12)
         assert found.varied[varied][number] == own.mechanism.points[point]["xyz".index(axis)]
 
@@ -120,15 +86,7 @@ def test_designs_have_gradients_and_what_else_is_along_a_way_as_each_has_alone(n
     along = [effect for effect in Scene.from_mapping(content).mechanism.effects if EFFECTS[effect].way]
     assert "loads" in along
     found = sweep(Scene.from_mapping({**content, "effects": along}), offsets={f"{point}.z": [-3.0, 0.0, 4.0]})
-    alone = simulate(found.scene(2))
-    ours, theirs = found.proof(2, rates=True).proven, alone.proof(rates=True).proven
-    for quantity, numbers in theirs.items():
-        for number, bounds in numbers.items():
-            values = alone.numbers[quantity][number]
-            difference = np.abs(found.numbers[quantity][number][2] - values)
-            assert (difference <= ours[quantity][number] + bounds).all(), number
-            # A number that is not this design's has a proof as wide as it is wrong.
-            assert ours[quantity][number].max() <= 1e-8 * (1.0 + np.abs(values).max()), number
+    assert_same_as_alone(found, 2)
 
 
 def test_a_point_of_a_part_is_varied_by_its_whole_name() -> None:
@@ -154,8 +112,8 @@ def test_a_design_fails_with_the_words_that_it_has_alone_and_disturbs_no_other()
             assert np.isnan(array[SOUND:]).all()
     sound = sweep(WISHBONE, offsets={"lower_ball_joint.z": HEIGHTS[:SOUND]})
     for number in range(SOUND):
-        assert_same_as_alone(together.of(number), together.scene(number))
-        assert_same_as_alone(sound.of(number), together.scene(number))
+        assert_same_as_alone(together, number)
+        assert_same_as_alone(sound, number)
     for number, failure in together.failures.items():
         with pytest.raises(PointcoordError) as alone_raised:
             simulate(together.scene(number))
@@ -187,7 +145,7 @@ def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
     found = sweep(WISHBONE, offsets={"lower_ball_joint.z": np.linspace(-20.0, 20.0, 9)})
     assert found.solved.all()
     for number in (0, 2, 8):
-        assert_same_as_alone(found.of(number), found.scene(number))
+        assert_same_as_alone(found, number)
 
 
 @pytest.mark.parametrize(
@@ -266,7 +224,7 @@ def test_blocks_are_the_sweep_in_parts() -> None:
     assert [number for block in blocks for number in block.numbers_of_designs] == list(range(6))
     varied = [height for block in blocks for height in block.varied["lower_ball_joint.z"]]
     assert varied == whole.varied["lower_ball_joint.z"].tolist()
-    assert_same_as_alone(blocks[-1].of(5), whole.scene(5))
+    assert_same_as_alone(blocks[-1], 5)
 
 
 def test_blocks_take_no_more_memory_than_is_stated() -> None:
