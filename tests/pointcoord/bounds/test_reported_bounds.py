@@ -46,7 +46,7 @@ def with_every_number() -> Motion:
     content = Scene.load("pushrod").model_dump(exclude_none=True)
     load = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}
     content["mechanism"] |= {"car": {"axle": "front", **NUMBERS_OF_A_CAR}, "loads": load}
-    content["time"]["samples"] = 30
+    content["time"]["samples"] = 8
     effects = Scene.from_mapping(content).mechanism.effects
     assert {*OF_A_WHEEL, "loads"} <= {*effects}
     return simulate(Scene.from_mapping({**content, "effects": effects}))
@@ -174,7 +174,7 @@ def test_a_coefficient_that_is_far_off_is_in_the_bounds_with_what_curvature_make
     segments[0] = replace(segments[0], coefficients=coefficients)
     wrong = replace(motion, solved=replace(solved, chain=replace(solved.chain, segments=tuple(segments))))
     # Not where the coefficient, times the time, is next to nothing: neighbours share what they may be off.
-    instants = np.linspace(motion.times[0], segments[0].stop, 200)[20:-1]
+    instants = np.linspace(motion.times[0], segments[0].stop, 60)[6:-1]
     right, samples = motion.at(instants), wrong.at(instants)
     names = solved.readout.mechanism.topology.moving
     error = np.max([np.abs(samples.position[n] - right.position[n]).max(axis=-1) for n in names], axis=0)
