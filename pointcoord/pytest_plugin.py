@@ -112,7 +112,7 @@ def reference() -> Callable[[Scene | str], Any]:
     Raises, when it is called:
         SceneError: there is no such scene. NoReferenceError: an instant has no pose, or none can be proven.
     """
-    reference_solution = _ours("adjudication.reference_solution", "reference_solution")
+    reference_solution = _ours("formulations.reference_solution", "reference_solution")
     solved: dict[str, Any] = {}
 
     def solution(scene: Scene | str) -> Any:

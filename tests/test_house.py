@@ -18,7 +18,7 @@ ROOMS = {
         results scene simulation poses drawing_stands sweeping mapping __main__ pytest_plugin""",
     "validate": """
         errors extras exit_status plain_text tables toml_written closed_drawing reference paper spanning_tree
-        peers formulations comparison diagnosis solvers cars strategies adjudication measured fitting
+        peers formulations comparison diagnosis solvers cars strategies measured fitting
         published output ci assemblies hard testing cost curves hardpoint_files html studies commands
         cli __main__""",
 }

@@ -17,9 +17,9 @@ from mechanism_files import SCENES, scene_file
 from pointcoord import Scene
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
-from validate.adjudication.reference_solution import reference_solution, told_by
 from validate.comparison.compare import Outcome, compare_solutions
 from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.reference_solution import reference_solution, told_by
 from validate.formulations.registry import OUTSIDE, formulation
 
 OF_EVERY_NUMBER = ("pointcoord", "absolute")

@@ -7,8 +7,8 @@ import pytest
 from mechanism_files import mechanism_file
 
 from pointcoord import Scene, SceneError, simulate
-from validate.adjudication.reference_solution import reference_solution
 from validate.comparison.compare import compare_solutions
+from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 
 WISHBONE = Scene.load("double-wishbone").model_dump(exclude_none=True)["mechanism"]

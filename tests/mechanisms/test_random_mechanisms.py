@@ -11,9 +11,9 @@ from random_mechanisms import random_mechanism
 from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, SceneError, simulate
-from validate.adjudication.reference_solution import reference_solution, told_by
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import FormulationError
+from validate.formulations.reference_solution import reference_solution, told_by
 from validate.formulations.refusals import why_refused
 from validate.formulations.registry import formulation
 from validate.reference import NoReferenceError

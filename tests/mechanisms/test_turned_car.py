@@ -16,9 +16,9 @@ from pointcoord import InputOutOfRange, Scene, kinematic_map, simulate, solve_po
 from pointcoord.effects.point_states import STATES
 from pointcoord.mechanism.file import MECHANISMS
 from validate import compare
-from validate.adjudication.reference_solution import reference_solution, told_by
 from validate.comparison.compare import compare_solutions
 from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import reference_solution, told_by
 from validate.formulations.registry import formulation
 
 Array = NDArray[np.float64]

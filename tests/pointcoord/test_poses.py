@@ -9,7 +9,7 @@ import pytest
 from pointcoord import AssemblyError, InputOutOfRange, Scene, UnknownName, poses, simulate, solve_poses
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import assemble
-from validate.adjudication.reference_solution import reference_instant
+from validate.formulations.reference_solution import reference_instant
 
 
 def test_poses_on_patches_are_those_from_paths_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:

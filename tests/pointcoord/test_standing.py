@@ -8,7 +8,7 @@ from sample_cars import SampleCar, by_drawn_car
 
 from pointcoord import Scene, simulate, standing
 from pointcoord.drawing_stands import End
-from validate.adjudication.reference_solution import design_of
+from validate.formulations.reference_solution import design_of
 from validate.reference import pose_exists
 
 

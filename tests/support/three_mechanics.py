@@ -10,8 +10,8 @@ import pytest
 from mpmath import mpf, workdps
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 
 DIGITS = 40

@@ -25,12 +25,12 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import DIGITS, reference_motion
 from validate.cost.race import Found, NoNumbers, absent
 from validate.cost.way import Answer
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import shape_of
+from validate.formulations.reference_solution import DIGITS, reference_motion
 from validate.reference import NoReferenceError
 
 try:

@@ -42,6 +42,7 @@ WORDS = {
     "relative": "a tree of joints with loop closures (relative coordinates), with Pinocchio",
     "mujoco": "the same suspension in MuJoCo, an outside witness",
     "exudyn": "the same suspension in Exudyn, another one",
+    "reference": "exact equations in balls of many digits, rounded to doubles; some hundred times slower",
 }
 """Every formulation by its name, in words."""
 
@@ -63,7 +64,7 @@ def formulation(name: str) -> Formulation:
     if name not in WORDS:
         raise UsageError(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
     try:
-        return _absolute() if name == "absolute" else _in_tree(name)
+        return _OTHERS[name]() if name in _OTHERS else _in_tree(name)
     except MissingPackage:
         raise
     except ImportError as error:
@@ -73,10 +74,11 @@ def formulation(name: str) -> Formulation:
 def second_there() -> tuple[str, str]:
     """What stands beside pointcoord where nobody names a second one, and why it is not the absolute model.
 
-    There are systems that Pinocchio is not built for; the programs in `OUTSIDE` are.
+    There are systems that Pinocchio is not built for; the programs in `OUTSIDE` are, and the reference needs
+    none of them.
     """
     why = ""
-    for name in ("absolute", *OUTSIDE):
+    for name in ("absolute", *OUTSIDE, "reference"):
         try:
             formulation(name)
         except MissingPackage as error:
@@ -101,6 +103,15 @@ def _absolute() -> Formulation:
     from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 
     return AbsoluteCoordinates()
+
+
+def _reference() -> Formulation:
+    from validate.formulations.many_digits import ManyDigits
+
+    return ManyDigits()
+
+
+_OTHERS: dict[str, Callable[[], Formulation]] = {"absolute": _absolute, "reference": _reference}
 
 
 def _in_tree(name: str) -> Formulation:

@@ -14,9 +14,9 @@ import numpy as np
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import told_by
 from validate.comparison.compare import Comparison, compare_solutions
 from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import told_by
 
 # right: every number lies within its bound of the reference. refused: a reason in place of numbers. noted:
 # some numbers are out of their bounds, and the formulation itself says so. wrong: it does not say so.

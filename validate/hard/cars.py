@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import reference_instant
 from validate.cars.car import Car, any_rotation, moved, other_side, turned
 from validate.cars.paper_car import PAPER
 from validate.cars.scene_content import Law, content_of
+from validate.formulations.reference_solution import reference_instant
 
 Array = NDArray[np.float64]
 FAR = np.array([3e6, -2e6, 2e6])  # mm

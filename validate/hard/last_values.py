@@ -14,7 +14,7 @@ from typing import Any
 
 from pointcoord import Scene
 from pointcoord.drawing_stands import End, reach_of
-from validate.adjudication.reference_solution import reference_instant
+from validate.formulations.reference_solution import reference_instant
 from validate.hard.cars import drawn_at
 from validate.hard.subjects import Subject
 from validate.reference import Design, InfeasibleError, pose_exists

@@ -15,10 +15,10 @@ import numpy as np
 
 from pointcoord import Scene, SceneError
 from pointcoord.method import MAP
-from validate.adjudication.reference_solution import reference_solution
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer, judged_answer
 from validate.reference import InfeasibleError, NoReferenceError

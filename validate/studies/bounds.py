@@ -28,11 +28,11 @@ from numpy.typing import NDArray
 
 from pointcoord import Motion, PointcoordError, Scene, simulate
 from pointcoord.numerics.rounding import EPS
-from validate.adjudication.reference_solution import inputs_at, off_by, reference_instant
 from validate.cars.base_cars import variants
 from validate.cars.near_singular import NearPose, near_pose
 from validate.cars.scene_content import content_of
 from validate.exit_status import ExitStatus
+from validate.formulations.reference_solution import inputs_at, off_by, reference_instant
 from validate.output.table import Part, Table
 from validate.reference import InfeasibleError, Instant, NoReferenceError
 from validate.studies.study import Findings, Row, Study, Task

@@ -16,11 +16,11 @@ import pandas as pd
 
 from pointcoord import SceneError
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import DUST, as_solution, off_by, reference_motion, scales
 from validate.cars.random_scenes import SEED, random_scene
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import FormulationError
+from validate.formulations.reference_solution import DUST, as_solution, off_by, reference_motion, scales
 from validate.formulations.registry import formulation
 from validate.output.table import Table
 from validate.reference import NoReferenceError

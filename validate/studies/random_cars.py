@@ -17,14 +17,6 @@ import pandas as pd
 
 from pointcoord import SceneError
 from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
-from validate.adjudication.verdicts import (
-    NEITHER_WRONG,
-    NO_OBSTACLE,
-    judged,
-    judged_alone,
-    obstacle,
-    unanswered,
-)
 from validate.cars.base_cars import variants
 from validate.cars.random_scenes import KINDS, SEED, RandomScene, random_scene
 from validate.comparison.compare import Outcome, compare_solutions
@@ -35,6 +27,14 @@ from validate.formulations.registry import formulation
 from validate.output.report import counted_as
 from validate.output.table import Part, Table
 from validate.studies.study import Findings, Row, Study, Task
+from validate.studies.verdicts import (
+    NEITHER_WRONG,
+    NO_OBSTACLE,
+    judged,
+    judged_alone,
+    obstacle,
+    unanswered,
+)
 
 PART = "scenes"
 OURS = "pointcoord"

@@ -11,12 +11,12 @@ import numpy as np
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.wording import meant
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.comparison.compare import Outcome, compare, compare_solutions
 from validate.comparison.given import given
 from validate.diagnosis import explain_outcome
 from validate.extras import MissingPackage
 from validate.formulations.protocol import Formulation, FormulationError, Solution
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.output.report import about, told_row
 from validate.reference import InfeasibleError, NoReferenceError
 from validate.solvers.check import ACCURACY, AGAINST, required_accuracy

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from pointcoord import PointcoordError, Scene, simulate
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.car import any_rotation
 from validate.cars.random_scenes import random_scene
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.reference import NoReferenceError
 
 

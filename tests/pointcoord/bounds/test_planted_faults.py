@@ -26,7 +26,7 @@ from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosed_rows, enclosure, kantorovich
 from pointcoord.numerics.enclosure import Enclosed
 from pointcoord.numerics.quadratic import Product, quadratic_map
-from validate.adjudication.reference_solution import DUST, inputs_at, reference_instant
+from validate.formulations.reference_solution import DUST, inputs_at, reference_instant
 from validate.reference.exact import as_fraction
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from pointcoord import KinematicMap, Scene, kinematic_map, solve_poses
 from pointcoord.effects.point_states import STATES
 from pointcoord.mapping.kinematic_map import MappedPoses
 from pointcoord.patches.jet import Jet
-from validate.adjudication.reference_solution import as_solution, reference_instant
+from validate.formulations.reference_solution import as_solution, reference_instant
 
 Array = NDArray[np.float64]
 States = tuple[dict[str, Array], dict[str, Array], dict[str, Array]]

@@ -9,7 +9,7 @@ import pytest
 
 from pointcoord import NotCovered, Scene, kinematic_map
 from pointcoord.drawing_stands import drawn_inputs
-from validate.adjudication.reference_solution import reference_instant
+from validate.formulations.reference_solution import reference_instant
 from validate.reference import InfeasibleError
 
 # Half the ranges of arm angle and rack travel about the drawing: so wide that assemblies end inside.

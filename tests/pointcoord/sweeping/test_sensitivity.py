@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene, SweepError, UnknownName, sensitivity
 from pointcoord.scene.scene_file import LoadPart
-from validate.adjudication.reference_solution import inputs_at
+from validate.formulations.reference_solution import inputs_at
 from validate.formulations.registry import formulation
 from validate.reference import solve_reference
 

@@ -5,9 +5,9 @@ from cars_in_closed_form import DRAWN, cars_of
 from hypothesis import given, settings
 
 from pointcoord import PointcoordError
-from validate.adjudication.reference_solution import design_of
 from validate.cars.car import Car
 from validate.cars.input_ends import at, drawn_inputs, end, redrawn
+from validate.formulations.reference_solution import design_of
 from validate.hard.cars import drawn_angle
 from validate.reference import NoReferenceError, pose_exists
 

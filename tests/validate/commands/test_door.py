@@ -256,6 +256,15 @@ def test_without_pinocchio_another_program_is_the_second_model_and_that_is_said(
     assert "the absolute model needs Pinocchio" in asked.stderr
 
 
+def test_without_any_other_program_the_reference_is_the_second_model(tmp_path: Path) -> None:
+    for name in ("pinocchio", "mujoco", "exudyn"):
+        (tmp_path / f"{name}.py").write_text(f"raise ModuleNotFoundError(name={name!r})\n")
+    done = with_fake(tmp_path, "validate", "steer", "five-link")
+    assert done.returncode == 0, done.stderr
+    assert "2 of 2 scenes agree" in done.stdout
+    assert "absolute is missing, reference stands in for it: the absolute model needs" in done.stderr
+
+
 def test_without_pinocchio_hard_cases_are_tried_by_what_is_there(tmp_path: Path) -> None:
     (tmp_path / "pinocchio.py").write_text("raise ModuleNotFoundError(name='pinocchio')\n")
     done = with_fake(tmp_path, "hard", "arm-highest-held")

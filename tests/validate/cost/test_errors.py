@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from toy_ways import reference_numbers
 
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cost.errors import Judge, errors_of, truth_of
 from validate.cost.race import Found, NoNumbers
 from validate.cost.scenes import own_scene, study_instants
 from validate.cost.way import Answer
 from validate.formulations.protocol import Numbers
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.reference.exact import as_fraction
 
 SCENE = own_scene("off-axis-strut")

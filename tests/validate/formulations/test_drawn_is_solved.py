@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 import absolute
 from pointcoord import AssemblyError, InputOutOfRange, Scene, SceneError, simulate
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.car import Car
 from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.formulations.registry import formulation
 from validate.hard.cars import drawn_angle, scene_content
 from validate.reference import NoReferenceError

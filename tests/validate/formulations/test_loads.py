@@ -11,8 +11,8 @@ from pointcoord import Scene
 from pointcoord.effects.loads import Loads
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.linkage.car_axes import CarAxes
-from validate.adjudication.reference_solution import reference_solution
 from validate.comparison.compare import Outcome, compare, compare_solutions
+from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 
 LOAD = {"force": [700.0, -400.0, 3000.0], "moment": [2e4, -1e5, 3e4]}

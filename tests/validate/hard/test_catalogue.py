@@ -15,8 +15,8 @@ from stand_in import stand_in
 
 from pointcoord import Scene
 from pointcoord.effects.registry import QUANTITIES
-from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 from validate.hard import trial as trying
 from validate.hard.answer import Answer, judged_answer

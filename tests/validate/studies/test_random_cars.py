@@ -6,17 +6,17 @@ import pytest
 from counted_study import worked_out
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import reference_solution
-from validate.adjudication.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 from validate.cars.base_cars import variants
 from validate.cars.random_scenes import KINDS, RandomScene, random_scene
 from validate.exit_status import ExitStatus
 from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import reference_solution
 from validate.formulations.registry import formulation
 from validate.output.table import text_of
 from validate.studies import random_cars as deep
 from validate.studies.random_cars import random_cars
 from validate.studies.study import Row
+from validate.studies.verdicts import NO_OBSTACLE, judged, judged_alone, obstacle, unanswered
 
 
 def test_every_scene_has_one_outcome_and_it_is_counted() -> None:

@@ -6,7 +6,7 @@ from plain_solvers import closed_form
 
 from pointcoord import Scene
 from validate import FormulationError, NotTested, WrongStates, assert_agrees
-from validate.adjudication.reference_solution import reference_solution
+from validate.formulations.reference_solution import reference_solution
 from validate.solvers.plain import NoSolver, given_to_solver
 
 SCENE = Scene.load("double-wishbone").model_copy(update={"title": "mine"})

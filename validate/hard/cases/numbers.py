@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.numerics.rounding import EPS
-from validate.adjudication.reference_solution import reference_solution
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import reference_solution
 from validate.hard.case import IF_ANY, REFUSED, RIGHT_OR_REFUSED, Case, Expected, Values, counted, values_of
 from validate.hard.case import case as case_of
 from validate.hard.cases.links import GROUP, held_apart

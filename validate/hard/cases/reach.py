@@ -22,10 +22,10 @@ import numpy as np
 
 from pointcoord import AssemblyError, Scene
 from pointcoord.numerics.rounding import EPS
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.cars.scene_content import Law
 from validate.formulations.input_rates import rates
 from validate.formulations.protocol import FormulationError
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.hard.answer import Answer
 from validate.hard.case import Case, Values, case, decades, family
 from validate.hard.last_values import LastValue, last_value, reachable

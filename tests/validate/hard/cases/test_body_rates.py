@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import inputs_at, reference_instant
 from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import PAPER_CAR, scene_content
 from validate.hard.case import Case
 from validate.hard.cases.body_rates import CASES, PLANE_ANGLE

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import inputs_at, reference_instant
+from validate.formulations.reference_solution import inputs_at, reference_instant
 from validate.hard.cars import CARS, SQUARE, scene_content
 from validate.hard.cases.ends import near_end
 from validate.hard.cases.reach import End

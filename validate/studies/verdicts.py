@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from pointcoord import Scene
-from validate.adjudication.reference_solution import (
+from validate.comparison.compare import compare_solutions
+from validate.formulations.protocol import Solution
+from validate.formulations.reference_solution import (
     design_of,
     inputs_at,
     reference_instant,
     reference_solution,
     told_by,
 )
-from validate.comparison.compare import compare_solutions
-from validate.formulations.protocol import Solution
 from validate.reference import InfeasibleError, NoReferenceError, instants_of
 
 NO_OBSTACLE = "no obstacle found"

@@ -1,1 +1,0 @@
-"""From the reference to a Solution: what a formulation should have answered."""
