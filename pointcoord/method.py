@@ -12,7 +12,6 @@ from pointcoord.linkage.topology import Topology
 from pointcoord.solve.pointwise import (
     InstantSolver,
     SquareVelocityTerm,
-    solve_from_drawing,
     solve_instants,
     square_velocity_term,
 )
@@ -68,7 +67,7 @@ MAP = Method("map", by_map=True)
 NEWTON = Method("newton")
 """The paper's algorithm, at the scene's instants only, each from the one before."""
 
-NEWTON_COLD = Method("newton-cold", at_instants=solve_from_drawing)
+NEWTON_COLD = Method("newton-cold", at_instants=partial(solve_instants, cold=True))
 """The same with each instant by itself, from the drawing."""
 
 CHORD = Method("chord", at_instants=partial(solve_instants, chord=True))

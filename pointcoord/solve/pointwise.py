@@ -38,13 +38,19 @@ from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import LONGEST, Pose, blocked, by_inputs, close_drawing, driven_to
 from pointcoord.solve.follower import Law, follow
-from pointcoord.solve.place import starting_place, whole_place
+from pointcoord.solve.place import Place, starting_place, whole_place
 from pointcoord.solve.proven_step import prove
 from pointcoord.solve.status import COMPLETE, Status
 from pointcoord.time_functions import TimeFunction
 
 Array = NDArray[np.float64]
 SquareVelocityTerm = Callable[[QuadraticMap, Array], Array]
+Values = Mapping[str, Array]
+"""Of every input at all instants, each (N,)."""
+How = tuple[float, bool]
+"""The tolerance, and whether a factorisation is kept."""
+Reached = tuple[Array, Array, Work, Status]
+"""The poses that were reached, what is left of each, what they took, and what stopped them."""
 
 # Instants that are solved at once: a matrix for each takes 1 MB, which a processor keeps at hand. With
 # 4,096 at once 40,000 instants take half as long again; with 64 no less than with 512.
@@ -57,6 +63,7 @@ ROUNDED = 1e-2
 SLOW = 0.1
 # Steps from a distance of 1 to rounding at that rate, and as many again for what a bound misjudges.
 LIMIT = 32
+PROBLEM = "the mechanism cannot be assembled"
 
 
 @dataclass(frozen=True)
@@ -104,6 +111,7 @@ def solve_instants(
     square_term: SquareVelocityTerm = square_velocity_term,
     tolerance: float = 0.0,
     chord: bool = False,
+    cold: bool = False,
 ) -> Solved:
     """Solve at each instant, each from the one before.
 
@@ -113,19 +121,57 @@ def solve_instants(
         derivative: highest time derivative to solve for.
         tolerance: how far a pose may be from the exact assembly, rounding apart, in units.
         chord: whether a factorisation is kept for as many instants as it serves.
+        cold: whether each instant is reached by itself from the closed drawing instead, also the first. Which
+            branch that leads to does not depend on the motion, but it depends on the way: where poses that do
+            not exist lie between, it is refused, though a motion might lead around them.
     Returns:
-        The states, up to the first instant that cannot be reached. What stands still is solved once.
+        The states, up to the first instant that cannot be reached. What stands still is solved once, but for
+        instants by themselves.
     """
-    part = mechanism.moving_part(functions)
-    system, begun = part.system, starting_place(part, pose)
     known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
     values = {name: f.series(times, 0)[:, 0] for name, f in functions.items()}
+    if cold:
+        y, left, work, status = _from_drawing(mechanism, values, times, tolerance)
+    else:
+        part = mechanism.moving_part(functions)
+        begun, how = starting_place(part, pose), (tolerance, chord)
+        y, left, work, status = _one_from_another(mechanism, part, begun, values, known[:, :1], times, how)
+    known, times = known[: len(y)], times[: len(y)]
+    y[:, mechanism.map.unknowns :] = known[:, 0]
+    solved = with_rates(mechanism.map, y, known, times, derivative, square_term, work, left)
+    return replace(solved, status=status)
+
+
+def _from_drawing(mechanism: Mechanism, values: Values, times: Array, tolerance: float) -> Reached:
+    """All from the closed drawing."""
+    drawing = close_drawing(mechanism, float(times[0]), tolerance)
+    work, parts, status = drawing.work, [], COMPLETE
+    for low in range(0, len(times), BLOCK):
+        inputs = {name: each[low : low + BLOCK] for name, each in values.items()}
+        target, path = driven_to(mechanism, inputs, drawing, tolerance)
+        work += path.work
+        unfinished = path.done < 1.0
+        first = int(np.argmax(unfinished)) if unfinished.any() else len(target)
+        parts.append((path.y[:first], path.left[:first]))
+        if unfinished.any():
+            when = float(times[low + first])
+            status = Status(blocked(mechanism, PROBLEM, path.y, path.factors, target, unfinished, when))
+            break
+    y, left = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return y, left, work, status
+
+
+def _one_from_another(
+    mechanism: Mechanism, part: PartialMap, begun: Place, values: Values, known: Array, times: Array, how: How
+) -> Reached:
+    """Each from the one before, of what moves; known: of the whole, (N, 1, known coordinates)."""
+    system, (tolerance, chord) = part.system, how
     turned = sum(
         (np.abs(np.diff(values[name])) for name in mechanism.topology.turning), np.zeros(len(times) - 1)
     )
     # Instants that are reached round, and the end.
     far = np.append(np.flatnonzero(turned > LONGEST) + 1, len(times))
-    goals = part.known(begun.y, known[:, :1])[:, 0]
+    goals = part.known(begun.y, known)[:, 0]
     y, left = np.empty((len(times), system.size)), np.empty(len(times))
     y[:1], left[:1] = begun.y, begun.left
     factors, work, done, ahead, status = begun.factors, begun.work, 1, FIRST_AHEAD, COMPLETE
@@ -146,24 +192,19 @@ def solve_instants(
         turn = float(turned[done - 1])
         target: Array | Law = goal
         if turn > LONGEST:
-            target = _of_part(part, begun.y, by_inputs(mechanism, ends, known[done : done + 1, 0]))
+            target = _of_part(part, begun.y, by_inputs(mechanism, ends, known[done]))
         longest = LONGEST / max(turn, LONGEST)
         path = follow(system, here, target, factors.reshaped((1,)), tolerance, longest=longest).reshaped(())
         work += path.work
-        if path.done < 1.0:
-            problem, when = "the mechanism cannot be assembled", float(times[done])
-            place = whole_place(part, path.y, path.factors)
-            unfinished = path.done < 1.0
-            stopped = blocked(mechanism, problem, place.y, place.factors, known[done, 0], unfinished, when)
+        unfinished = path.done < 1.0
+        if unfinished:
+            place, when = whole_place(part, path.y, path.factors), float(times[done])
+            stopped = blocked(mechanism, PROBLEM, place.y, place.factors, known[done, 0], unfinished, when)
             status = Status(stopped)
-            y, left, known, times = y[:done], left[:done], known[:done], times[:done]
             break
         y[done], left[done], factors = path.y, path.left, path.factors
         done += 1
-    y = part.back(y)
-    y[:, mechanism.map.unknowns :] = known[:, 0]
-    solved = with_rates(mechanism.map, y, known, times, derivative, square_term, work, left)
-    return replace(solved, status=status)
+    return part.back(y[:done]), left[:done], work, status
 
 
 def _of_part(part: PartialMap, y: Array, law: Law) -> Law:
@@ -263,44 +304,6 @@ def _guessed(system: QuadraticMap, inverse: Array, start: Array, targets: Array)
 
 def _first_false(flags: NDArray[np.bool_]) -> int:
     return len(flags) if flags.all() else int(np.argmin(flags))
-
-
-def solve_from_drawing(
-    mechanism: Mechanism,
-    functions: Mapping[str, TimeFunction],
-    pose: Pose,
-    times: Array,
-    derivative: int,
-    square_term: SquareVelocityTerm = square_velocity_term,
-    tolerance: float = 0.0,
-) -> Solved:
-    """Solve at each instant by itself, from the closed drawing; all of them at once.
-
-    Which branch that leads to does not depend on the motion, but it depends on the way: where poses that do
-    not exist lie between, it is refused, though a motion might lead around them.
-
-    Args, result: as of `solve_instants`; the pose at the first instant is solved again with the others.
-    """
-    system = mechanism.map
-    known = mechanism.known_series({name: f.series(times, derivative) for name, f in functions.items()})
-    drawing = close_drawing(mechanism, float(times[0]), tolerance)
-    work, parts, status = drawing.work, [], COMPLETE
-    for low in range(0, len(times), BLOCK):
-        inputs = {name: f.series(times[low : low + BLOCK], 0)[:, 0] for name, f in functions.items()}
-        target, path = driven_to(mechanism, inputs, drawing, tolerance)
-        work += path.work
-        unfinished = path.done < 1.0
-        first = int(np.argmax(unfinished)) if unfinished.any() else len(target)
-        parts.append((path.y[:first], path.left[:first]))
-        if unfinished.any():
-            problem, when = "the mechanism cannot be assembled", float(times[low + first])
-            status = Status(blocked(mechanism, problem, path.y, path.factors, target, unfinished, when))
-            known, times = known[: low + first], times[: low + first]
-            break
-    y, left = (np.concatenate(part) for part in zip(*parts, strict=True))
-    y[:, system.unknowns :] = known[:, 0]
-    solved = with_rates(system, y, known, times, derivative, square_term, work, left)
-    return replace(solved, status=status)
 
 
 def with_rates(
