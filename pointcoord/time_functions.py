@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pointcoord.numerics.double_double import two_product, two_sum
-from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ Array = NDArray[np.float64]
 
 # rad; the cosine of a smaller angle is 1, and its sine adds less than a rounding unit's own rounding.
 SMALL_ANGLE = 2.0**-27
-# Two pi and what its double lacks; the rest is below the radius.
-TURN = Enclosed.of(6.283185307179586, 2.4492935982947064e-16, 6e-33)
 
 
 class TimeFunction(ABC):
@@ -161,7 +159,7 @@ class Polynomial(TimeFunction):
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
         """The series about the middle, each term at its largest."""
-        middle, half = _middle_and_half(first, last)
+        middle, half = middle_and_half(first, last)
         order = len(self.coefficients) - 1
         series = self.series(middle, order)
         doubts = [self.rounding(middle, k) / factorial(k) for k in range(order + 1)]
@@ -238,8 +236,7 @@ class Sine(TimeFunction):
         """The formulas of `series` in twice the working precision, whole turns taken off the angle."""
         speed, swing = Enclosed.of(self.angular_frequency), Enclosed.of(self.amplitude)
         angle = speed * Enclosed.of(instants) + Enclosed.of(self.phase)
-        turns = np.rint(angle.high / TURN.high)
-        cosine, sine = (angle - Enclosed.of(turns) * TURN).cosine_sine()
+        cosine, sine = within_a_turn(angle).cosine_sine()
         quarter_turns, found = (sine, cosine, -sine, -cosine), []
         for derivative in range(derivatives + 1):
             found.append(swing * quarter_turns[derivative % 4])
@@ -265,8 +262,7 @@ class Sine(TimeFunction):
             quarter = np.copysign(0.25, self.amplitude)
             # False for what overflows: then it may pass both.
             crest, trough = (
-                ~(np.ceil(low / TURN.high - turned) > high / TURN.high - turned)
-                for turned in (quarter, -quarter)
+                ~(np.ceil(low / TURN[0] - turned) > high / TURN[0] - turned) for turned in (quarter, -quarter)
             )
             most = np.where(crest, self.offset + swing, most)
             least = np.where(trough, self.offset - swing, least)
@@ -313,7 +309,7 @@ class Table(TimeFunction):
         A cubic is computed from the start of its piece, and rounded at most 8 times relative to the sum of
         its terms there.
         """
-        middle, half = _middle_and_half(first, last)
+        middle, half = middle_and_half(first, last)
         knots, cubics = self._spline.x, np.abs(self._spline.c[::-1])
         place = np.clip(np.searchsorted(knots, middle, side="right") - 1, 0, len(knots) - 2)
         reach = np.maximum(last - knots[place], 0.0)
@@ -402,7 +398,7 @@ def _factorials(order: int) -> Array:
     return np.array([float(factorial(k)) for k in range(order + 1)])
 
 
-def _middle_and_half(first: Array, last: Array) -> tuple[Array, Array]:
+def middle_and_half(first: Array, last: Array) -> tuple[Array, Array]:
     """Middles of spans, and half lengths that reach both ends whatever is rounded."""
     middle = first + 0.5 * (last - first)
     return middle, np.maximum(last - middle, middle - first) * (1.0 + 4.0 * UNIT_ROUNDOFF)

@@ -21,11 +21,10 @@ from numpy.typing import NDArray
 
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.directions import axis_along
-from pointcoord.linkage.drives import within_a_turn
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import enclosure
 from pointcoord.numerics.double_double import PAIRS
-from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.enclosure import Enclosed, within_a_turn
 from pointcoord.numerics.vectors import cross
 from pointcoord.time_functions import TimeFunction
 

@@ -17,16 +17,14 @@ from numpy.typing import NDArray
 from pointcoord.errors import InputOutOfRange
 from pointcoord.linkage.constraints.on_line import OnLine
 from pointcoord.linkage.drawing import Drawing
-from pointcoord.numerics.double_double import Pair, pair_product, pair_quotient, two_product
-from pointcoord.numerics.enclosure import Enclosed
+from pointcoord.numerics.double_double import Pair, pair_product, pair_quotient
+from pointcoord.numerics.enclosure import TURN, Enclosed, within_a_turn
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 from pointcoord.time_functions import cosine_and_sine
 
 Array = NDArray[np.float64]
 
 SIDEWAYS = {"right": "to the right", "left": "to the left"}
-TURN = 6.283185307179586, 2.4492935982947064e-16
-"""2 pi as high and low."""
 EXTREME = 8.0
 """Sizes of the mechanism: no rod that is drawn within one size reaches as far."""
 
@@ -143,17 +141,6 @@ def _leibniz(one: Sequence[Enclosed], other: Sequence[Enclosed], order: int) -> 
     """A time derivative of a product, from those of its factors."""
     first, *others = ((one[i] * other[order - i]).times(comb(order, i)) for i in range(order + 1))
     return sum(others, first)
-
-
-def within_a_turn(angle: Enclosed) -> Enclosed:
-    """An angle less whole turns, between -pi and pi."""
-    turns = np.rint(np.nan_to_num(angle.high, posinf=0.0, neginf=0.0) / TURN[0])
-    if not turns.any():
-        return angle
-    high, low = two_product(turns, np.full_like(turns, TURN[0]))
-    # What the two parts of a turn leave out is below 1e-32 of it.
-    doubt = 1e-31 * np.abs(turns) + 4 * UNIT_ROUNDOFF**2 * np.abs(high)
-    return angle - Enclosed.of(high, low + turns * TURN[1], doubt, doubt)
 
 
 class Drive(ABC):

@@ -49,6 +49,8 @@ TINY = 1e-307  # a product loses less to underflow, by some 16 orders
 NORMAL = float(np.finfo(float).tiny)  # below it a number has fewer digits
 HALVINGS, TERMS = 6, 11  # |angle| below 0.05 after them: terms of 1e-49 are left out
 STEPS, FARTHEST = 256.0, 805  # of a table of angles, and how many of them reach beyond pi
+TURN = 6.283185307179586, 2.4492935982947064e-16
+"""2 pi as high and low."""
 # Components of both factors of a vector product: of what is added, then of what is taken off.
 BOTH_WAYS = np.concatenate([NEXT, LAST]), np.concatenate([LAST, NEXT])
 
@@ -393,6 +395,17 @@ def angle(sine: Enclosed, cosine: Enclosed) -> Enclosed:
     """atan2(sine, cosine), rad, in plain doubles; each has radii of its own, of at most pi."""
     found = np.arctan2(sine.middle, cosine.middle)
     return Enclosed.of(found, 0.0, *angle_error(sine, cosine, found))
+
+
+def within_a_turn(angle: Enclosed) -> Enclosed:
+    """An angle less whole turns, between -pi and pi."""
+    turns = np.rint(np.nan_to_num(angle.high, posinf=0.0, neginf=0.0) / TURN[0])
+    if not turns.any():
+        return angle
+    high, low = two_product(turns, np.full_like(turns, TURN[0]))
+    # What the two parts of a turn leave out is below 1e-32 of it.
+    doubt = 1e-31 * np.abs(turns) + 4 * UNIT_ROUNDOFF**2 * np.abs(high)
+    return angle - Enclosed.of(high, low + turns * TURN[1], doubt, doubt)
 
 
 def _about(values: Array, *operands: Enclosed) -> Enclosed:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.multi_index import powers
-from pointcoord.numerics.rounding import EPS
 from pointcoord.patches.jet import Jet
+from pointcoord.time_functions import middle_and_half
 
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
@@ -65,10 +65,7 @@ class Domain:
 
     def middle_and_half(self, low: Whole, high: Whole) -> tuple[Array, Array]:
         """Middles of boxes, and half widths that reach both ends whatever is rounded, each (..., p)."""
-        first, last = self.inputs_at(2 * low), self.inputs_at(2 * high)
-        middle = first + 0.5 * (last - first)
-        half = np.maximum(last - middle, middle - first) * (1.0 + 4.0 * EPS)
-        return middle, half
+        return middle_and_half(self.inputs_at(2 * low), self.inputs_at(2 * high))
 
     def known_at(self, values: Array) -> Array:
         """Known coordinates at values of the free inputs, shape (..., p) to (..., known coordinates)."""

@@ -20,11 +20,10 @@ from pointcoord.numerics.kantorovich import INFLATION
 from pointcoord.numerics.multi_index import powers
 from pointcoord.numerics.power_series import cross_series
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
+from pointcoord.numerics.vectors import LAST, NEXT
 from pointcoord.patches.jet import Jet
 
 Array = NDArray[np.float64]
-
-CYCLE, BACK = [1, 2, 0], [2, 0, 1]
 
 
 def moving_points(topology: Topology) -> tuple[str, ...]:
@@ -97,4 +96,4 @@ def _carried(
 
 def _cross_sizes(a: Jet, b: Jet) -> Jet:
     """Bounds of a x b from those of the components."""
-    return a.taken(CYCLE) * b.taken(BACK) + a.taken(BACK) * b.taken(CYCLE)
+    return a.taken(NEXT) * b.taken(LAST) + a.taken(LAST) * b.taken(NEXT)

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pointcoord.linkage.constraints.constraint import Constraint, dot, per_axis
+from pointcoord.linkage.constraints.constraint import Constraint, crossed, dot, per_axis
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.quadratic import Product, Row
@@ -55,6 +55,7 @@ class TurnedBack(Constraint):
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         """Bilinear in the direction and the axis, and in the driven pair and what they make."""
         zero, one = layout.zero, (layout.one, layout.zero)
+        zeros: Triple = (zero, zero, zero)
         e, k = layout.vector(self.before), layout.vector(self.axis)
         t, w, u = (layout.vector(name) for name in self.vectors)
         cosine, sine = layout.scalar(self.cosine), layout.scalar(self.sine)
@@ -66,7 +67,8 @@ class TurnedBack(Constraint):
             )
             for i in range(3)
         )
-        return (*_product(layout, t, e, k), *_product(layout, w, k, t), *turned)
+        across, aside = crossed(layout, t, (e, zeros), (k, zeros)), crossed(layout, w, (k, zeros), (t, zeros))
+        return (*across, *aside, *turned)
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         """As drawn, before any turn."""
@@ -79,19 +81,6 @@ class TurnedBack(Constraint):
         """P . (e - u), what the turn lifts by where its line is."""
         zeros: Triple = (layout.zero,) * 3
         return dot(layout.vector(self.about), zeros, layout.vector(self.before), layout.vector(self.name))
-
-
-def _product(layout: Layout, c: Triple, a: Triple, b: Triple) -> tuple[Row, ...]:
-    """c - a x b = 0."""
-    zero = layout.zero
-    return tuple(
-        (
-            Product(1.0, (c[i], zero), (layout.one, zero)),
-            Product(-1.0, (a[j], zero), (b[k], zero)),
-            Product(1.0, (a[k], zero), (b[j], zero)),
-        )
-        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-    )
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.errors import MechanismError
-from pointcoord.linkage.constraints.constraint import Constraint
+from pointcoord.linkage.constraints.constraint import Constraint, crossed
 from pointcoord.linkage.drawing import Drawing, Placed
 from pointcoord.linkage.layout import Layout, Triple
 from pointcoord.numerics.double_double import (
@@ -64,14 +64,7 @@ class Normal(Constraint):
 
     def rows(self, layout: Layout) -> tuple[Row, ...]:
         n, o, p, q = (layout.vector(name) for name in (self.normal, self.base, self.first, self.second))
-        return tuple(
-            (
-                Product(1.0, (n[i], layout.zero), (layout.one, layout.zero)),
-                Product(-1.0, (p[j], o[j]), (q[k], o[k])),
-                Product(1.0, (p[k], o[k]), (q[j], o[j])),
-            )
-            for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-        )
+        return crossed(layout, n, (p, o), (q, o))
 
     def placed(self, drawing: Drawing) -> Mapping[str, Placed]:
         base, first, second = (drawing.vectors[name] for name in (self.base, self.first, self.second))
