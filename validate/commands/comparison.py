@@ -46,7 +46,7 @@ from validate.solvers.load import solver_at
 from validate.solvers.plain import PlainSolver
 
 FIRST = "pointcoord"
-# Without names on the command line the paper's own algorithm is held to the other model too.
+# Without names on the command line the paper's own algorithm is compared with the other model too.
 FURTHER = "pointcoord-newton"
 
 # Kinds of runs by the option that makes one, and the kinds that an option says something of.
@@ -66,8 +66,8 @@ _WIDTH = max(map(len, WORDS))
 DESCRIPTION = """\
 Solve each scene by two formulations and compare every number that it asks for. Each
 formulation states an error bound with every number; the tolerance of a difference is the sum of
-both bounds. Of each scene a line says how much of its tolerance any number uses at most, and
-where; -v prints every quantity.
+both bounds. A line for each scene says which number uses the largest share of its tolerance, how
+much, and where; -v prints every quantity.
 
 formulations:
 """ + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
@@ -79,16 +79,16 @@ scenes=[SCENE ...]  {SCENE_HELP}; none: all built-in scenes
     Exudyn); without --first and --second {FURTHER} is compared with it as well
 {DATA}{MAP}
 --solver MODULE:NAME  a solver of your own in the place of --first: a function, object or class that takes
-    plain data (see the README); without --second it is compared with {FIRST}
---accuracy A  how exactly the solver of --solver says it places points, mm ({ACCURACY:g} if not given): what
-    is tolerated of every number is derived from it, pose by pose; or how far off the numbers of --data may be
-    beside their digits, each in its column's unit
+    plain data (see pointcoord help solvers); without --second it is compared with {FIRST}
+--accuracy A  with --solver: how exactly the solver says it places points, mm ({ACCURACY:g} if not given); the
+    tolerance of every number follows from it, pose by pose. With --data: how far off a number may be beside
+    its digits, in its column's unit
 --traceback  show where in its files that solver raises an error
 --solver-timeout S  how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes
-    longer, or crashes, has no answer there, and is made anew for the next scene
+    longer, or crashes, has no answer there, and is started again for the next scene
 --in-process  call that solver in this process, for a debugger: no time limit, and a crash ends the run
 --scenes-dir DIR  compare every .toml file below this folder too, sorted by path
---tolerance-factor F  hold differences to F times the derived tolerance; every result says so
+--tolerance-factor F  allow F times the derived tolerance; every result says so
 --fail-fast  stop at the first scene that disagrees, has moved or is refused; what was not run is named
 {JSON}
 --junit FILE  write JUnit XML, a case for each scene and quantity; - likewise

@@ -27,7 +27,8 @@ from validate.tables.units import LENGTHS
 DESCRIPTION = """\
 Make a scene from a file of hardpoints of another program. Points get our names, axes and unit;
 the scene has x rearward, y right, z up, mm, a comment with the source of each point, and
-30 mm of wheel travel either way. Points that are not known are listed, and what the file lacks is asked for.
+30 mm of wheel travel either way. It lists the points that it does not know, and asks for those
+that the file lacks.
 A MuJoCo model becomes a mechanism of its own, by its bodies, joints, sites, welds and connects.
 
 formats:

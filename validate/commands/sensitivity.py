@@ -33,12 +33,13 @@ SAMPLES = 11
 DESIGNS = 400
 
 DESCRIPTION = f"""\
-Say how much numbers of a car change by each coordinate of each hardpoint, per mm, where that is
-most over the scene's motion ({SAMPLES} instants of it), the largest of the first number on top; and what a
-tolerance of every coordinate makes of each number: its standard deviation if they are
-independent, to first order and by {DESIGNS} designs drawn at random, and the worst case.
-Without --number these are {", ".join(RANKED_FIRST)}, as far as the car has them.
-A picture (SVG, PNG) has a bar for each coordinate."""
+Say how much the numbers of a car change for each mm by which a coordinate of a hardpoint moves, at
+the one of {SAMPLES} instants of the motion where they change most. The coordinate that changes the
+first number most comes first. Below, it says what a tolerance of all coordinates makes of each
+number: the standard deviation if coordinates are independent, to first order and by {DESIGNS}
+designs drawn at random, and the worst case. Without --number these are
+{", ".join(RANKED_FIRST)},
+as far as the car has them. A picture (SVG, PNG) has a bar for each coordinate."""
 
 OPTIONS = f"""\
 {SCENE}
@@ -46,7 +47,7 @@ OPTIONS = f"""\
 --number NAME  a number of the car, or another as QUANTITY.NAME, such as rod_force.tie_rod; may be given again
 --point NAME  a hardpoint or one of its coordinates, such as tie_rod_outer.z; may be given again
 --tolerance MM  standard deviation of every coordinate, and its limit for the worst case; 1 if not given
---seed K  of the designs at random; 0 if not given
+--seed K  of the random designs; 0 if not given
 {QUIET}"""
 MORE: Mapping[str, Mapping[str, Any]] = {
     "--number": {"action": "append"},

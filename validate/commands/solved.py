@@ -49,28 +49,30 @@ centre's place over time where the scene asks for no angle.
 
 A number is named by as many words of QUANTITY.NAME.COMPONENT as tell it apart: an angle or
 an input by its name, a place as POINT.z, another quantity of a point as QUANTITY.POINT.z; all
-three components are drawn if none is said. {TIME} is the time, {TRAVEL} how far the wheel centre is
-above its drawn place, measured on the chassis. What is positive is said at each axis.
+three components are drawn if none is named. {TIME} is the time, and {TRAVEL} is how far the wheel
+centre is above its drawn place, measured on the chassis. Each axis says which way is positive.
 
-Of a file that sweep, simulate or table wrote the columns are drawn, by their names, and each
-design of a sweep is a curve."""
+Instead of a scene, a file that sweep, simulate or table wrote may be given: its columns are drawn
+by their names, and each design of a sweep is a curve."""
 SIMULATE_OPTIONS = f"""\
 {SCENE}
 -o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; CSV on standard output if not given
 {INSTANTS}{QUIET}
 --method NAME  auto (if not given): series, or a map where these are too long or too rough; series: a chain of
     power series in time; map: series in the inputs, on patches that cover their way; newton: Newton's method
-    at each instant; printed: that with the paper's formulas as printed, some of which are wrong
+    at each instant, from the one before; newton-cold: each instant from the drawing; chord: newton with one
+    factorisation kept for many instants; printed: newton with the paper's formulas as printed, some of which
+    are wrong
 """
 PLOT_OPTIONS = f"""\
 scene=SCENE  a built-in scene's name, or the path of a scene file or of a table, by its ending
     {" or ".join(ENDINGS)}
--o --output FILE  where to, by its ending {" or ".join(PICTURES)}; SVG on standard output if not given,
-    where that is no terminal
+-o --output FILE  where to, by its ending {" or ".join(PICTURES)}; if not given, SVG on standard output unless
+    that is a terminal
 --y NUMBER  what goes upward on the paper; may be given again
---x NUMBER  what goes to the right ({TIME} if only --y is given); may be given again if --y is not, whose
-    place {TRAVEL} takes
---degrees  angles in degrees, as they are if nothing is said, or in radians
+--x NUMBER  what goes to the right ({TIME} if only --y is given); may be given again without --y, and then
+    {TRAVEL} goes upward
+--degrees  angles in degrees, which is usual, or in radians
 --instants N  points of a curve; the scene's own if not given, at least {SMOOTH}
 {QUIET}"""
 AGAIN = {"action": "append"}

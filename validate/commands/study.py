@@ -75,8 +75,8 @@ STUDIES: Mapping[str, Named] = {
     "random": Named(
         "random_cars",
         "random_cars",
-        "Random cars and motions, solved by both models. What they do not agree in, what only one of them\n"
-        "answers and one in twenty of the others is compared with the reference.",
+        "Random cars and motions, solved by both models. Where the two disagree or only one answers, the\n"
+        "reference decides; of the others it looks at one in twenty.",
         "--count K  scenes; 20000 if not given\n"
         f"--first NAME  by which of pointcoord's methods: {', '.join(METHODS)}; {METHODS[0]} if not given\n",
         ("count", "first"),
@@ -116,11 +116,11 @@ STUDIES: Mapping[str, Named] = {
     ),
 }
 OPTIONS = f"""\
---scheduler local|ADDRESS  processes of this machine, which is what is done if not given, or a Dask cluster's
-    scheduler such as tcp://HOST:8786; its network is trusted, see above
+--scheduler local|ADDRESS  local, which is usual, is processes of this machine; or the scheduler of a Dask
+    cluster, such as tcp://HOST:8786, whose network is trusted (see above)
 --workers N  processes of this machine; one a processor if not given
---records FOLDER  keeps what is worked out; pointcoord- and the study's name if not given
---from-records  say what all records in the folder come to, and work out nothing
+--records FOLDER  where records are kept; pointcoord-STUDY if not given
+--from-records  report what the folder holds, and solve nothing
 {JSON}{QUIET}"""
 
 

@@ -70,7 +70,7 @@ OPTIONS = f"""\
 --designs FILE.csv  a design for each row instead, with columns such as lower_ball_joint.z: where it is
     drawn, mm
 --count N  how many designs at random
---seed K  of what is random; 0 if not given: the same designs each time
+--seed K  of the random numbers; the same seed gives the same designs; 0 if not given
 -o --output FILE  every number, by the ending {" or ".join(ENDINGS)}; CSV for -
 {INSTANTS}
 --memory MB  what designs that are solved in one block may take; 256 if not given, whatever their number

@@ -59,19 +59,20 @@ EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a 
 
 DESCRIPTION = """\
 Solve a scene by point coordinates and print the wheel's angles and dimensions over the way of
-its inputs, with what they change by per mm of wheel travel and of rack. A sweep such as
-wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range; bump steer is toe_by_travel,
-the motion ratio damper over wheel minus damper_length_by_travel. With --grid there is a row for
-every combination of values of inputs, and the other inputs stay where the scene begins:
+its inputs, and how much they change per mm of wheel travel and of rack. A sweep such as
+wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range. Bump steer is called toe_by_travel,
+and the motion ratio damper_per_wheel. With --grid there is a row for every combination of values
+of inputs, and the other inputs stay where the scene begins:
 
   --grid wheel_travel=-50:50:11 --grid rack=-30:30:7
 
-Where the scene has loads and asks for them, forces of rods, joints and slides stand beside.
+Where the scene has loads and asks for them, there are columns for the forces of rods, joints and
+slides.
 Other programs mean other numbers by the same names: --convention adams has Adams/Car's camber,
 optimumk OptimumK's toe, with what is positive there. Columns keep our names, with a minus
 before one that counts the other way.
 
-What is out of reach has no numbers and says why; then it ends with 3."""
+A row out of reach has no numbers and says why; the exit status is then 3."""
 
 OPTIONS = f"""\
 {SCENE}
