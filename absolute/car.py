@@ -1,4 +1,4 @@
-"""The car that a wheel belongs to: what a linkage does not tell, for effects that look at the whole car."""
+"""Numbers of the whole car, such as its wheelbase, that some effects need and the linkage does not have."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""Inputs and chassis motion over the instants, checked."""
+"""Checks the arrays of inputs and of the chassis' motion that a user gives, and puts them in order."""
 
 from collections.abc import Mapping, Sequence
 

@@ -28,12 +28,12 @@ from pointcoord.linkage.needed_part import needed_mechanism
 from pointcoord.method import AUTO, MAP, SERIES, Method, method_of
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.rounding import EPS
+from pointcoord.results.by_series import AtInstants, ByChain
 from pointcoord.results.closing import ALLOWED, Closing, closing
 from pointcoord.results.motion import Motion
 from pointcoord.results.readout import Readout
 from pointcoord.results.samples import Samples
 from pointcoord.results.solved_scene import SolvedScene
-from pointcoord.results.ways import AtInstants, ByChain
 from pointcoord.scene.scene_file import Scene
 from pointcoord.solve.assembly import Pose, assemble, blocked, close_drawing, path_of_part
 from pointcoord.solve.follower import follow

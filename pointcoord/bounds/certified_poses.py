@@ -1,4 +1,4 @@
-"""What is certified of the poses of a motion, in groups of neighbours that share an inverse.
+"""Certifies the poses of a motion, in groups of neighbours that share an inverse.
 
 A group is as large as its poses lie close enough together for: the inverse of the middle one then costs the
 others a few per cent of their bounds (see `kantorovich`). A pose without close neighbours is a group of one.

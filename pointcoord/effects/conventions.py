@@ -1,4 +1,4 @@
-"""What other programs and standards mean by a number's name, where they do not mean ours.
+"""Which of our numbers other programs and standards mean by a name, where that is not ours of the name.
 
 A convention changes no number: it says which of ours carries the name, and whether it counts the other way.
 What a scene gives and what is compared has one meaning, so that two people who write "camber" mean the same.

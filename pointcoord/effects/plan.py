@@ -1,4 +1,4 @@
-"""What the effects of a scene make the solver do, and what they leave out."""
+"""Which effects are computed of a scene, and which points and derivatives they need."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class PointStates(Effect):
 
     @property
     def reports_states(self) -> bool:
-        """It does."""
+        """The position of every point, or one derivative of it."""
         return True
 
     def needs(self, topology: Topology) -> Collection[str]:

@@ -1,4 +1,4 @@
-"""The part of a linkage that some of its points hang on: what nobody asks for need not be solved.
+"""The subsystem that the requested points need: the rest of a linkage is not solved.
 
 The blocks of the map that give the points, and those that these read, are kept with all that they are made
 of: a constraint with all its rows and its own coordinates, a point and a vector with all three coordinates.
@@ -64,11 +64,11 @@ def _kept(topology: Topology, unknowns: set[int]) -> tuple[tuple[Constraint, ...
     system, layout = topology.map, topology.layout
     rows = topology.rows_of
     own = [_own(constraint, layout) for constraint in topology.constraints]
-    block_of = {row: block for block in system.structure.blocks for row in block.rows}
+    block_of = {row: block for block in system.block_order.blocks for row in block.rows}
     triples = [layout.vector(name) for name in (*layout.moving, *layout.vectors)]
     wanted, read, kept = set(unknowns), set[int](), set[int]()
     while True:
-        blocks = [system.structure.blocks[number] for number in system.structure.needed(wanted)]
+        blocks = [system.block_order.blocks[number] for number in system.block_order.needed(wanted)]
         solved = {row for block in blocks for row in block.rows}
         more = {
             number

@@ -1,9 +1,9 @@
-r"""How poses move along a way, what else is known being held: the implicit function theorem.
+r"""Derivatives of poses by one known quantity, all others held: an input, a rod's length, or a joint's gap.
 
-With y = [u, w] and the known coordinates w(q), C(y) = 0 gives C_u u_q = -C_w w_q. A way is by an input, by a
-length that a constraint keeps, or by a gap: one half of a joint, the point as some of the rows read it, moves
-from the other. Of these rows R a gap adds the derivative by the point, C_u u_q = -R C_p. On a slide these are
-the rows of its line.
+With y = [u, w] and the known coordinates w(q), C(y) = 0 gives C_u u_q = -C_w w_q (implicit function theorem).
+What is moved is called a *way*. A gap opens a joint: one half of it, the point as some rows R read it, moves
+away from the other half, which adds the derivative of these rows by the point, C_u u_q = -R C_p. On a slide R
+are the rows of its line.
 """
 
 from __future__ import annotations

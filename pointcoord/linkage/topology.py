@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.drives import Drive, TurnedBy
 from pointcoord.linkage.layout import Layout
+from pointcoord.numerics.block_order import rows_too_many
 from pointcoord.numerics.quadratic import QuadraticMap, quadratic_map
-from pointcoord.numerics.structure import rows_too_many
 
 Array = NDArray[np.float64]
 Piece = tuple[str, str]

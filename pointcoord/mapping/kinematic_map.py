@@ -56,11 +56,11 @@ Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 T = TypeVar("T")
 
-HALVINGS = 6
+HALVINGS = 6  # 64 of the smallest boxes along a range
 MOST_HALVINGS = 10  # a table of 2^20 boxes of two inputs
 # Patches of one map: a few hundred MB while it is made.
 MOST = 4096
-VARIABLES = 3
+VARIABLES = 3  # of more, a series of the lowest order has too many powers
 
 
 @dataclass(frozen=True)

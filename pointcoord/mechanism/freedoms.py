@@ -1,4 +1,4 @@
-r"""Freedoms against inputs: rows that follow from the others are left out, and what is free is named.
+r"""Counts the freedoms of a drawing, names what is free, and leaves out rows that follow from the others.
 
 A planar mechanism of hinges, or Bricard's, has more rows than its motion needs: at the closed drawing some
 depend on the others. Those are left out of the map and looked at again at every answer (`held_rows`); where

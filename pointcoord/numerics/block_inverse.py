@@ -1,6 +1,6 @@
 r"""The inverse of a large matrix of few entries, block after block.
 
-With the rows and columns in the order of the blocks that its entries make (see `structure`), a matrix A is
+With the rows and columns in the order of the blocks that its entries make (see `block_order`), a matrix A is
 block lower triangular. Neighbours in that order are taken together in groups of some rows, which one product
 each serves as quickly as it would a single block; the rows of the inverse X follow one group after the other,
 
@@ -24,7 +24,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.structure import structure_of
+from pointcoord.numerics.block_order import block_order_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -139,7 +139,7 @@ def _plan_of(filled: bytes, n: int) -> _Plan:
     """How to go about a pattern, which stays the same from pose to pose, n rows of n bits."""
     bits = np.unpackbits(np.frombuffer(filled, dtype=np.uint8), count=n * n).reshape(n, n)
     reads = np.split(np.nonzero(bits)[1], np.cumsum(np.count_nonzero(bits, axis=1))[:-1])
-    blocks = structure_of([read.tolist() for read in reads], n).blocks
+    blocks = block_order_of([read.tolist() for read in reads], n).blocks
     rows = np.array([row for block in blocks for row in block.rows])
     unknowns = np.array([unknown for block in blocks for unknown in block.unknowns])
     place = np.empty(n, dtype=np.intp)

@@ -1,6 +1,6 @@
-r"""Whether a step of a series, or of a path, ended on the branch that it started on.
+r"""Proves that a step of a series, or of a path, ended on the branch that it started on.
 
-Branches meet where a diagonal block of C_u is singular; C_u is block triangular (see `structure`). Two meet
+Branches meet where a diagonal block of C_u is singular; C_u is block triangular (see `block_order`). Two meet
 in a fold, where the block's determinant changes its sign. A series that is too coarse to see a fold just
 ahead runs smoothly across it; and where two branches cross, as the parallel and the crossed assembly do of
 cranks and couplers in one line, a series is smooth in any case. So it is proven that no block D is singular
@@ -53,8 +53,8 @@ def orientation(system: QuadraticMap, factors: Factors) -> Array:
 
     Rows are scaled by positive numbers, which changes no sign.
     """
-    signs = np.empty((*factors.matrix.shape[:-2], len(system.structure.blocks)))
-    for one in system.structure.diagonal:
+    signs = np.empty((*factors.matrix.shape[:-2], len(system.block_order.blocks)))
+    for one in system.block_order.diagonal:
         blocks = factors.matrix[..., one.rows[:, :, None], one.unknowns[:, None, :]]
         single = blocks.shape[-1] == 1
         signs[..., one.numbers] = np.sign(blocks[..., 0, 0]) if single else np.linalg.slogdet(blocks)[0]
@@ -215,7 +215,7 @@ class _Places:
 def _diagonal_entries(system: QuadraticMap) -> tuple[_Places, ...]:
     """The diagonal blocks of each size."""
     n, found = system.unknowns, []
-    for one in system.structure.diagonal:
+    for one in system.block_order.diagonal:
         count, size = one.rows.shape
         place = np.full(len(system.rows) * n, -1)
         place[(one.rows[:, :, None] * n + one.unknowns[:, None, :]).ravel()] = np.arange(count * size * size)

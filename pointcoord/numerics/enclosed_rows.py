@@ -1,4 +1,4 @@
-"""The rows of a quadratic map of coordinates that are enclosed (see `enclosure`)."""
+"""Residual and polar form of a quadratic map where its coordinates are enclosed (see `enclosure`)."""
 
 from __future__ import annotations
 

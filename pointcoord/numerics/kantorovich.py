@@ -57,8 +57,8 @@ from pointcoord.numerics.vectors import components_last
 
 Array = NDArray[np.float64]
 
-INFLATION = 1.0 + 1e-6
-SMALLEST = 1e-300
+INFLATION = 1.0 + 1e-6  # see above
+SMALLEST = 1e-300  # in place of a norm of 0, which leaves weights as they are
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,7 @@ def moving_part(system: QuadraticMap, driven: frozenset[int]) -> PartialMap:
     Args:
         driven: the known coordinates that move.
     """
-    moved = system.structure.moved_by(dict.fromkeys(driven, frozenset({0})))
+    moved = system.block_order.moved_by(dict.fromkeys(driven, frozenset({0})))
     numbers = [number for number, causes in enumerate(moved) if causes]
     return _part_of(system, numbers or range(len(moved)))
 
@@ -134,16 +134,16 @@ def stages(system: QuadraticMap, driven: tuple[tuple[int, frozenset[int]], ...])
     Args:
         driven: the known coordinates that move, and which inputs move each.
     """
-    structure = system.structure
-    moved = structure.moved_by(dict(driven))
+    order = system.block_order
+    moved = order.moved_by(dict(driven))
     moving = {number for number, inputs in driven if inputs}
-    for block, inputs in zip(structure.blocks, moved, strict=True):
+    for block, inputs in zip(order.blocks, moved, strict=True):
         moving.update(block.unknowns if inputs else ())
     found = []
     for inputs in sorted({*moved} - {frozenset()}, key=lambda inputs: (len(inputs), sorted(inputs))):
         numbers = [number for number, own in enumerate(moved) if own == inputs]
         part = _part_of(system, numbers)
-        read = {i for number in numbers for i in structure.blocks[number].reads}
+        read = {i for number in numbers for i in order.blocks[number].reads}
         reads = tuple(sorted((read & moving).difference(part.unknowns.tolist())))
         found.append(Stage(tuple(sorted(inputs)), part, reads))
     return tuple(found)
@@ -151,7 +151,7 @@ def stages(system: QuadraticMap, driven: tuple[tuple[int, frozenset[int]], ...])
 
 def _part_of(system: QuadraticMap, numbers: Sequence[int]) -> PartialMap:
     """Some blocks, by number; the map itself if they are all."""
-    blocks = [system.structure.blocks[number] for number in numbers]
+    blocks = [system.block_order.blocks[number] for number in numbers]
     rows = sorted(row for block in blocks for row in block.rows)
     if len(rows) == len(system.rows):
         return PartialMap(system, system, np.arange(len(rows)), np.arange(system.size))

@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.numerics.block_inverse import product_of_few_entries
+from pointcoord.numerics.block_order import BlockOrder, block_order_of
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
-from pointcoord.numerics.structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -170,9 +170,9 @@ class QuadraticMap:
         )
 
     @cached_property
-    def structure(self) -> Structure:
+    def block_order(self) -> BlockOrder:
         """Which rows determine which unknowns, block after block."""
-        return structure_of(self.reads, self.unknowns)
+        return block_order_of(self.reads, self.unknowns)
 
     @property
     def terms(self) -> tuple[Array, Indices]:

@@ -2,8 +2,8 @@ r"""Sums of series in several inputs at many values, and their time derivatives 
 
 With the powers of a pose's inputs and their time derivatives (see `numerics.monomials`),
 
-    p = Y(a, b),  v = Y_a a' + Y_b b',  acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb
-    b'^2
+    p = Y(a, b),    v = Y_a a' + Y_b b',
+    acceleration = Y_a a'' + Y_b b'' + Y_aa a'^2 + 2 Y_ab a' b' + Y_bb b'^2
 
 are three products with one and the same matrix of coefficients.
 

@@ -54,6 +54,7 @@ Array = NDArray[np.float64]
 ITERATIONS = 40
 # Least weight of a coordinate: what hardly changes still may be off.
 LEAST = 1e-3
+# Times that a bound is put into its own right side, each of which takes a factor of Z off what is too much.
 REFINEMENTS = 4
 # Of what is left over, what cutting the series may make where it is mostly rounding.
 MOSTLY = 0.5

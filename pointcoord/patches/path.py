@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 SPANS = 1024
 # Spans are cut until they are no wider than the values that they are made of by more than this share of all.
 LOOSE = 1e-3
+# How often, at most: a span of 1,000 s is cut to a fraction of a nanosecond.
 ROUNDS = 16
 # What rounding makes of a value, at most, in parts of the largest: no cut takes it away.
 ROUNDED = 1e-12

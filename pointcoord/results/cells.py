@@ -45,6 +45,7 @@ Whole = NDArray[np.intp]
 Stretch = tuple[int, int]
 """Instants from a number to before another."""
 
+# Three products make the powers up to it.
 DEGREE = 8
 # Instants of a cell: at most what keeps its powers in a second-level cache, at least what pays its points.
 MOST, FEWEST = 4096, 128

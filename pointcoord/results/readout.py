@@ -1,4 +1,4 @@
-"""From the states of points to what a scene asked for."""
+"""Turns the states of points into a table of the numbers that a scene asks for."""
 
 from __future__ import annotations
 

@@ -31,11 +31,11 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import SERIES
+from pointcoord.results.by_series import ByChain
 from pointcoord.results.closing import ALLOWED, NOTICED, NOTICED_SHARE, car_size, closing, movements
 from pointcoord.results.readout import BLOCK as INSTANTS
 from pointcoord.results.readout import Readout
 from pointcoord.results.table import Table
-from pointcoord.results.ways import ByChain
 from pointcoord.scene.drawing_doubts import doubts_of_drawings
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import (
@@ -48,7 +48,7 @@ from pointcoord.simulation import (
     tolerance_notes,
 )
 from pointcoord.solve.assembly import close_drawing
-from pointcoord.solve.designs import solve_designs
+from pointcoord.solve.many_designs import solve_designs
 from pointcoord.sweeping.designs import Designs
 from pointcoord.sweeping.swept import Failure, Noted, Sweep, merged
 

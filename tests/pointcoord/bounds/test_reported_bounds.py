@@ -19,7 +19,7 @@ from pointcoord.bounds.certified_poses import SHARED
 from pointcoord.bounds.proof import Numbers, Proof
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.numerics.rounding import EPS
-from pointcoord.results.ways import ByChain
+from pointcoord.results.by_series import ByChain
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simul
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.wheel_angles import TOE
-from pointcoord.results.ways import ByChain
+from pointcoord.results.by_series import ByChain
 
 EPS = float(np.finfo(float).eps)
 EVERY = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster", "damper")

@@ -23,7 +23,7 @@ from pointcoord import (
     sweep_blocks,
 )
 from pointcoord.effects.registry import EFFECTS
-from pointcoord.solve import box, taylor
+from pointcoord.solve import series_in_inputs, taylor
 from pointcoord.sweeping import solving
 
 WISHBONE = Scene.load("double-wishbone")
@@ -132,7 +132,7 @@ def test_a_design_whose_end_is_not_confirmed_goes_on_without_the_others(
     inputs: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of series in the inputs, and of chains in time."""
-    monkeypatch.setattr(box, "INPUTS", inputs)
+    monkeypatch.setattr(series_in_inputs, "INPUTS", inputs)
     right = taylor.on_branch
 
     def all_but_the_third(*arguments: Any) -> NDArray[np.bool_]:
@@ -292,7 +292,7 @@ def test_a_sweep_proves_its_own_numbers() -> None:
 def test_a_law_of_more_swings_than_a_chain_can_follow_is_followed_by_its_inputs_or_design_by_design(
     inputs: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(box, "INPUTS", inputs)
+    monkeypatch.setattr(series_in_inputs, "INPUTS", inputs)
     monkeypatch.setattr(taylor, "MOST_SEGMENTS", 20)
     swings = {"sine": {"amplitude": 5.0, "angular_frequency": 300.0}}
     laws = {"inputs": {**STRUT.inputs, "rack": swings}, "effects": ()}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, maximum_bipartite_matching
 
-from pointcoord.numerics.structure import Structure, structure_of
+from pointcoord.numerics.block_order import BlockOrder, block_order_of
 
 
 class Pattern(NamedTuple):
@@ -53,13 +53,13 @@ def by_scipy(pattern: Pattern) -> set[tuple[frozenset[int], frozenset[int]]] | N
     }
 
 
-def require_blocks(structure: Structure, pattern: Pattern) -> None:
+def require_blocks(order: BlockOrder, pattern: Pattern) -> None:
     """Each row and unknown in one block, and no row reads an unknown of a later block."""
     n = pattern.unknowns
-    assert sorted(r for b in structure.blocks for r in b.rows) == list(range(n))
-    assert sorted(u for b in structure.blocks for u in b.unknowns) == list(range(n))
+    assert sorted(r for b in order.blocks for r in b.rows) == list(range(n))
+    assert sorted(u for b in order.blocks for u in b.unknowns) == list(range(n))
     solved: set[int] = set()
-    for block in structure.blocks:
+    for block in order.blocks:
         assert len(block.rows) == len(block.unknowns)
         read = set().union(*(pattern.reads[row] for row in block.rows))
         assert set(block.reads) == read - set(block.unknowns)
@@ -69,7 +69,7 @@ def require_blocks(structure: Structure, pattern: Pattern) -> None:
 
 @given(patterns())
 def test_blocks_of_a_random_pattern_are_those_of_scipy(pattern: Pattern) -> None:
-    found, wanted = structure_of(*pattern), by_scipy(pattern)
+    found, wanted = block_order_of(*pattern), by_scipy(pattern)
     if wanted is None:
         assert [(b.rows, b.unknowns) for b in found.blocks] == [(tuple(range(pattern.unknowns)),) * 2]
         return

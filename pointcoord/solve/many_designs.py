@@ -1,10 +1,10 @@
-"""Many designs of one suspension solved together: those that can be, and why the others cannot.
+"""Many designs of one suspension solved together, with what stopped those that cannot be solved.
 
 Drawings are closed and poses assembled at once, each along its own proven steps. Then designs share one
-series in the inputs, where these come back often enough (see `box`), or the segments of a chain of series in
-time; one that asks for much shorter ones goes on without the others (see `build_chains`). A design that
-cannot be closed, assembled or moved drops out with its error, and the others go on as if it had not been
-there.
+series in the inputs, where these come back often enough (see `series_in_inputs`), or the segments of a chain
+of series in time; one that asks for much shorter ones goes on without the others (see `build_chains`). A
+design that cannot be closed, assembled or moved drops out with its error, and the others go on as if it had
+not been there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pointcoord.errors import PointcoordError
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.solve.assembly import assembled, closed_drawings
-from pointcoord.solve.box import follow_by_inputs
+from pointcoord.solve.series_in_inputs import follow_by_inputs
 from pointcoord.solve.taylor import Chain, Settings, build_chains
 from pointcoord.time_functions import TimeFunction
 
@@ -32,7 +32,7 @@ class Followed:
 
     Attributes:
         numbers: of the designs, in increasing order, (A,).
-        chain: its coefficients of shape (A, order + 1, size), or of a `Box` (A, powers, size).
+        chain: its coefficients of shape (A, order + 1, size), or of a `InputSeries` (A, powers, size).
     """
 
     numbers: Numbers

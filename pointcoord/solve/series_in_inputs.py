@@ -1,4 +1,4 @@
-r"""Many designs as one series in their inputs, in place of a chain in time.
+r"""The motion of many designs as one series in their inputs, where that is cheaper than a chain in time.
 
 What a linkage does depends on time through its inputs only. Where these go over their ranges several times,
 one series in the inputs, about the middle of the ranges, holds the motion of a design however often it comes
@@ -6,11 +6,11 @@ back,
 
     y(t) = sum_k c_k s(t)^k,        s_i = (input_i - middle_i) / half_i,        |s_i| <= 1,
 
-and the powers s(t)^k are the same for all designs. It is held to what a segment of a chain is (see `taylor`):
-its last two degrees, summed over their powers, are to it what the last two terms are to a segment of length
-1. And at every corner of the ranges Newton's method finds the assembly, from a first step of no more than the
-tolerance and rounding; and it is proven that no other branch is met in the ranges, of which the middle is
-reached from the start by proven steps (see `branch`). Designs of which that is not so are followed
+and the powers s(t)^k are the same for all designs. It must be as exact as a segment of a chain is (see
+`taylor`): its last two degrees, summed over their powers, are to it what the last two terms are to a segment
+of length 1. At every corner of the ranges Newton's method finds the assembly, from a first step of no more
+than the tolerance and rounding; and it is proven that no other branch is met in the ranges, of which the
+middle is reached from the start by proven steps (see `branch`). Designs of which that is not so are followed
 in time.
 """
 
@@ -78,7 +78,7 @@ BOX, SEGMENTS = 100.0, 2.0
 
 
 @dataclass(frozen=True)
-class Box(Segment):
+class InputSeries(Segment):
     """One series in inputs: y(t) = sum_k coefficients[k] s(t)^k, powers ordered by degree (`multi_index`).
 
     It has no unit of time, `scale`: summed in time it is no number. Of the known coordinates it has none.
@@ -113,7 +113,7 @@ def follow_by_inputs(
     start: float,
     stop: float,
     settings: Settings,
-) -> tuple[Numbers, Box | None, Work]:
+) -> tuple[Numbers, InputSeries | None, Work]:
     """The numbers of the designs that one box is confirmed of, and the box of these, if it is cheaper.
 
     Args:
@@ -215,7 +215,7 @@ class _Boxed:
             found[places] += series[:, 1:, columns].swapaxes(0, 1)
         return found
 
-    def solve(self, pose: Pose, start: float, stop: float) -> tuple[Numbers, Box | None, Work]:
+    def solve(self, pose: Pose, start: float, stop: float) -> tuple[Numbers, InputSeries | None, Work]:
         """The designs that the box is confirmed of, and the box."""
         system, everyone = self.part.system, np.arange(len(pose.y))
         nobody = everyone[:0], None, Work()
@@ -252,7 +252,9 @@ class _Boxed:
         good &= confirmation.good.all(axis=-1) & self.regular(y, moving)
         work += reached.work + confirmation.work
         coefficients, ranges = self.part.unknowns_back(y, np.moveaxis(series, 0, -2)), self.ranges
-        box = Box(start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order)
+        box = InputSeries(
+            start, stop, np.nan, coefficients, left, ranges.laws, ranges.middle, ranges.half, order
+        )
         numbers = np.flatnonzero(good)
         return numbers, box if good.all() else box.taken(numbers), work
 

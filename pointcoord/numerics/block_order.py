@@ -49,7 +49,7 @@ class DiagonalBlocks:
 
 
 @dataclass(frozen=True)
-class Structure:
+class BlockOrder:
     """The blocks of a system, in an order in which they can be solved."""
 
     blocks: tuple[Block, ...]
@@ -89,10 +89,10 @@ class Structure:
         return tuple(found)
 
 
-def structure_of(reads: Sequence[Collection[int]], unknowns: int) -> Structure:
+def block_order_of(reads: Sequence[Collection[int]], unknowns: int) -> BlockOrder:
     """The blocks of a system; one block of everything where rows and unknowns cannot be paired.
 
-    `QuadraticMap.structure` remembers it.
+    `QuadraticMap.block_order` remembers it.
 
     Args:
         reads: the coordinates that each row reads, of which the first `unknowns` are unknown.
@@ -101,12 +101,12 @@ def structure_of(reads: Sequence[Collection[int]], unknowns: int) -> Structure:
     entries = [[i for i in pattern if i < unknowns] for pattern in patterns]
     row_of, spare = _matching(entries, unknowns)
     if spare or len(entries) != unknowns:
-        return Structure((_block(patterns, range(len(patterns)), range(unknowns)),))
+        return BlockOrder((_block(patterns, range(len(patterns)), range(unknowns)),))
     unknown_of = [FREE] * len(entries)
     for unknown, row in enumerate(row_of):
         unknown_of[row] = unknown
     components = _strong_components([[row_of[i] for i in row] for row in entries])
-    return Structure(
+    return BlockOrder(
         tuple(_block(patterns, sorted(rows), sorted(unknown_of[row] for row in rows)) for rows in components)
     )
 

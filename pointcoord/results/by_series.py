@@ -1,4 +1,4 @@
-"""The ways in which a scene is solved: at its instants, or by a chain of series."""
+"""A scene that is solved at each of its instants, or by a chain of series in time (by a map: `by_map`)."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.numerics.rounding import EPS
 from pointcoord.results.readout import ENOUGH, Readout
 from pointcoord.results.solved_scene import Places, SolvedScene
-from pointcoord.solve.box import Box
 from pointcoord.solve.dense_output import SeriesRows, evaluate
+from pointcoord.solve.series_in_inputs import InputSeries
 from pointcoord.solve.taylor import Chain, last_magnitudes
 from pointcoord.time_functions import TimeFunction
 
@@ -81,7 +81,7 @@ class ByChain(SolvedScene):
 
     def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
         """The sums of their series."""
-        if isinstance(self.chain.segments[0], Box):
+        if isinstance(self.chain.segments[0], InputSeries):
             self._fill_by_inputs(self.chain.segments[0], instants, places)
             return
         reported, needed = self._series
@@ -107,7 +107,7 @@ class ByChain(SolvedScene):
             found.append(SeriesRows.of(self.chain, columns, wanted))
         return tuple(found)
 
-    def _fill_by_inputs(self, box: Box, instants: Array, places: Places) -> None:
+    def _fill_by_inputs(self, box: InputSeries, instants: Array, places: Places) -> None:
         """Of many designs whose powers are the same: one product for each state."""
         mechanism, orders = self.readout.mechanism, range(max((order for order, _ in places), default=-1) + 1)
         powers, series = box.powers(instants, len(orders)), dict[str, tuple[Numbers, Array]]()
@@ -141,7 +141,7 @@ class ByChain(SolvedScene):
         mechanism, segments = self.readout.mechanism, self.chain.segments
         wanted = min(derivatives, self.readout.plan.derivative)
         unknowns, known = mechanism.map.unknowns, self._known(instants)
-        if isinstance(box := segments[0], Box):
+        if isinstance(box := segments[0], InputSeries):
             size = unknowns + known.shape[-1]
             found = [np.zeros((len(box.coefficients), len(instants), size)) for _ in range(wanted + 1)]
             for each, powers in zip(found, box.powers(instants, wanted + 1), strict=True):
