@@ -57,6 +57,24 @@ def test_poses_beside_a_lock_are_on_patches_or_on_paths_and_the_rest_say_why(
     assert (off <= (found.carried_bound + wanted.carried_bound)[solved]).all()
 
 
+@pytest.mark.parametrize("count", [3, 400])
+def test_a_bound_has_the_rounding_of_a_far_origin(count: int) -> None:
+    """A car that is drawn 2^24 mm away, where its hardpoints are the same to the last digit."""
+    scene, far = Scene.load("double-wishbone"), 2.0**24
+    points = {name: (x + far, y, z) for name, (x, y, z) in scene.mechanism.points.items()}
+    moved = scene.model_copy(update={"mechanism": scene.mechanism.model_copy(update={"points": points})})
+    rng = np.random.default_rng(17)
+    inputs = {"arm_angle": rng.uniform(1.45, 1.6, count), "rack": rng.uniform(-20.0, 20.0, count)}
+    here, there = (solve_poses(one, inputs, tolerance=1e-9) for one in (scene, moved))
+    off = np.zeros(count)
+    for point in scene_mechanism(scene).topology.moving:
+        # The first difference is exact.
+        apart = there.position[point] - (far, 0.0, 0.0) - here.position[point]
+        off = np.maximum(off, np.abs(apart).max(axis=-1))
+    assert (off <= here.bound + there.bound).all()
+    assert off.max() > 10.0 * here.bound.max()
+
+
 def test_a_pose_that_cannot_be_says_why_and_has_no_number() -> None:
     scene = Scene.load("bounce")
     angles = np.array([[1.6, 0.05], [1.5, 3.1]])

@@ -15,8 +15,8 @@ import pytest
 from every_effect import every_effect
 from numpy.typing import NDArray
 
-from pointcoord import simulate
-from pointcoord.bounds import certified_poses, enclosed_points
+from pointcoord import Scene, simulate
+from pointcoord.bounds import certified_poses, enclosed_points, proof
 from pointcoord.bounds.certified_poses import CertifiedPoses, grouped, with_known
 from pointcoord.bounds.enclosed_points import EnclosedPoses, enclosed_coordinates
 from pointcoord.effects import knuckle, knuckle_rates
@@ -124,15 +124,16 @@ def scene_holds(name: str) -> bool:
     """Whether every number of a scene is off by its bound at most, and that by what is expected at most."""
     motion, references = solved(name)
     samples = motion.at(np.array([instant for instant, _ in references]))
-    proof = motion.proof_of(samples, rates=True)
+    found = motion.proof_of(samples, rates=True)
     for k, (_, exact) in enumerate(references):
-        angles = {key: [value] for key, value in exact.effects.items()}
+        numbers = {**exact.effects, **exact.rod_force, **exact.hinge_thrust}
+        of_the_car = {key: [value] for key, value in numbers.items()}
         states = dict(zip(STATES, exact.derivatives, strict=False))
         for quantity, channel in samples.numbers.items():
             of_a_body = {} if quantity in states else vars(exact).get(quantity, {})
-            own = angles if QUANTITIES[quantity].of == "car" else states.get(quantity, of_a_body)
+            own = of_the_car if QUANTITIES[quantity].of == "car" else states.get(quantity, of_a_body)
             for part, values in channel.items():
-                kept = values, proof.proven[quantity][part], proof.expected[quantity][part]
+                kept = values, found.proven[quantity][part], found.expected[quantity][part]
                 reported, bounds, expected = (np.atleast_1d(array[k]).tolist() for array in kept)
                 for value, bound, most, x in zip(reported, bounds, expected, own[part], strict=True):
                     # A double less a fraction would be rounded to a double: both are made fractions.
@@ -145,12 +146,22 @@ def scene_holds(name: str) -> bool:
 
 
 SOLVED: dict[str, Any] = {}
+ALONG_WAYS = "double-wishbone"
+
+
+def along_ways(name: str) -> Scene:
+    """A scene with numbers of derivatives by inputs, by lengths of rods and by gaps of joints."""
+    scene = Scene.load(name)
+    load = {"force": (300.0, -500.0, 3000.0), "moment": (0.0, 2e4, 0.0)}
+    effects = ("camber_by_travel", "toe_by_rack", "roll_centre", "screw_axis", "loads")
+    part = scene.mechanism.model_copy(update={"loads": {"": load}})
+    return scene.model_copy(update={"mechanism": part, "effects": effects})
 
 
 def solved(name: str) -> Any:
-    """A motion with all effects, and the reference at a few of its instants."""
+    """A motion with all effects, or with some along ways, and the reference at a few of its instants."""
     if name not in SOLVED:
-        scene = every_effect(name)
+        scene = along_ways(name) if name == ALONG_WAYS else every_effect(name)
         motion = simulate(scene)
         instants = motion.times[[3, 40, -9]].tolist()
         SOLVED[name] = motion, [(t, reference_instant(scene, inputs_at(scene, t))) for t in instants]
@@ -222,6 +233,24 @@ def all_holds() -> bool:
 
 def test_every_number_lies_within_its_bound() -> None:
     assert all_holds()
+    assert scene_holds(ALONG_WAYS)
+
+
+@pytest.mark.parametrize(
+    ("function", "old", "new"),
+    [
+        (proof._slopes, "drive.input == driven", "drive.input != driven"),
+        (enclosed_coordinates, "beside.scaled(opened[1])", "beside.scaled(0.5 * opened[1])"),
+        (knuckle.turning_of, "times(c, normal.slope)", "times(c + c, normal.slope)"),
+        (enclosure.quotient, "off / left", "0.0 * off / left"),
+    ],
+)
+def test_a_proof_of_derivatives_along_ways_without_one_of_its_terms_is_found_out(
+    function: Callable[..., Any], old: str, new: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene_holds(ALONG_WAYS)  # solved before the fault is planted
+    lies(function, old, new, monkeypatch)
+    assert not scene_holds(ALONG_WAYS)
 
 
 @pytest.mark.parametrize(("function", "old", "new"), FAULTS)

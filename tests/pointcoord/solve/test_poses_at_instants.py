@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
+from math import factorial
 
 import numpy as np
 import pytest
@@ -12,16 +13,23 @@ from pointcoord import AssemblyError, Scene, simulate
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import MAP, METHODS, NEWTON, Method
 from pointcoord.numerics.linear import factorise
+from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.simulation import pose_tolerance, prepare_task
 from pointcoord.solve import pointwise
 from pointcoord.solve.assembly import Pose, assemble
 from pointcoord.solve.follower import follow
-from pointcoord.solve.pointwise import solve_instants
+from pointcoord.solve.pointwise import InstantSolver, solve_instants
 from pointcoord.solve.proven_step import ROOM
 from pointcoord.time_functions import Sine, TimeFunction
 
 solve_by_chord = partial(solve_instants, chord=True)
+WAYS = {
+    "newton": solve_instants,
+    "chord": solve_by_chord,
+    "newton-cold": partial(solve_instants, cold=True),
+}
+by_way = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS.keys())
 SWING: dict[str, TimeFunction] = {"arm_angle": Sine(0.2, 2.0, 0.0, 1.5), "rack": Sine(10.0, 3.0)}
 # u^2 = w in y = (u, w, 0, 1), at u = w = 1.
 PARABOLA = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4)
@@ -44,6 +52,34 @@ def test_the_next_pose_is_proven_as_far_as_the_condition_holds(way: float, prove
         count = pointwise._ahead(PARABOLA, AT_ONE, factors, targets, 0.0, chord)[0]
         # A kept inverse is given up sooner, where it contracts by less than a tenth.
         assert count == proven or (chord and not count)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_what_a_kept_inverse_leaves_is_no_less_than_the_error(tolerance: float) -> None:
+    # u^2 = w with the inverse at u = 1, as far as it contracts by a tenth.
+    w = np.linspace(0.85, 1.15, 61)
+    targets = np.stack([w, np.zeros_like(w), np.ones_like(w)], axis=-1)
+    inverse = factorise(PARABOLA.jacobian(AT_ONE)).preconditioner
+    guess = pointwise._guessed(PARABOLA, inverse, AT_ONE, targets)
+    y, found, left, _ = pointwise._by_chord(PARABOLA, inverse, guess, tolerance)
+    assert found.all()
+    assert np.count_nonzero(left) > 30
+    # A step is rounded, and the root too.
+    assert (np.abs(y[:, 0] - np.sqrt(w)) <= left + 4.0 * EPS).all()
+
+
+@by_way
+def test_rates_of_every_order_are_those_of_the_series(strut: Mechanism, way: InstantSolver) -> None:
+    times, order = np.linspace(0.0, 1.0, 5), 5
+    start = start_of(strut, SWING)
+    solved = way(strut, SWING, start, times, order, pointwise.square_velocity_term, 0.0)
+    known = strut.known_series({name: law.series(times, order) for name, law in SWING.items()})
+    poses = solved.states[0]
+    series = expand(strut.map, factorise(strut.map.jacobian(poses)), poses, known)
+    for d, state in enumerate(solved.states):
+        wanted = factorial(d) * series[:, d]
+        # Each order is solved for from those before it: some eps of the condition number more.
+        assert np.abs(state - wanted).max() <= 64 * EPS * 4000.0 * max(np.abs(wanted).max(), 1.0)
 
 
 def test_one_factorisation_serves_many_instants_by_chord(strut: Mechanism) -> None:

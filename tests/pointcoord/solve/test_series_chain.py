@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pointcoord import AssemblyError, Motion, Scene, simulate
-from pointcoord.results.ways import ByChain
+from pointcoord.results.by_series import ByChain
 
 EPS = np.finfo(float).eps
 # Where the tie rod locks at a level arm, mm; between 130.100768 and 130.100769 by its circle's closed form.
