@@ -189,11 +189,16 @@ def _told(rows: Sequence[Comparison], worst: Comparison) -> tuple[str, ...]:
 def file_parts(found: DataOutcome) -> tuple[Part, ...]:
     """The table of a file of results, and how much was compared."""
     verdicts = [row.verdict for row in found.outcome.rows]
-    counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in dict.fromkeys(verdicts))
+    counts = ", ".join(_counted(verdicts.count(verdict), verdict) for verdict in dict.fromkeys(verdicts))
     # What is not tested was compared with nothing, or with what could not have told it from a wrong one.
     tested = counted_as(len(verdicts) - verdicts.count("not tested"), "number")
     said = f"{tested} compared" if {*verdicts} - {"not tested"} else "Nothing was compared"
     return *outcome_parts(found.outcome, found.over, found.absent), f"{said}: {counts}."
+
+
+def _counted(count: int, verdict: str) -> str:
+    """How many of one verdict: "1 agrees", "2 agree"."""
+    return f"{count} {verdict if count == 1 else verdict.removesuffix('s')}"
 
 
 def agreement_line(outcome: Outcome) -> str:

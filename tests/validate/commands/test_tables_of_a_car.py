@@ -184,13 +184,13 @@ def test_a_table_in_text_knows_how_many_digits_each_unit_has(name: str) -> None:
     ("name", "convention", "said"),
     [
         # An input and a number of one name; a screw axis, whose pitch is in mm/deg; forces at joints.
-        ("pushrod-by-damper", "iso", "91 numbers compared: 91 agrees."),
+        ("pushrod-by-damper", "iso", "91 numbers compared: 91 agree."),
         # Wheels that are not steered to the same side have no turning circle.
-        ("axle-opposed", "iso", "159 numbers compared: 159 agrees."),
+        ("axle-opposed", "iso", "159 numbers compared: 159 agree."),
         # The scene holds the arm elsewhere than drawn.
         ("steer", "paper", "arm_angle is held at 1.5708 rad: the scene does, and the file does not give it"),
         # Names with a minus before them, of what is to count the other way.
-        ("axle-steer", "optimumk", "agrees."),
+        ("axle-steer", "optimumk", "agree."),
     ],
 )
 def test_a_table_of_all_that_a_car_has_agrees_with_the_car(
