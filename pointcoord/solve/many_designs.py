@@ -32,7 +32,7 @@ class Followed:
 
     Attributes:
         numbers: of the designs, in increasing order, (A,).
-        chain: its coefficients of shape (A, order + 1, size), or of a `InputSeries` (A, powers, size).
+        chain: its coefficients of shape (A, order + 1, size), or of an `InputSeries` (A, powers, size).
     """
 
     numbers: Numbers
