@@ -1,6 +1,7 @@
 """Every formulation is right within what it claims, by the reference.
 
-On every shipped scene, and on a car that rolls, pitches and heaves.
+On every shipped scene, and on a car that rolls, pitches and heaves; with every number that there is, on a
+scene of every mechanism and closure.
 """
 
 from __future__ import annotations
@@ -44,6 +45,12 @@ def load(name: str) -> Scene:
     return Scene.load(TURNED if name == TURNED.stem else name)
 
 
+def one_of_each() -> list[str]:
+    """The last scene of each mechanism and closure."""
+    parts = {name: load(name).mechanism for name in SCENES}
+    return [*{(part.type, part.closure): name for name, part in parts.items()}.values()]
+
+
 @cache
 def asked(name: str, every: bool) -> Scene:
     """A scene at few instants; or with every effect that its car has, given what they need."""
@@ -84,12 +91,12 @@ def of_the_car(scene: Scene) -> set[str]:
 
 
 def test_every_number_is_one_of_some_car() -> None:
-    found = set().union(*(of_the_car(asked(name, True)) for name in SCENES))
+    found = set().union(*(of_the_car(asked(name, True)) for name in one_of_each()))
     assert {name.rpartition(".")[2] for name in found} >= NUMBERS_OF_THE_CAR.keys()
-    assert any("loads" in asked(name, True).effects for name in SCENES)
+    assert any("loads" in asked(name, True).effects for name in one_of_each())
 
 
-@pytest.mark.parametrize("name", [*SCENES, TURNED.stem])
+@pytest.mark.parametrize("name", [*one_of_each(), TURNED.stem])
 @pytest.mark.parametrize("who", OF_EVERY_NUMBER)
 def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: str) -> None:
     outcome = compared(name, who, True)

@@ -14,7 +14,6 @@ import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, run
 
 from validate.output import table
-from validate.output.console import Console
 
 SLOW = "import time\nfrom validate.output.console import Console\nconsole = Console()\n{more}\n"
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
@@ -87,18 +86,6 @@ def test_a_narrow_terminal_shows_every_cell_in_full(piped: str) -> None:
     assert "---" not in shown
 
 
-def test_a_terminal_of_eighty_columns_shows_a_table_of_whole_words_within_them() -> None:
-    # A car whose numbers have short names.
-    piped = run("validate", "-v", "hmmwv-front").stdout
-    shown = COLOURS.sub("", validated("hmmwv-front", columns=80))
-    lines = [line.rstrip() for line in shown.replace("\r\n", "\n").splitlines()]
-    begin = next(i for i, line in enumerate(lines) if set(line) == {"-", " "})
-    end = next(i for i, line in enumerate(lines) if "hmmwv-front: " in line and i > begin)
-    assert end - begin > 7
-    assert max(map(len, lines[begin - 2 : begin + 8])) <= 80
-    assert sorted(cells(shown)) == sorted(cells(piped))
-
-
 def test_progress_comes_after_two_seconds_and_goes_away() -> None:
     work = "with console.progress('cases', total=3) as told:\n    told('first', 1)\n    time.sleep({0})\n"
     work += "    console.say('a result')\n    time.sleep(0.6)\nconsole.say('the end')"
@@ -110,12 +97,6 @@ def test_progress_comes_after_two_seconds_and_goes_away() -> None:
     assert long.endswith("\x1b[2Kthe end\r\n")
     short = on_terminal([*program, SLOW.format(more=work.format(0.1))])
     assert short == "a result\r\nthe end\r\n"
-
-
-def test_progress_goes_to_no_pipe(capsys: pytest.CaptureFixture[str]) -> None:
-    with Console().progress("cases", total=3, lines=False) as told:
-        told("first", 1)
-    assert capsys.readouterr() == ("", "")
 
 
 def test_a_table_is_columns_of_text() -> None:
@@ -142,10 +123,9 @@ def test_a_wide_table_is_shown_in_bands_that_fit_and_have_the_inputs_each() -> N
     assert once == [word for word in whole if not word.startswith("[") and word != "wheel_travel"]
 
 
-@pytest.mark.parametrize("command", ["draw", "plot"])
-def test_a_picture_is_no_text_on_a_terminal_but_a_file_that_is_named(command: str, tmp_path: Path) -> None:
+def test_a_picture_is_no_text_on_a_terminal_but_a_file_that_is_named(tmp_path: Path) -> None:
     for name in ("steer.svg", "steer-2.svg"):
-        shown = on_terminal([*PROGRAM, command, "steer"], folder=tmp_path)
+        shown = on_terminal([*PROGRAM, "draw", "steer"], folder=tmp_path)
         assert f"the picture goes to {name}; -o FILE says another place" in shown
         assert "<svg" not in shown
         assert "<svg" in (tmp_path / name).read_text(encoding="utf-8")

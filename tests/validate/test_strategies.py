@@ -37,7 +37,7 @@ def test_a_mechanism_and_its_inputs_make_a_scene_that_is_solved(data: st.DataObj
     assert all(np.isfinite(place).all() for place in motion.position.values())
 
 
-@FEW
+@settings(max_examples=2)
 @given(near_singular("double_wishbone", nearest=1e-6, farthest=1e-4))
 def test_a_near_singular_scene_is_next_to_where_an_input_ends(scene: Scene) -> None:
     assert nearest_end(scene) < 2e-4
@@ -83,19 +83,6 @@ def test_nothing_is_drawn_and_thrown_away(drawn: st.SearchStrategy[object]) -> N
 
 
 by_variant = pytest.mark.parametrize("variant", variants(), ids=lambda variant: variant.words)
-
-
-@by_variant
-def test_the_least_example_is_the_base_car_in_its_own_axes(variant: Variant) -> None:
-    """What hypothesis shrinks to: no point is moved, but for rounding along a line, and nothing is turned."""
-    kind = mechanisms(variant.suspension, variant.closure)
-    least, base = find(kind, lambda _: True, settings=FIRST), variant.base
-    assert (tuple(least["up"]), tuple(least["right"]), least["side"]) == (base.up, base.right, base.side)
-    sliding = {name for slide in base.structure.slides.values() for name in slide.points}
-    for name, place in base.points.items():
-        if name in least["points"]:
-            off = np.abs(np.subtract(least["points"][name], place)).max()
-            assert off <= (0.1 * base.size if name in sliding else 0.0), name
 
 
 @FEW

@@ -1,6 +1,5 @@
 """All assemblies of a knuckle on its legs are found, each is one, and none that is false is certified."""
 
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,6 @@ from scipy.spatial.transform import Rotation
 
 from pointcoord import Scene, simulate
 from validate.assemblies import count
-from validate.assemblies.homotopy import solve_quadratic
 from validate.assemblies.legs import NotOnLegsError, forms
 from validate.assemblies.scenes import counts
 from validate.assemblies.study import STUDY, at_distance, on_plane, on_plane_of_body
@@ -52,19 +50,6 @@ def test_each_form_is_what_its_condition_misses_by(seed: int) -> None:
     for name, (form, missed) in values.items():
         # Some hundred products of numbers of this size.
         assert abs(z @ form @ z - missed) <= 100 * 2.0**-52 * size**2, name
-
-
-def test_a_dense_system_has_two_to_the_n_solutions_and_each_is_one() -> None:
-    random = np.random.default_rng(5)
-    dense = random.normal(size=(4, 5, 5))
-    dense += dense.swapaxes(1, 2)
-    ends = solve_quadratic(dense)
-    assert len(ends) == 16
-    for one, other in product(range(16), repeat=2):
-        # Unit vectors of different solutions; the same up to a factor only with itself.
-        assert (abs(ends[one].conj() @ ends[other]) > 1.0 - 1e-9) == (one == other)
-    left = np.einsum("pi,rij,pj->pr", ends, dense, ends)
-    assert np.abs(left).max() <= 1e-13
 
 
 def pose(name: str, *held: str) -> tuple[dict[str, Any], dict[str, Array]]:

@@ -12,7 +12,7 @@ from validate.hard.cars import drawn_angle
 from validate.reference import NoReferenceError, pose_exists
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
-searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 4)  # an end takes 0.1 s
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 2)  # an end takes 0.1 s
 # Of the range: beside what the inputs of the car that is drawn anew are rounded by.
 NEAR = 1e-11
 
@@ -23,8 +23,7 @@ def test_a_drawing_stands_where_its_arm_is_drawn(car: Car) -> None:
 
 
 @searched
-@pytest.mark.parametrize("driven", ["arm_angle", "rack"])
-@pytest.mark.parametrize("ahead", [False, True])
+@pytest.mark.parametrize(("driven", "ahead"), [("arm_angle", False), ("rack", True)])
 @given(car=cars_of())
 def test_an_end_separates_poses_from_none_to_a_hundred_billionth_of_the_range(
     car: Car, driven: str, ahead: bool

@@ -20,9 +20,9 @@ from validate.cars.scene_content import content_of
 NUMBERS = st.integers(0, 2**32 - 1)
 EXAMPLES = settings.default.max_examples if settings.default else 100
 DEEP = EXAMPLES > 100
-searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 15)
+searched = settings(deadline=None, max_examples=EXAMPLES if DEEP else 8)
 # Each looks for ends of inputs, half a second of work for one.
-searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 3)
+searched_for_ends = settings(deadline=None, max_examples=EXAMPLES if DEEP else 2)
 
 
 @searched

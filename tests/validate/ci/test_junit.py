@@ -17,7 +17,6 @@ from validate.ci.record import Record
 from validate.cli import main
 from validate.comparison.compare import compare_solutions
 from validate.comparison.examined import Examined
-from validate.formulations.point_coordinates import PointCoordinates
 
 SCENE = Scene.load("steer")
 RIGHT = compare(SCENE, "pointcoord", "absolute", "steer")
@@ -145,12 +144,3 @@ def test_a_scene_that_is_refused_or_cannot_be_read_is_an_error_and_the_others_go
     (error,) = suites[bad].iter("error")
     assert error.get("type") == "SceneError"
     assert "samples" in error.get("message", "")
-
-
-def test_a_defect_of_a_formulation_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(PointCoordinates, "solve", lambda self, scene: 1 / 0)
-    target = tmp_path / "out.xml"
-    words = ["validate", short_scene(tmp_path), "-q", "--junit", str(target), "--second", "absolute"]
-    assert main(words) == 4
-    (error,) = checked(target.read_bytes()).iter("error")
-    assert error.get("type") == "ZeroDivisionError"

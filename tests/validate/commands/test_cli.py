@@ -41,9 +41,7 @@ def test_every_command_has_its_help_and_the_overview_names_it(
     assert {*ORDER, ExitStatus.INTERRUPTED, ExitStatus.TERMINATED} == set(ExitStatus)
 
 
-@pytest.mark.parametrize(
-    "words", ["--help", "simulate steer -q", "plan steer", "table steer", "validate --help"]
-)
+@pytest.mark.parametrize("words", ["--help", "simulate steer -q", "table steer"])
 def test_a_command_brings_nothing_with_it_that_it_does_not_need(words: str) -> None:
     program = f"import sys; from validate.cli import main; main({words.split()}); "
     program += "print(*sys.modules, file=sys.stderr)"
@@ -88,9 +86,7 @@ def test_who_asks_for_more_gets_every_table(
         assert words in out
 
 
-@pytest.mark.parametrize(
-    ("scene", "instants"), [("bounce", None), ("double-wishbone", 7000), ("steer", 40_000)]
-)
+@pytest.mark.parametrize(("scene", "instants"), [("bounce", None), ("double-wishbone", 7000)])
 def test_every_kind_of_file_gives_back_the_same_bits(
     scene: str, instants: int | None, tmp_path: Path
 ) -> None:
@@ -166,15 +162,7 @@ def test_numbers_that_are_none_are_written_so_that_they_can_be_read() -> None:
                 "strut_lower; positions of lower_arm_front, "
             ],
         ),
-        (
-            "bounce",
-            "",
-            [
-                "from 0.562492 rad (32.228 deg), where it is held by link lower_ball_joint - lower_arm_rear",
-                "camber is -6.993 deg",
-                "from strut_lower (the default of wheel_axis_inner) to wheel_centre",
-            ],
-        ),
+        ("bounce", "", ["from strut_lower (the default of wheel_axis_inner) to wheel_centre"]),
         (
             "double-wishbone",
             "",
@@ -190,7 +178,7 @@ def test_numbers_that_are_none_are_written_so_that_they_can_be_read() -> None:
 def test_plan_says_what_is_computed_and_where_the_drawing_stands(
     scene: str | None, effects: str, words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Lotus prints 7.00 degrees for the double wishbone; 32.228 degrees are README's."""
+    """Lotus prints 7.00 degrees for the double wishbone."""
     assert main(["plan", scene or short_scene(tmp_path, effects=effects)]) == 0
     out = capsys.readouterr().out
     assert [word for word in words if word not in out] == []
@@ -214,25 +202,6 @@ def test_the_readme_s_picture_is_what_its_command_makes(
         [line for line in text.splitlines() if "moves by" not in line] for text in (out, picture.read_text())
     )
     assert made == kept
-
-
-def test_a_table_has_the_motion_s_numbers_in_degrees_and_mm(tmp_path: Path) -> None:
-    target = tmp_path / "t.csv"
-    assert main(["table", "wheel-travel", "--rows", "5", "-o", str(target), "-q"]) == 0
-    with target.open(newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    scene = Scene.load("wheel-travel")
-    # A chain of series is cut for the highest rate that is asked for, so that last digits may differ.
-    asking = scene.model_copy(update={"effects": scene.mechanism.effects})
-    motion = simulate(asking).at(np.linspace(0.0, 1.0, 5))
-    wanted = {
-        "wheel_travel [mm]": np.linspace(-50.0, 50.0, 5),
-        "camber [deg]": np.degrees(motion.wheel["camber"]),
-        "toe_by_travel [deg/mm]": np.degrees(motion.angle_gradient["toe_by_travel"]),
-        "damper_per_wheel [mm/mm]": motion.dimension_gradient["damper_per_wheel"],
-    }
-    for name, values in wanted.items():
-        assert [float(row[name]) for row in rows] == pytest.approx(values.tolist(), rel=1e-11), name
 
 
 def test_a_table_in_text_says_each_sign_and_in_markdown_too(

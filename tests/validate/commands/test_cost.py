@@ -1,7 +1,6 @@
 """`pointcoord cost` as its users meet it: options, files, interruptions and endings."""
 
 import json
-import shlex
 import sys
 from collections.abc import Callable
 from dataclasses import replace
@@ -67,19 +66,6 @@ def test_a_report_from_rows_measures_nothing_and_ends_with_0(
     assert Path(store).read_bytes() == before
 
 
-def test_the_same_rows_give_the_same_bytes_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    few = [row for row in ROWS if row.quantity == "position" and row.scene == "double-wishbone"]
-    rows = kept(tmp_path / "rows.parquet", few)
-    words = f"cost --from-rows --rows {rows} --csv {tmp_path}/x.csv --report {tmp_path}/r".split()
-    found = []
-    for _ in range(2):
-        assert main(words) == 0
-        files = {path.name: path.read_bytes() for path in (tmp_path / "r").iterdir()}
-        found.append((capsys.readouterr().out, files, (tmp_path / "x.csv").read_bytes()))
-    assert found[0] == found[1]
-    assert {"headline.svg", "index.html"} <= found[0][1].keys()
-
-
 def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
     store: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -91,25 +77,6 @@ def test_json_is_alone_on_standard_output_and_keeps_to_the_schema(
     assert data["sentences"]
     assert {race["verdict"] for race in data["races"]} == {"ours"}
     assert {one["against"] for one in data["growths"]} == {"instants", "designs", "unknowns"}
-
-
-@pytest.mark.parametrize(
-    ("words", "ways", "scenes", "parts"),
-    [
-        ("bounce", "", "bounce", "accuracy growth"),
-        ("--ways series,mujoco", "series mujoco", "bounce double-wishbone chain", "accuracy growth"),
-        ("--parts growth", "", "bounce chain", "growth"),
-        ("--parts 'growth, accuracy' double-wishbone", "", "double-wishbone", "accuracy"),
-    ],
-)
-def test_scenes_ways_and_parts_choose_rows(
-    words: str, ways: str, scenes: str, parts: str, store: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["cost", *shlex.split(words), "--from-rows", "--rows", store, "--json", "-"]) == 0
-    rows = document(capsys.readouterr().out)["rows"]
-    assert {row["scene"] for row in rows} == {*scenes.split()}
-    assert {row["part"] for row in rows} == {*parts.split()}
-    assert not ways or {row["way"] for row in rows} == {*ways.split()}
 
 
 def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -124,21 +91,6 @@ def test_quick_rows_and_full_ones_are_not_mixed(tmp_path: Path, capsys: pytest.C
         assert main([*words, *more]) == 0
         (row,) = document(capsys.readouterr().out)["rows"]
         assert row["error"] == largest
-
-
-def test_pictures_without_matplotlib_are_refused_before_anything_is_measured(
-    store: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert main(["cost", "--rows", str(tmp_path / "new.parquet"), "--report", str(tmp_path / "r")]) == 2
-    out, err = capsys.readouterr()
-    assert out == ""
-    (line,) = err.splitlines()
-    assert "matplotlib" in line
-    assert "pip install 'pointcoord[plot]'" in line
-    assert {path.name for path in tmp_path.iterdir()} == {"rows.parquet"}
-    # All but the pictures does without.
-    assert main(["cost", "--from-rows", "--rows", store]) == 0
 
 
 def planted(*rows: Row, end: BaseException | None = None) -> Callable[..., list[Row]]:
@@ -171,16 +123,6 @@ def test_ctrl_c_keeps_and_names_what_was_measured(
     assert (data["complete"], data["exit_status"], len(data["rows"])) == (False, 130, 1)
 
 
-def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
-    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
-) -> None:
-    fake(planted(Row("accuracy", "bounce", "series", verdict="failed", reason="locked at 2 s")))
-    assert main(["cost", "--rows", str(tmp_path / "rows.parquet")]) == 3
-    out, err = told(capsys)
-    assert "locked at 2 s" in out
-    assert "nothing could be measured" in err[0]
-
-
 @pytest.mark.parametrize(
     ("words", "scenes", "parts"),
     [
@@ -200,6 +142,16 @@ def test_what_is_measured_is_what_the_options_say(
     (study,) = asked
     assert (tuple(scene.name for scene in study.scenes), study.parts) == (scenes, parts)
     assert study.quick == ("--quick" in words)
+
+
+def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
+    tmp_path: Path, fake: Callable[..., None], capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake(planted(Row("accuracy", "bounce", "series", verdict="failed", reason="locked at 2 s")))
+    assert main(["cost", "--rows", str(tmp_path / "rows.parquet")]) == 3
+    out, err = told(capsys)
+    assert "locked at 2 s" in out
+    assert "nothing could be measured" in err[0]
 
 
 def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(

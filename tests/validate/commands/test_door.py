@@ -29,29 +29,23 @@ def only_line(err: str) -> str:
             (words, status, '"$@" | head -0; exit ${PIPESTATUS[0]}', "")
             for words, status in (
                 ("validate SHORT --second printed", 1),
-                ("validate SHORT --second printed --json -", 1),
                 ("simulate bounce", 0),
-                ("plan SHORT", 0),
-                ("hard --list", 0),
                 ("--help", 0),
             )
         ),
         *(
             (words, 4, '"$@" >/dev/full', "standard output: cannot be written (No space left on device)")
-            for words in ("validate SHORT --second printed", "simulate SHORT", "--help", "hard --list")
+            for words in ("validate SHORT --second printed", "--help")
         ),
         # Before anything is solved.
         ("validate LONG", 4, '"$@" >&-', "standard output: is closed; use --quiet"),
         ("validate SHORT -q --json OUT", 0, '"$@" >&-', ""),
         ("plan -", 2, '"$@" <&-', "standard input: cannot be read"),
         ("validate LARGE", 4, 'ulimit -v 700000; exec "$@"', "try fewer samples"),
-        ("simulate bounce -o OLD", 4, 'ulimit -f 4; exec "$@"', "cannot be written (File too large)"),
-        ("simulate bounce -o OLD.npz", 4, 'ulimit -f 4; exec "$@"', "cannot be written (File too large)"),
+        ("simulate bounce -o OLD.csv", 4, 'ulimit -f 4; exec "$@"', "cannot be written (File too large)"),
         # What has no end or is no file is no scene.
         ("simulate -", 2, '"$@" </dev/zero', "; allowed: "),
-        ("simulate /dev/zero", 2, '"$@"', "; allowed: "),
         ("simulate PIPE", 2, '"$@"', "; allowed: "),
-        ("simulate FOLDER", 2, '"$@"', "; allowed: "),
     ],
 )
 def test_what_happens_to_the_streams_of_a_run_is_a_status_and_at_most_one_line(
@@ -61,14 +55,10 @@ def test_what_happens_to_the_streams_of_a_run_is_a_status_and_at_most_one_line(
         "SHORT": short_scene(tmp_path),
         "LONG": short_scene(tmp_path, "long.toml", samples=LONG),
         "LARGE": short_scene(tmp_path, "large.toml", samples="10000000"),
-        **{name: str(tmp_path / name) for name in ("OUT", "PIPE", "FOLDER")},
-        **{f"OLD{end}": str(tmp_path / f"old.csv{end}") for end in ("", ".npz")},
+        **{name: str(tmp_path / name) for name in ("OUT", "PIPE", "OLD.csv")},
     }
     os.mkfifo(tmp_path / "PIPE")
-    (tmp_path / "FOLDER").mkdir()
-    for end in ("", ".npz"):
-        (tmp_path / f"old.csv{end}").write_text("old")
-    script = script.replace("OLD", places["OLD"])
+    (tmp_path / "OLD.csv").write_text("old")
     done = in_shell(script, *(places.get(word, word) for word in words.split()))
     assert done.returncode == status, done.stderr
     if said:
@@ -76,7 +66,7 @@ def test_what_happens_to_the_streams_of_a_run_is_a_status_and_at_most_one_line(
     else:
         assert complaints(done.stderr) == []
     if "ulimit -f" in script:
-        assert {(tmp_path / f"old.csv{end}").read_text() for end in ("", ".npz")} == {"old"}
+        assert (tmp_path / "OLD.csv").read_text() == "old"
     assert not list(tmp_path.glob(".pointcoord-*"))
     if "OUT" in words:
         assert json.loads((tmp_path / "OUT").read_text())["verdict"] == "agree"
@@ -100,15 +90,13 @@ def test_a_scene_comes_from_standard_input(tmp_path: Path) -> None:
 
 def test_a_terminal_of_ascii_shows_other_characters_as_escapes(tmp_path: Path) -> None:
     scene = short_scene(tmp_path, "é\x1b[31m.toml", title='"Größe \\u001b[2J \\u202e"')
-    for more in (
-        {"PYTHONIOENCODING": "ascii"},
-        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
-    ):
-        done = run("plan", scene, env=ENVIRONMENT | more)
-        assert (done.returncode, complaints(done.stderr)) == (0, [])
-        assert "Gr\\xf6\\xdfe \\x1b[2J \\u202e" in done.stdout.splitlines()[0]
-        assert done.stdout.isascii()
-        assert "\x1b" not in done.stdout
+    done = run(
+        "plan", scene, env=ENVIRONMENT | {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    )
+    assert (done.returncode, complaints(done.stderr)) == (0, [])
+    assert "Gr\\xf6\\xdfe \\x1b[2J \\u202e" in done.stdout.splitlines()[0]
+    assert done.stdout.isascii()
+    assert "\x1b" not in done.stdout
 
 
 def started(*words: str) -> subprocess.Popen[str]:
@@ -200,8 +188,8 @@ def with_fake(folder: Path, *words: str, program: str = "pointcoord") -> subproc
     return subprocess.run(command, capture_output=True, text=True, env=env, cwd=folder, check=False)
 
 
-@pytest.mark.parametrize("file", ["validate.py", "validate/__init__.py"])
-def test_a_validate_of_another_distribution_is_told_by_name(file: str, tmp_path: Path) -> None:
+def test_a_validate_of_another_distribution_is_told_by_name(tmp_path: Path) -> None:
+    file = "validate/__init__.py"
     files = {
         file: "",
         "configthing-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: configthing\n",
@@ -217,11 +205,10 @@ def test_a_validate_of_another_distribution_is_told_by_name(file: str, tmp_path:
     assert "pip uninstall configthing, then pip install --force-reinstall --no-deps pointcoord" in line
 
 
-@pytest.mark.parametrize("words", [["hard", "--list"], ["study", "random", "--records", "x"]])
-def test_without_the_extra_one_line_names_it(words: list[str], tmp_path: Path) -> None:
+def test_without_the_extra_one_line_names_it(tmp_path: Path) -> None:
     missing = 'raise ModuleNotFoundError("No module named \'flint\'", name="flint")\n'
     (tmp_path / "flint.py").write_text(missing)
-    done = with_fake(tmp_path, *words)
+    done = with_fake(tmp_path, "hard", "--list")
     assert (done.returncode, done.stdout) == (2, "")
     line = only_line(done.stderr)
     assert "'flint'" in line
@@ -231,11 +218,8 @@ def test_without_the_extra_one_line_names_it(words: list[str], tmp_path: Path) -
 @pytest.mark.parametrize(
     ("words", "program"),
     [
-        ("simulate steer", "pointcoord"),
         ("sweep steer --vary strut_top.z=0,1 --instants 2", "pointcoord"),
         ("table steer", "validate"),  # the package itself is the program
-        ("plan steer", "validate.cli"),
-        ("draw steer", "pointcoord"),
     ],
 )
 def test_solving_needs_no_extra(words: str, program: str, tmp_path: Path) -> None:

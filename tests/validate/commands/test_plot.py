@@ -1,7 +1,5 @@
 """What `plot` draws is what was computed, with its units and signs."""
 
-import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +14,6 @@ from validate.curves.numbers import Curves, found, numbers_of, usual
 from validate.curves.of_file import read_written
 from validate.errors import UsageError
 from validate.output.columns import ENDINGS
-from validate.tables.errors import FileError
 
 WISHBONE = Scene.load("double-wishbone")
 MOTION = simulate(WISHBONE)
@@ -38,23 +35,6 @@ def test_few_words_name_the_number_that_the_motion_has() -> None:
     assert (np.stack(read("angular_velocity"), axis=-1) == MOTION.angular_velocity["knuckle"]).all()
     (rack,) = read("rack")
     assert rack == pytest.approx(15.0 * np.sin(4.0 * MOTION.times), abs=1e-12)
-
-
-def test_travel_is_the_wheel_s_way_up_in_the_car_whatever_the_chassis_does() -> None:
-    heaving = Scene.load("bounce-on-a-heaving-chassis")
-    still = heaving.model_copy(update={"inputs": {k: v for k, v in heaving.inputs.items() if k != "heave"}})
-    assert heaving.inputs.keys() - still.inputs.keys() == {"heave"}
-    travels = []
-    for scene in (heaving, still):
-        (travel,) = found("travel", numbers_of(scene))
-        motion = simulate(scene)
-        travels.append(travel.read(motion, motion))
-    assert np.ptp(travels[0]) > 10.0
-    # Adding the heave of up to 100 mm and taking it away rounds by 2^-53 of some 1000 mm, twice.
-    assert travels[0] == pytest.approx(travels[1], abs=1e-12, rel=0.0)
-    # The drawn wheel stands at z = 210 mm.
-    (travel,) = read("travel")
-    assert travel == pytest.approx(MOTION.position["wheel_centre"][:, 2] - 210.0, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -103,18 +83,6 @@ def test_no_label_of_a_picture_reaches_over_its_edge_or_another_panel() -> None:
         assert not [(a, b) for i, a in enumerate(labels) for b in labels[:i] if a.overlaps(b)]
 
 
-def test_a_number_that_does_not_change_is_a_straight_line_and_no_rounding() -> None:
-    steer = Scene.load("steer")
-    motion = simulate(steer)
-    across, (kingpin,) = found("time", numbers_of(steer)), found("kingpin", numbers_of(steer))
-    rounding = 2.0**-53 * (-1.0) ** np.arange(len(motion.times))
-    rounded = replace(kingpin, read=lambda *of: kingpin.read(*of) * (1.0 + rounding))
-    (axes,) = picture.figure(Curves(across, (rounded,)), lambda n: n.shown(motion, motion), "").axes
-    assert np.ptp(axes.lines[0].get_ydata()) > 0.0
-    low, high = axes.get_ylim()
-    assert high - low > 1.0
-
-
 def test_the_same_scene_gives_the_same_bytes_and_its_title_is_text(
     tmp_path: Path, capsysbinary: pytest.CaptureFixture[bytes]
 ) -> None:
@@ -137,15 +105,6 @@ def test_a_point_that_the_scene_does_not_report_is_said_how_to_have() -> None:
             found(words, numbers_of(scene))
     with pytest.raises(UsageError, match="is more than one number"):
         found("z", numbers_of(scene))
-
-
-def test_without_matplotlib_the_extra_is_named(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert main(["plot", "bounce"]) == 2
-    (said,) = capsys.readouterr().err.splitlines()
-    assert "pip install 'pointcoord[plot]'" in said
 
 
 @pytest.fixture(scope="module")
@@ -180,26 +139,6 @@ def test_a_file_of_a_sweep_has_a_curve_for_each_design(ending: str, swept: Path)
         assert np.array_equal(line[:, 1], rows, equal_nan=True)
     assert bar.get_ylabel() == "tie_rod_inner.y [mm]"
     assert axes.get_ylabel() == "camber [deg]\n+ where the wheel leans out at the top"
-
-
-def test_the_designs_of_a_file_are_told_apart_in_any_order_of_its_rows(swept: Path, tmp_path: Path) -> None:
-    head, *lines = (swept / "sweep.csv").read_text(encoding="utf-8").splitlines()
-    by_time = sorted(lines, key=lambda line: float(line.split(",")[2]))
-    (tmp_path / "mixed.csv").write_text("\n".join([head, *by_time]), encoding="utf-8")
-    whole, mixed = (read_written(str(path)) for path in (swept / "sweep.csv", tmp_path / "mixed.csv"))
-    for path, values in whole.values.items():
-        assert np.array_equal(values, mixed.values[path], equal_nan=True)
-
-
-def test_arrays_that_are_no_columns_are_refused(tmp_path: Path) -> None:
-    for name, arrays in {
-        "unlike": {"a": np.zeros(3), "b": np.zeros(4)},
-        "deep": {"a": np.zeros((2, 2, 2))},
-        "alone": {"a": np.zeros(())},
-    }.items():
-        np.savez(tmp_path / f"{name}.npz", **arrays)
-        with pytest.raises(FileError, match="holds no columns of numbers"):
-            read_written(str(tmp_path / f"{name}.npz"))
 
 
 @pytest.mark.parametrize(

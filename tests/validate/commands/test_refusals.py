@@ -56,11 +56,17 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     ("validate steer --save-baseline -", 2, ["is not text"]),
     ("validate steer --baseline none.npz", 2, ["none.npz", "No such file", "--save-baseline"]),
     ("validate steer --baseline FILE --json FILE", 2, ["would overwrite"]),
-    ("validate SCENE --junit SCENE", 2, ["would overwrite"]),
+    ("validate SCENE --junit SCENE", 2, ["would overwrite the scene"]),
+    ("simulate SCENE -o SCENE", 2, ["would overwrite the scene"]),
+    ("simulate bounce -o no/x.csv", 4, ["no/x.csv: "]),
+    ("draw bounce -o no/x.svg", 4, ["no/x.svg: "]),
     ("validate steer --summary none/x", 4, ["there is no folder"]),
     ("validate steer --save-baseline EMPTY", 4, ["Is a directory"]),
     ("validate steer --report ''", 2, ["--report '' names no folder"]),
     ("validate steer --solver pathlib:nope --report OUT", 2, ["has no 'nope'"]),
+    ("validate --data missing.csv steer", 2, ["missing.csv: cannot be read"]),
+    ("validate --data missing.csv", 2, ["no scene is given with --data"]),
+    ("validate --data missing.csv steer --accuracy 1e308", 2, ["allowed: a number from 0 to 1e+12"]),
     ("validate steer --data x --save-baseline OUT", 2, ["--save-baseline does not go with --data"]),
     *(
         (f"validate --tables {words}", 2, [f"{option} does not go with --tables"])
@@ -191,6 +197,8 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(studying, "measure", lambda *_: pytest.fail("measured"))
+    for name in ("solved.simulate", "comparison.examine"):
+        monkeypatch.setattr(f"validate.commands.{name}", lambda *_, **__: pytest.fail("solved"))
     return tmp_path
 
 

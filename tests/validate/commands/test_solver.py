@@ -29,12 +29,10 @@ RACK += "    return {'position': {'tie_rod_inner': place}}\n"
 # What becomes of a strut with it; a double wishbone it answers.
 ENDS = {
     "crashes": ("os.kill(os.getpid(), 11)", "was ended by SIGSEGV"),
-    "interrupts": ("raise KeyboardInterrupt", "KeyboardInterrupt"),
-    "exits": ("raise SystemExit(5)", "SystemExit: 5"),
-    "reads": ("input()", "EOFError"),
     "answers": ("return None", "it answers with None; needed: a mapping"),
+    "reads": ("input()", "EOFError"),
 }
-HANGS = {"hangs": "while True: pass", "waits": "os.system('sleep 60')"}
+HANGS = {"hangs": "while True: pass"}
 MODULES = {
     "right": RIGHT,
     "prints": 'import os\nprint("hello")\n'
@@ -43,10 +41,8 @@ MODULES = {
     "wrong": f"{WHEEL}{{'camber': -a['camber'], 'toe': a['toe']}}\n",
     "raises": "def solve(given):\n    return given['strut']\n\nclass Twice:\n  def __init__(self, a): ...\n",
     "chassis": CHASSIS,
-    "broken": "import nothing_of_that_name\n",
     "odd": "x = 1 / 0\n",
     "unread": "def solve(\n",
-    "ends": "import os\nos._exit(7)\n",
     **{
         name: f"import os\ndef solve(given):\n{STRUT}{what}\n{RACK}"
         for name, what in (HANGS | {name: what for name, (what, _) in ENDS.items()}).items()
@@ -95,14 +91,6 @@ def test_a_solver_s_numbers_decide_and_what_it_does_not_give_is_listed(
     assert "no verdict: no number that is given is tested; camber, toe: not tested: " in line
 
 
-def test_another_solver_than_the_baselines_is_no_verdict(
-    solvers: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert run("right", "off-axis-strut.toml", "--save-baseline", "b.npz") == 0
-    assert run("prints", "off-axis-strut.toml", "--baseline", "b.npz", "-q") == 3
-    assert "own.prints:solve in the place of own.right:solve" in capfd.readouterr().err
-
-
 def test_what_would_explain_a_disagreement_is_in_the_test_results_and_in_the_summary(
     solvers: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -137,18 +125,12 @@ def test_json_is_alone_on_standard_output(solvers: Path) -> None:
         ("own.nowhere:solve", "", "'own.nowhere' that is not found"),
         ("own.right:solv", "", "(did you mean 'solve'?)"),
         ("own.raises:Twice", "", "cannot be made without arguments: TypeError"),
-        ("own.broken:solve", "", "No module named 'nothing_of_that_name' at broken.py:1"),
         ("own.odd:solve", "", "ZeroDivisionError: division by zero at odd.py:1"),
         ("own.unread:solve", "", "SyntaxError: '(' was never closed (unread.py, line 1); mend the module"),
-        ("own.ends:solve", "", "cannot be imported: its process ended with exit status 7"),
         ("own/right.py:solve", "", "try own.right:solve"),
-        ("own.right", "", "give MODULE:NAME"),
         ("", "", "give MODULE:NAME"),
         ("math:pi", "", "is of type float, which is no solver"),
         ("own.right:solve", "--accuracy 0", "give a length above 0"),
-        ("own.right:solve", "--accuracy fine", "invalid float value: 'fine'"),
-        ("own.right:solve", "--first absolute", "--first does not go with --solver"),
-        ("own.right:solve", "--second nobody", "no formulation is called 'nobody'"),
         ("own.right:solve", "--solver-timeout 0", "allowed: a positive, finite number"),
         ("own.right:solve", "--solver-timeout 5 --in-process", "leave one of them out"),
     ],
@@ -187,18 +169,17 @@ def test_a_solver_that_crashes_or_reads_loses_that_scene_only(
     assert "2 of 3 scenes agree" in Path("s.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("module", HANGS)
 def test_a_solver_that_hangs_is_stopped_and_made_anew(
-    solvers: Path, capfd: pytest.CaptureFixture[str], module: str
+    solvers: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     # Only who never answers is held to a short limit: a right one may wait for the machine.
-    assert run(module, "off-axis-strut.toml", "--solver-timeout", "0.5") == 3
+    assert run("hangs", "off-axis-strut.toml", "--solver-timeout", "0.5") == 3
     (line,) = complaints(capfd.readouterr().err)
     assert "took longer than 0.5 s and was stopped; --solver-timeout S allows more" in line
     strut, wishbone = (
         given_to_solver(Scene.load(name)) for name in ("off-axis-strut.toml", "double-wishbone.toml")
     )
-    with Apart(f"own.{module}:solve", limit=0.5) as solver:
+    with Apart("own.hangs:solve", limit=0.5) as solver:
         with pytest.raises(SolverFailed, match="was stopped"):
             solver(strut)
         solver.limit = 600.0
@@ -235,20 +216,6 @@ def test_arrays_of_other_libraries_and_odd_answers_come_through_as_they_would_in
         told.append(out)
     assert told[0] == told[1]
     assert "velocity is of type Odd" in told[0]
-
-
-def test_how_much_was_compared_is_said_and_points_of_the_chassis_are_no_agreement(
-    solvers: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert run("chassis", "off-axis-strut.toml", "--junit", "t.xml") == 3
-    out, why = capfd.readouterr().out, "no verdict: whatever agrees is what the solver was given"
-    assert why in out
-    count = sum(map(len, given_to_solver(Scene.load("off-axis-strut"))["asked"].values()))
-    assert out.splitlines()[-2].endswith(
-        f"; 1 of {count} numbers compared, 1 of them data that the solver was given, {count - 1} not given."
-    )
-    (error,) = ElementTree.parse("t.xml").getroot().iter("error")
-    assert error.get("message", "").startswith(why)
 
 
 def test_what_is_given_and_cannot_be_used_ends_with_3_and_is_an_error_of_the_test_results(

@@ -9,7 +9,6 @@ import jsonschema
 import numpy as np
 import pyarrow.parquet
 import pytest
-from program import short_scene
 
 from pointcoord import Scene, simulate, sweep
 from pointcoord.results.named_columns import columns
@@ -124,15 +123,7 @@ def test_random_designs_are_the_same_each_time_and_spread_as_asked(tmp_path: Pat
     assert 1.8 < np.abs(one["strut_top.y [mm]"] - y).max() <= 2.0
 
 
-def test_a_file_that_is_there_stays_whole_if_the_sweep_ends_early(tmp_path: Path) -> None:
-    target, bad = tmp_path / "t.csv", short_scene(tmp_path, arm_angle="{ constant = 9.0 }")
-    target.write_text("mine", encoding="utf-8")
-    assert main(["sweep", bad, "--vary", "strut_top.x=0,1", "-o", str(target)]) == 3
-    assert target.read_text(encoding="utf-8") == "mine"
-    assert {path.name for path in tmp_path.iterdir()} == {"t.csv", "short.toml"}
-
-
-@pytest.mark.parametrize("ending", [".csv", ".npz", ".parquet"])
+@pytest.mark.parametrize("ending", [".csv", ".parquet"])
 def test_a_table_is_written_in_the_memory_of_a_block(ending: str, tmp_path: Path) -> None:
     scene = Scene.load(SCENE)
     scene = scene.model_copy(update={"time": scene.time.model_copy(update={"samples": 101})})

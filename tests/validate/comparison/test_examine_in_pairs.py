@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 
-import pytest
-
-from pointcoord import MotionTooLong, MotionTooRough, Scene, SceneError
+from pointcoord import Scene, SceneError
 from validate.comparison.examined import Examined, examine
 from validate.exit_status import ExitStatus
-from validate.formulations.protocol import FormulationError, Solution
+from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 
 SCENE = Scene.load("steer")
@@ -35,10 +33,6 @@ class Fixed:
         return replace(self.answer, formulation=self.name)
 
 
-def refuses(name: str, reason: Exception) -> FormulationError:
-    return FormulationError(name, reason)
-
-
 def examined(answers: Mapping[str, Solution | Exception], *pairs: str, printed: bool = False) -> Examined:
     """Pairs such as "a b"."""
     others = {name: Fixed(name, answer) for name, answer in answers.items()}
@@ -46,28 +40,6 @@ def examined(answers: Mapping[str, Solution | Exception], *pairs: str, printed: 
     found = examine("my scene", SCENE, two, printed, others=others)
     assert all(one.asked == 1 for one in others.values())
     return found
-
-
-def test_who_agrees_ends_with_0_and_has_nothing_to_complain_of() -> None:
-    found = examined({"a": solved(), "b": solved(), "c": solved()}, "a b", "c b")
-    assert found.status is ExitStatus.AGREE
-    assert (found.complaint, found.refusals, found.failures, found.printed) == ("", (), (), None)
-    assert found.solved == ("a", "b", "c")
-    assert [(o.rows[0].first, o.rows[0].second) for o in found.outcomes] == [("a", "b"), ("c", "b")]
-
-
-def test_a_refusal_is_no_verdict_and_says_by_whom_and_who_solved_it() -> None:
-    answers = {"a": solved(), "b": refuses("b", ValueError("too bumpy")), "c": solved()}
-    found = examined(answers, "a b", "c b")
-    assert found.status is ExitStatus.NO_VERDICT
-    assert [(r.formulation, r.error) for r in found.refusals] == [("b", "ValueError")]
-    assert found.failures == ()
-    assert found.complaint == "my scene: too bumpy; refused by b (ValueError); solved by a and c"
-    every = examined({name: refuses(name, ValueError("too bumpy")) for name in "abc"}, "a b", "c b")
-    assert every.complaint == (
-        "my scene: too bumpy; refused by a (ValueError), b (ValueError) and c (ValueError)"
-    )
-    assert every.solved == ()
 
 
 def test_hardpoints_that_make_no_mechanism_are_a_wrong_input_under_the_users_name() -> None:
@@ -98,31 +70,3 @@ def test_after_a_failure_no_other_pair_is_tried() -> None:
     assert [one.asked for one in others.values()] == [1, 1, 0]
     assert found.status is ExitStatus.NOT_FINISHED
     assert found.solved == ("a",)
-
-
-@pytest.mark.parametrize(
-    ("reason", "advised"),
-    [
-        (MotionTooLong(10, 0.5, 0.0, 1.0), True),
-        (MotionTooRough("rack", 0.5), True),
-        (ValueError("too bumpy"), False),
-    ],
-    ids=["long", "rough", "bumpy"],
-)
-def test_only_who_is_advised_the_method_newton_is_told_how_to_ask_for_it(
-    reason: Exception, advised: bool
-) -> None:
-    found = examined({"a": solved(), "b": refuses("b", reason)}, "a b")
-    assert ("(--first pointcoord-newton)" in found.complaint) == advised
-
-
-def test_the_printed_formulas_are_compared_if_asked_for_and_count_for_nothing() -> None:
-    answers = {"a": solved(), "b": solved()}
-    plain, both = (examined(answers, "a b", printed=printed) for printed in (False, True))
-    assert plain.printed is None
-    assert both.printed is not None
-    assert both.printed.disagreements  # the knuckle's turn of the printed formulas is 0/0
-    assert both.status is plain.status is ExitStatus.AGREE
-    assert len(both.outcomes) == 1
-    without = examined({"a": refuses("a", ValueError("no")), "b": solved()}, "a b", printed=True)
-    assert (without.printed, without.unprinted) == (None, None)

@@ -14,8 +14,6 @@ from validate.cli import main
 from validate.exit_status import ExitStatus, combined
 from validate.formulations.absolute_coordinates import AbsoluteCoordinates
 
-PAIRS = (("pointcoord", "absolute"), ("pointcoord-newton", "absolute"))
-
 
 def said(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
     return json.loads(capsys.readouterr().out)
@@ -154,42 +152,3 @@ def test_a_disagreement_comes_before_every_other_status() -> None:
             best = next((status for status in scenes if status in chosen), ExitStatus.AGREE)
             assert combined(chosen) is best
     assert combined(()) is ExitStatus.AGREE
-
-
-def test_results_do_not_go_over_the_scene_that_they_come_from(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    scene = short_scene(tmp_path, "scene.csv")
-    before = Path(scene).read_text()
-    assert main(["simulate", scene, "-o", scene]) == 2
-    assert main(["validate", scene, "--json", scene]) == 2
-    assert capsys.readouterr().err.count("would overwrite the scene") == 2
-    assert Path(scene).read_text() == before
-
-
-@pytest.mark.parametrize(
-    ("words", "status"),
-    [
-        (["simulate", "-o", "no/x.csv"], 4),
-        (["simulate", "-o", "x.xlsx"], 2),
-        (["draw", "-o", "x.png"], 2),
-        (["draw", "-o", "no/x.svg"], 4),
-        (["validate", "--json", "no/x.json"], 4),
-        (["validate", "--json", "/"], 4),
-    ],
-)
-def test_a_target_that_cannot_be_written_is_told_before_anything_is_solved(
-    words: list[str], status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def never(*_: object) -> None:
-        raise AssertionError("solved")
-
-    monkeypatch.setattr("validate.commands.solved.simulate", never)
-    monkeypatch.setattr("validate.commands.comparison.examine", never)
-    monkeypatch.setattr("validate.commands.scenes.closed_drawing", never)
-    command, option, target = words
-    assert main([command, "bounce", option, target]) == status
-    out, err = capsys.readouterr()
-    assert out == ""
-    (line,) = err.splitlines()
-    assert line.startswith(f"pointcoord: {target}: ")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from pointcoord import Scene, simulate
-from validate.comparison.compare import compare, compare_solutions, gaps_between
+from validate.comparison.compare import compare, compare_solutions
 from validate.formulations.registry import formulation
 
 CENTRES = (
@@ -85,11 +85,6 @@ def test_a_screw_pitch_that_is_0_everywhere_is_tested() -> None:
     scene = Scene.from_mapping(LEVEL | {"effects": ["screw_axis"]}, "parallel arms")
     outcome = compare(scene, "pointcoord", "absolute")
     assert [row.verdict for row in outcome.rows if row.name == "screw_pitch"] == ["agrees"]
-
-
-def test_none_beside_a_number_is_the_worst_difference_and_none_beside_none_is_no_difference() -> None:
-    mine, other = np.array([1.0, np.nan, np.nan]), np.array([1.0, 2.0, np.nan])
-    assert gaps_between(mine, other, "mm").tolist() == [0.0, np.inf, 0.0]
 
 
 def straight_ahead() -> Scene:

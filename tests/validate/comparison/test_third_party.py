@@ -1,6 +1,7 @@
 """A formulation of somebody else: a class of a few lines that gives arrays by name, right or wrong."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,29 +15,6 @@ COUNT = len(SCENE.instants)
 WHEEL = compare(SCENE, "pointcoord", "absolute").solutions[1].numbers["position"]["wheel_centre"]
 
 
-class Mine:
-    """Knows one point of the car, to a millionth of a millimetre."""
-
-    name = "mine"
-
-    def solve(self, scene: Scene) -> Solution:
-        numbers = {"position": {"wheel_centre": np.round(WHEEL, 6)}}
-        claims = {"position": {"wheel_centre": np.full((COUNT, 3), 0.51e-6)}}
-        return Solution("mine", scene.instants, numbers, Accuracy(np.ones(COUNT), claims))
-
-
-def test_what_it_gives_is_compared_and_the_rest_is_told() -> None:
-    outcome = compare(SCENE, "pointcoord", Mine())
-    rows = {row.name: row for row in outcome.rows if row.quantity == "position"}
-    # A millionth of a millimetre is a thousand times what pointcoord claims: it tests nothing of pointcoord.
-    assert rows["wheel_centre"].verdict == "not tested"
-    assert rows["wheel_centre"].share <= 1.0
-    assert rows["wheel_centre"].rests_on == "mine"
-    assert {row.verdict for name, row in rows.items() if name != "wheel_centre"} == {"not given"}
-    assert "mine gives no velocity" in outcome.missing
-    assert any(told.startswith("mine gives no position of lower_arm_front, ") for told in outcome.missing)
-
-
 def with_solution(make: Callable[[Scene], Any]) -> Outcome:
     class Other:
         name = "mine"
@@ -45,6 +23,22 @@ def with_solution(make: Callable[[Scene], Any]) -> Outcome:
             return make(scene)
 
     return compare(SCENE, "pointcoord", Other())
+
+
+def test_what_it_gives_is_compared_and_the_rest_is_told() -> None:
+    numbers = {"position": {"wheel_centre": np.round(WHEEL, 6)}}
+    claims = {"position": {"wheel_centre": np.full((COUNT, 3), 0.51e-6)}}
+    outcome = with_solution(
+        lambda scene: Solution("mine", scene.instants, numbers, Accuracy(np.ones(COUNT), claims))
+    )
+    rows = {row.name: row for row in outcome.rows if row.quantity == "position"}
+    # A millionth of a millimetre is a thousand times what pointcoord claims: it tests nothing of pointcoord.
+    assert rows["wheel_centre"].verdict == "not tested"
+    assert rows["wheel_centre"].share <= 1.0
+    assert rows["wheel_centre"].rests_on == "mine"
+    assert {row.verdict for name, row in rows.items() if name != "wheel_centre"} == {"not given"}
+    assert "mine gives no velocity" in outcome.missing
+    assert any(told.startswith("mine gives no position of lower_arm_front, ") for told in outcome.missing)
 
 
 def test_instants_may_come_in_any_order_and_twice_and_the_first_number_of_each_counts() -> None:
@@ -67,15 +61,8 @@ def test_instants_may_come_in_any_order_and_twice_and_the_first_number_of_each_c
     assert row.instant in SCENE.instants[kept]
 
 
-SURE = Accuracy(np.ones(COUNT))
-
-
-def test_a_misspelt_point_is_told_what_was_meant() -> None:
-    numbers = {"position": {"wheel_center": WHEEL, "brake": WHEEL}}
-    outcome = with_solution(lambda scene: Solution("mine", scene.instants, numbers, SURE))
-    told = "mine gives position of 'wheel_center', which is left out (did you mean 'wheel_centre'?)"
-    assert told in outcome.missing
-    assert not any("brake" in line for line in outcome.missing)
+ONES = np.ones(COUNT)
+SURE = Accuracy(ONES)
 
 
 @pytest.mark.parametrize(
@@ -85,6 +72,10 @@ def test_a_misspelt_point_is_told_what_was_meant() -> None:
         ({"position": [WHEEL]}, "mine: position given as list; needed: arrays by name"),
         ([WHEEL], "mine: its numbers given as list; needed: arrays by name"),
         (
+            {"position": {"wheel_center": WHEEL}},
+            "mine gives position of 'wheel_center', which is left out (did you mean 'wheel_centre'?)",
+        ),
+        (
             {"wheel": {"camber": WHEEL}},
             f"wheel angle of camber has the shape ({COUNT}, 3); needed: ({COUNT},)",
         ),
@@ -92,28 +83,38 @@ def test_a_misspelt_point_is_told_what_was_meant() -> None:
 )
 def test_numbers_that_cannot_be_read_are_told_with_what_is_needed(numbers: Any, said: str) -> None:
     outcome = with_solution(lambda scene: Solution("mine", scene.instants, numbers, SURE))
-    assert any(said in note for note in outcome.notes), outcome.notes
+    assert any(said in told for told in (*outcome.notes, *outcome.missing))
     assert not outcome.agreed
 
 
+def claiming(claims: Any) -> Solution:
+    return Solution("mine", SCENE.instants, {"position": {"wheel_centre": WHEEL}}, Accuracy(ONES, claims))
+
+
 @pytest.mark.parametrize(
-    ("accuracy", "said"),
+    ("make", "said"),
     [
-        (lambda: None, "its accuracy is a NoneType; needed: an Accuracy"),
+        (lambda: replace(claiming({}), accuracy=None), "its accuracy is a NoneType; needed: an Accuracy"),
+        (lambda: claiming({"speed": {}}), "'speed' is of no known quantity; allowed: position"),
+        (lambda: claiming({"position": [1e-9]}), "position is a list; allowed: arrays by"),
+        (lambda: claiming([1e-9]), "claims is a list; allowed: arrays by quantity and name"),
         (
-            lambda: Accuracy(np.ones(COUNT), {"speed": {}}),
-            "'speed' is of no known quantity; allowed: position",
+            lambda: claiming({"velocity": {"wheel_centre": np.full((COUNT, 3), -1e-9)}}),
+            "velocity of wheel_centre is -1e-09 at instant number 0",
         ),
-        (lambda: Accuracy(np.ones(COUNT), {"position": [1e-9]}), "position is a list; allowed: arrays by"),
-        (lambda: Accuracy(np.ones(COUNT), [1e-9]), "claims is a list; allowed: arrays by quantity and name"),
+        (lambda: claiming({"velocity": {"wheel_centre": np.full((COUNT, 3), np.nan)}}), "is nan"),
+        (lambda: claiming({"velocity": {"wheel_centre": np.ones((COUNT, 3), int)}}), "is of type int64"),
+        (lambda: claiming({"velocity": {"wheel_centre": np.ones(COUNT)}}), "has the shape"),
+        (lambda: replace(claiming({}), times=SCENE.instants[:, None]), "times"),
+        (lambda: {"position": {"wheel_centre": WHEEL}}, ""),
+        (lambda: replace(claiming({}), accuracy=Accuracy(-ONES)), ""),
     ],
 )
-def test_an_accuracy_that_is_none_is_a_refusal_that_says_what_is_needed(
-    accuracy: Callable[[], Any], said: str
+def test_what_is_no_solution_and_a_claim_that_is_no_bound_are_refusals(
+    make: Callable[[], Any], said: str
 ) -> None:
-    numbers = {"position": {"wheel_centre": WHEEL}}
     with pytest.raises(FormulationError, match=r"^mine: ") as caught:
-        with_solution(lambda scene: Solution("mine", scene.instants, numbers, accuracy()))
+        with_solution(lambda scene: make())
     assert said in str(caught.value)
 
 

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import pytest
-from made_rows import dialled, grown, measured, study
+from made_rows import grown, measured, study
 
-from validate.cost.findings import cheapest, growths, races, sentences
+from validate.cost.findings import growths, races, sentences
 from validate.cost.table import Row, frame
 
 
@@ -46,14 +46,6 @@ def test_the_references_own_radius_counts_as_error() -> None:
     assert verdicts(rows)[1e-6] == "ours"
 
 
-def test_of_several_settings_the_cheapest_that_reaches_is_taken() -> None:
-    rows = dialled("a", "series", 1e-5, 0.1, 1e-13)
-    best = cheapest(frame(rows))
-    best = best[best.quantity == "position"].set_index("accuracy")
-    # The error is 0.3 of the setting, and finer settings take longer.
-    assert best.value.to_dict() == pytest.approx({1e-3: 1e-3, 1e-6: 1e-6, 1e-9: 1e-9})
-
-
 @pytest.mark.parametrize("power", [0.5, 1.0, 2.8])
 def test_planted_exponents_come_out_of_the_largest_sizes(power: float) -> None:
     sizes = [10**k for k in range(2, 7)]
@@ -66,16 +58,6 @@ def test_planted_exponents_come_out_of_the_largest_sizes(power: float) -> None:
     assert time.value == pytest.approx(1e-6 * 1e6**power)
 
 
-def test_fixed_costs_hide_no_growth_and_the_set_up_counts_but_against_instants() -> None:
-    sizes = [10**k for k in range(1, 8)]
-    (one,) = growths(frame(grown("a", "series", "", "instants", sizes, 1e-3, 1e-6, set_up=5.0))).itertuples()
-    assert one.exponent == pytest.approx(1.0, abs=0.01)
-    (one,) = growths(
-        frame(grown("a", "series", "", "designs", sizes[:3], 0.0, 1e-6, set_up=5.0))
-    ).itertuples()
-    assert one.value == pytest.approx(5.0 + 1e-3)
-
-
 def test_three_sentences_say_who_is_quickest_what_digits_cost_and_where_others_win() -> None:
     quickest, digits, won = sentences(frame(study()))
     assert quickest.startswith("A pose to 1e-9 mm of position takes series 8.95 us to 14.3 us, mujoco 37 us")
@@ -86,11 +68,3 @@ def test_three_sentences_say_who_is_quickest_what_digits_cost_and_where_others_w
     assert "other ways than pointcoord's win 0" in won
     # Where another way is quicker it is named.
     assert "win 3 (relative)" in sentences(frame(raced(2e-5, 1e-5)))[-1]
-
-
-def test_nothing_measured_gives_nothing_to_say() -> None:
-    failed = Row("accuracy", "a", "series", verdict="failed", reason="why")
-    for rows in ([], [failed]):
-        assert sentences(frame(rows)) == []
-        assert races(frame(rows)).empty
-        assert growths(frame(rows)).empty

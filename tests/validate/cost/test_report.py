@@ -3,7 +3,6 @@
 import csv
 import io
 import xml.etree.ElementTree as ET
-from dataclasses import replace
 
 from made_rows import alike, measured, study
 
@@ -12,7 +11,6 @@ from validate.cost.picture import headline
 from validate.cost.report import NOTHING, Report
 from validate.cost.table import Row
 from validate.cost.ways.registry import WAYS
-from validate.output.table import Table as Shown
 from validate.output.table import markdown
 
 ROWS = tuple(study())
@@ -28,14 +26,6 @@ def test_a_table_has_the_quickest_way_first_and_the_dialled_number() -> None:
     assert reached["printed"][1:4] == ("not reached",) * 3
     assert reached["scipy-root"][3:5] == ("not reached", "2.0e-08")
     assert "one solve serves any instant" in REPORT.text()
-
-
-def test_what_has_no_numbers_is_told_with_its_reason_once() -> None:
-    (table,) = [one for one in REPORT.tables() if one.caption == "Without numbers"]
-    told = {row[0]: row[1:] for row in table.rows}
-    assert told["bounce exudyn"] == ("failed", "no convergence at 1.25 s")
-    assert told["double-wishbone printed"][0] == "left out"
-    assert told["chain relative"] == ("left out", "1500 unknowns: would take an hour")
 
 
 def test_the_csv_is_the_long_table_with_every_digit() -> None:
@@ -69,13 +59,6 @@ def test_nothing_measured_is_said_and_draws_nothing() -> None:
     assert "failed" in nothing.text()
     assert "locked" in nothing.text()
     assert nothing.headline() is None
-
-
-def test_names_of_a_users_scene_are_text_everywhere() -> None:
-    rows = [replace(row, scene="mine/a|b *c*.toml") for row in measured("", "series", "", alike(1e-9), 1e-5)]
-    report = Report("rows", "", False, tuple(rows))
-    assert "a&#124;b" in report.markdown()
-    assert any(isinstance(part, Shown) for part in report.parts())
 
 
 def test_no_two_ways_share_a_line_or_a_mark_and_new_ones_have_looks_too() -> None:

@@ -11,7 +11,7 @@ from validate.strategies import scenes
 
 # The short profile searches briefly: `pointcoord study random` searches long.
 EXAMPLES = settings.default.max_examples if settings.default else 100
-searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 40)
+searched = settings(max_examples=EXAMPLES if EXAMPLES > 100 else 20)
 
 
 def require_agreement(outcome: Outcome) -> None:
@@ -36,7 +36,7 @@ def test_formulations_agree_on_random_cars_and_motions(scene: Scene) -> None:
     require_agreement(outcome)
 
 
-@settings(max_examples=10)
+@settings(max_examples=5)
 @given(scenes(samples=3))
 def test_the_map_agrees_on_random_cars_and_motions(scene: Scene) -> None:
     """A fold on the way of the inputs may keep a map from covering it; then it must say so."""
@@ -63,12 +63,3 @@ def test_a_tolerance_is_no_wider_than_its_derivation_needs() -> None:
             assert row.tolerance < 1e-12 * largest, row
             if row.quantity != "wheel" and row.difference > 0.0 and row.part < 1.0:
                 assert row.share > 1e-3, row
-
-
-def test_the_printed_formulas_fail_where_the_errata_say_and_nowhere_else() -> None:
-    wrong = {}
-    for name in ("bounce", "steer"):
-        outcome = compare(Scene.load(name), "pointcoord", "printed")
-        wrong[name] = {row.quantity for row in outcome.disagreements}
-    assert wrong["bounce"] == {"acceleration", "angular_acceleration"}  # eq. (23)
-    assert wrong["steer"] == {"angular_velocity", "angular_acceleration"}  # the quotient

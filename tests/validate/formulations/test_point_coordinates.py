@@ -49,7 +49,7 @@ def test_a_pose_that_nothing_is_proven_of_is_no_answer(monkeypatch: pytest.Monke
     assert reason.condition > 1e6  # of that instant; at the other it is below 100
 
 
-@pytest.mark.parametrize("tolerance", [1e-300, 1e-9, 1.0, 1e300])
+@pytest.mark.parametrize("tolerance", [1e-300, 1.0])
 def test_a_series_claims_what_it_leaves_out_and_a_coarse_one_is_no_test(tolerance: float) -> None:
     scene = Scene.load("steer").model_copy(update={"tolerance": tolerance})
     series, newton = (formulation(name).solve(scene) for name in ("pointcoord-as-asked", "pointcoord-newton"))
@@ -67,13 +67,7 @@ def test_a_series_claims_what_it_leaves_out_and_a_coarse_one_is_no_test(toleranc
         assert {row.rests_on for row in outcome.undecided} == {"pointcoord-as-asked"}
 
 
-@pytest.mark.parametrize(
-    ("method", "tolerance"),
-    [
-        ("pointcoord", 1.0),
-        *((f"pointcoord{way}", 1e300) for way in ("", "-newton", "-newton-cold", "-chord")),
-    ],
-)
+@pytest.mark.parametrize(("method", "tolerance"), [("pointcoord", 1.0), ("pointcoord-chord", 1e300)])
 def test_a_comparison_solves_as_finely_as_rounding_allows_however_coarse_the_scene(
     method: str, tolerance: float
 ) -> None:
@@ -108,7 +102,7 @@ def test_a_law_too_rough_to_follow_finely_is_followed_as_the_scene_asks(
     assert asked[1:] == [1e-3]
 
 
-@pytest.mark.parametrize("quantity", ["velocity", "angular_acceleration", "wheel"])
+@pytest.mark.parametrize("quantity", ["velocity", "wheel"])
 def test_a_fault_of_a_number_does_not_widen_what_is_claimed_of_it(
     quantity: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

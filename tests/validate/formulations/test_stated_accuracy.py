@@ -14,7 +14,7 @@ from validate.cars.input_ends import drawn_inputs, end
 from validate.comparison.compare import Outcome, compare
 from validate.formulations.modelled import Found, Problem, asked_of
 from validate.formulations.protocol import NOTHING, Solution
-from validate.formulations.stated_accuracy import _more, accuracy_for
+from validate.formulations.stated_accuracy import accuracy_for
 from validate.formulations.trees import linkage_in
 from validate.hard.cars import scene_content
 from validate.peers.in_pinocchio import InPinocchio
@@ -95,13 +95,6 @@ def test_near_a_fold_the_tolerance_grows_as_the_pose_does(car) -> None:
         np.testing.assert_allclose(grown, [0.5, 1.5, 2.5], atol=0.2)
 
 
-@pytest.mark.parametrize("car", CARS, ids=lambda car: f"{car.suspension}-{car.closure}")
-def test_nearer_a_fold_than_the_accuracy_nothing_is_tested(car) -> None:
-    outcome = compared(closed_form, near_the_end(car, 1e-7), 1e-2)
-    assert {row.verdict for row in outcome.rows if row.difference > 1e-300} == {"not tested"}
-    assert not outcome.disagreements
-
-
 def test_of_a_number_that_does_not_exist_at_an_instant_nothing_is_said_there() -> None:
     content = scene_file("semi-trailing-arm")
     # Of the three instants at the second the pivot is right above the wheel centre, which goes along the car.
@@ -121,7 +114,7 @@ def test_of_a_number_that_does_not_exist_at_an_instant_nothing_is_said_there() -
 
 MODELS = ("absolute", "relative", "mujoco", "exudyn")
 # Numbers of random cars, among them such that are driven up to a fold.
-CARS_AT_RANDOM = (0, 3, 18, 29, 39, 48, 51, 59)
+CARS_AT_RANDOM = (0, 18, 39, 51)
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -139,9 +132,8 @@ def test_what_a_model_states_of_itself_covers_its_errors_and_is_near_to_them(nam
     assert np.median(claim[off] / error[off]) < 600.0
 
 
-@pytest.mark.parametrize("name", ["bounce-and-steer", "off-axis-strut", "double-wishbone"])
-def test_it_covers_what_an_early_end_of_newtons_method_leaves(name: str) -> None:
-    scene = Scene.load(name)
+def test_it_covers_what_an_early_end_of_newtons_method_leaves() -> None:
+    scene = Scene.load("double-wishbone")
     linkage, problem = linkage_in(scene), Problem.of(scene)
     program, inputs = InPinocchio(linkage), linkage.inputs(problem.laws)
     home = program.closed(1e-10)
@@ -182,8 +174,3 @@ def test_a_body_may_have_three_points_at_one_place() -> None:
     outcome = compare(Scene.from_mapping(content | {"mechanism": part}), "pointcoord", "absolute")
     assert outcome.agreed
     assert {row.name for row in outcome.rows} >= {*marks}
-
-
-def test_of_a_force_that_nothing_bounds_nothing_is_known() -> None:
-    unbounded, bounded = _more(np.array([np.inf, 2.0]), np.array([np.inf, 0.5])).tolist()
-    assert (unbounded, bounded) == (NOTHING, 1.5)

@@ -16,8 +16,6 @@ from validate.formulations.protocol import FormulationError
 from validate.formulations.refusals import DRAWING, INPUT, MOTION, START, why_refused
 from validate.formulations.registry import OUTSIDE, formulation
 from validate.formulations.trees import InTree
-from validate.hard.cars import BESIDE_CAR, PAPER_CAR, scene_content
-from validate.peers.errors import PeerError
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.motion import Poses, Rates
 from validate.strategies import scenes
@@ -28,7 +26,7 @@ Array = NDArray[np.float64]
 # Without shrinking, which takes minutes where a motion is long.
 PHASES = (Phase.explicit, Phase.generate)
 searched = settings(
-    max_examples=min(settings.default.max_examples if settings.default else 100, 20), phases=PHASES
+    max_examples=min(settings.default.max_examples if settings.default else 100, 8), phases=PHASES
 )
 
 
@@ -83,29 +81,6 @@ def test_a_fault_of_a_program_does_not_widen_what_it_claims() -> None:
         ("position", "tie_rod_outer"),
         ("angular_acceleration", "knuckle"),
     }
-
-
-@pytest.mark.parametrize("who", TREES)
-def test_a_motion_through_a_fold_is_refused_at_its_instant(who: str) -> None:
-    # The paper's tie rod ends at a rack travel of 130 mm.
-    scene = Scene.from_mapping(scene_content(PAPER_CAR, np.pi / 2, [0.0, 100.0], stop=2.0, samples=41), "far")
-    with pytest.raises(FormulationError, match="cannot be reached") as caught:
-        formulation(who).solve(scene)
-    assert why_refused(caught.value) == MOTION
-    reason = caught.value.reason
-    assert isinstance(reason, PeerError)
-    assert reason.instant is not None
-    assert scene.instants[reason.instant] == pytest.approx(1.3, abs=0.06)
-
-
-@pytest.mark.parametrize("who", TREES)
-def test_a_drawing_that_closing_makes_another_car_of_is_refused(who: str) -> None:
-    x, y, z = BESIDE_CAR.points["tie_rod_inner"]
-    points = {**BESIDE_CAR.points, "tie_rod_inner": (x + 40.0, y, z)}
-    points["rack_centre"] = BESIDE_CAR.points.get("rack_centre", (x, y, z))
-    scene = Scene.from_mapping(scene_content(replace(BESIDE_CAR, points=points), 1.6))
-    with pytest.raises(FormulationError, match="that is another car"):
-        formulation(who).solve(scene)
 
 
 @pytest.mark.parametrize("who", OUTSIDE)

@@ -49,12 +49,6 @@ def test_the_built_in_wishbone_comes_back_with_its_digits(
     assert found.scene.mechanism.side == "right"
 
 
-def test_a_table_in_inches_comes_back_to_rounding(tmp_path: Path) -> None:
-    # A mm is no finite number of inches: 28 digits of them are printed here, and a double holds 16.
-    for name, place in drawn(imported(tmp_path, table(per_unit="25.4", titles=""), unit="in")).items():
-        assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-24)
-
-
 def test_a_mirrored_wishbone_of_chrono_has_the_curves_of_ours(tmp_path: Path) -> None:
     found = imported(tmp_path, LEFT_CHRONO, mirror=True)
     # The file gives no inner point of the spin axis, only its direction.
@@ -139,18 +133,6 @@ def test_a_strut_of_chrono_has_its_axis_and_the_angles_that_it_says(
     assert np.tan(found.stands.angles["camber"]) == pytest.approx(np.tan(c) / cos(t), abs=1e-13)
 
 
-def test_no_angle_hangs_on_where_the_rod_ends_on_the_strut_axis(tmp_path: Path) -> None:
-    scene = imported(tmp_path, chrono("macpherson", STRUT.mechanism.points, -1)).scene
-    points = dict(scene.mechanism.points)
-    top, lower = (np.array(points[name]) for name in ("strut_top", "strut_lower"))
-    x, y, z = (top + 0.7 * (lower - top)).tolist()
-    part = scene.mechanism.model_copy(update={"points": points | {"strut_rod_end": (x, y, z)}})
-    expected, got = curves(scene), curves(scene.model_copy(update={"mechanism": part}))
-    for name, values in expected.items():
-        # The moved point misses its axis by rounding, 1e-13 mm, and nothing is told by it.
-        np.testing.assert_allclose(got[name], values, rtol=0, atol=2e-14, err_msg=name)
-
-
 def test_static_angles_make_the_spin_axis_that_a_file_lacks(tmp_path: Path) -> None:
     text = "\n".join(line for line in lotus_report().splitlines() if "spindle" not in line)
     with pytest.raises(FileError, match=r"lacks wheel_axis_inner.* --camber and --toe will do"):
@@ -187,19 +169,6 @@ def test_a_table_under_our_own_names_has_our_own_axes(car: Scene, ending: str, t
     rearward, _, up = np.subtract(points[high], points[low])
     # Leaning rearward at the top is positive; the drawing closes to 1e-13 mm over 130 mm at the least.
     assert found.stands.angles["caster"] == pytest.approx(np.arctan2(rearward, up), abs=1e-14)
-
-
-def test_a_strut_under_any_names_is_held_to_its_axes_as_well(tmp_path: Path) -> None:
-    # The top of this strut lies 530 mm above the wheel and 185 mm inboard of it.
-    points = STRUT.mechanism.points
-    own = table(points, signs=(-1, -1, 1), names={name: name for name in points})
-    with pytest.raises(FileError, match=r"lie as in x forward, y left, z up; .*forward,left,up of a left"):
-        imported(tmp_path, own)
-    assert drawn(imported(tmp_path, own, axes="forward,left,up")) == points
-    theirs = {name: OPTIMUMK.get(name, name) for name in points}
-    assert drawn(imported(tmp_path, table(points, names=theirs))) == points
-    with pytest.raises(FileError, match="--axes rearward,right,up of a left wheel"):
-        imported(tmp_path, table(points, signs=(1, 1, 1), names=theirs))
 
 
 def test_a_tie_rod_through_the_middle_of_the_car_is_warned_of(
@@ -302,9 +271,7 @@ def test_points_that_the_file_lacks_are_asked_for_beside_those_that_are_not_know
     [
         ("[names]\ntie_rod = 'x'", "did you mean 'tie_rod_"),
         ("[names]\ntie_rod_inner = 'Nothing'", "no point in .* named 'Nothing'"),
-        ("[names]\ntie_rod_inner = [1, 2]", "has 2 numbers for 'tie_rod_inner'"),
         ("[names]\n\ntie_rod_inner = ?", "line 3"),
-        ("tie_rod_inner = 'x'", "has the key 'tie_rod_inner'"),
     ],
 )
 def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path: Path) -> None:
@@ -322,26 +289,16 @@ def test_a_wrong_file_of_names_is_told_in_a_line(text: str, words: str, tmp_path
             lotus_report().replace("    69.00", "    6q.00", 1),
             "line 9: z of 'Lower wishbone front pivot' is '6q.00'",
         ),
-        (lotus_report().split("POINT")[0], "has no points"),
         (lotus_report().replace("Double Wishbone", "Trailing arm"), "called 'Trailing arm, damper"),
         (table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,nan"), "line 3: x of 'CHAS_LowAft' is 'nan'"),
-        (
-            table().replace("CHAS_LowAft,-90.0", "CHAS_LowAft,-5e9999999999999"),
-            "line 3: x of 'CHAS_LowAft' is",
-        ),
         (table().replace("CHAS_LowAft,", ","), "line 3: has coordinates without a name"),
         (table() + "CHAS_LowAft,1,2,3\n", "line 13: has lower_arm_rear twice, 'CHAS_LowAft' on line 3"),
         (table(titles="Point,X,Y\n"), "line 1: has no column of z"),
         (table(titles="Point,X (m),Y (mm),Z (m)\n"), "line 1: has lengths in m, mm"),
-        (
-            table(titles="Point,X (furlong),Y,Z\n"),
-            r"line 1: has no column of x in .*X \(furlong\)",
-        ),
         (table(names=EXCHANGED), "lower_arm_front seen from lower_arm_rear"),
         ("", "has no points"),
         ("PK\x03\x04\x00\x00", "is no text"),
         (LEFT_CHRONO.replace("]", ",", 1), "is no JSON"),
-        (LEFT_CHRONO.replace("0.718", "NaN"), "y of 'Spindle: COM' is 'NaN'"),
         (LEFT_CHRONO.replace('"Tierod"', '"Rod"'), "lacks tie_rod_outer .*not known in it: .*'Rod: Location"),
     ],
 )
@@ -364,6 +321,13 @@ def test_comments_in_json_move_no_line_and_change_no_text(tmp_path: Path) -> Non
         imported(tmp_path, text.replace("0.718", "x"))
 
 
+def test_axes_are_three_directions_at_right_angles() -> None:
+    assert Axes.of("Forward, left up").words == "x forward, y left, z up"
+    for words in ("forward,left", "forward,left,down,up", "forward,rearward,up", "north,left,up", ""):
+        with pytest.raises(UsageError, match="axes are "):
+            Axes.of(words)
+
+
 @pytest.mark.parametrize("name", formats())
 def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
     one = formats()[name]
@@ -375,10 +339,3 @@ def test_a_format_s_table_speaks_of_points_that_there_are(name: str) -> None:
         assert {*names} <= points[kind]
         theirs = [name for some in one.names_of(kind).values() for name in some]
         assert len(theirs) == len({*theirs})
-
-
-def test_axes_are_three_directions_at_right_angles() -> None:
-    assert Axes.of("Forward, left up").words == "x forward, y left, z up"
-    for words in ("forward,left", "forward,left,down,up", "forward,rearward,up", "north,left,up", ""):
-        with pytest.raises(UsageError, match="axes are "):
-            Axes.of(words)

@@ -152,8 +152,8 @@ def test_each_wheel_of_a_table_of_four_is_the_one_that_is_asked_for(text: str, t
         assert not found.others
 
 
-@pytest.mark.parametrize("name", ["{0}_{1}", "{1} {0}"])
-def test_a_lonely_r_is_right_beside_an_l_and_asked_about_beside_an_f(name: str, tmp_path: Path) -> None:
+def test_a_lonely_r_is_right_beside_an_l_and_asked_about_beside_an_f(tmp_path: Path) -> None:
+    name = "{0}_{1}"
     rear, left = WHEELS["rear", "right"], WHEELS["front", "left"]
 
     def lettered(**cars: Mapping[str, Sequence[float]]) -> str:
@@ -240,22 +240,6 @@ def test_a_file_of_names_that_is_not_there_is_written_to_be_filled_in(
     assert Scene.load(str(scene)).mechanism.points.items() >= CAR.items()
 
 
-def test_numbers_under_other_titles_are_told(tmp_path: Path) -> None:
-    others = "RX,Mass,MIN X"
-    text = "\n".join([f"Point,X,Y,Z,{others}", *(f"{row},1.5,2.5,3.5" for row in rows(str))])
-    found = imported(tmp_path, text, axes=OURS)
-    assert drawn(found) == CAR
-    assert {f"the column '{title}' is not read" for title in others.split(",")} <= {*found.facts}
-
-
-def test_two_tables_that_say_no_wheel_are_not_mixed(tmp_path: Path) -> None:
-    two = ["X,Y,Z,", *(f"{cells(place)},{WORDS[n]}" for n, place in CAR.items())]
-    assert drawn(imported(tmp_path, "\n".join(two), axes=OURS)) == CAR
-    two += ["X,Y,Z,", *(f"{cells(place)},{WORDS[n]}" for n, place in WHEELS["rear", "right"].items())]
-    with pytest.raises(FileError, match=r"line 13: has lower_arm_front twice, .* one wheel of one axle"):
-        imported(tmp_path, "\n".join(two), axes=OURS)
-
-
 # Names.
 
 
@@ -271,6 +255,14 @@ tie_rod_outer Toe link outboard|TRO|TieRod_Out|Outer track rod ball joint|tie ro
 tie_rod_inner tierod inner|Track rod chassis|TRI|toe-link inboard
 wheel_centre WC|Wheel Center|wheelCentre|Wheel centre point
 """
+
+
+def test_numbers_under_other_titles_are_told(tmp_path: Path) -> None:
+    others = "RX,Mass,MIN X"
+    text = "\n".join([f"Point,X,Y,Z,{others}", *(f"{row},1.5,2.5,3.5" for row in rows(str))])
+    found = imported(tmp_path, text, axes=OURS)
+    assert drawn(found) == CAR
+    assert {f"the column '{title}' is not read" for title in others.split(",")} <= {*found.facts}
 
 
 def test_a_point_is_known_by_many_names() -> None:
@@ -292,6 +284,9 @@ def test_a_name_with_a_word_more_or_less_is_another_point(tmp_path: Path) -> Non
     assert tuple(point.name for point in found.others) == others
 
 
+# Axes and units.
+
+
 def test_a_strut_is_known_by_its_words(tmp_path: Path) -> None:
     points = {n: p for n, p in STRUT.mechanism.points.items() if n not in ("rack_centre", "strut_rod_end")}
     words = WORDS | {"strut_top": "Strut upper mount", "strut_lower": "Strut lower point"}
@@ -301,19 +296,6 @@ def test_a_strut_is_known_by_its_words(tmp_path: Path) -> None:
     )
     assert found.scene.mechanism.type == "macpherson"
     assert {name: drawn(found)[name] for name in points} == points
-
-
-def test_every_two_points_of_a_suspension_have_different_words() -> None:
-    one = formats()["csv"]
-    assert one.vocabulary
-    for kind in one.suspensions:
-        seen: dict[tuple[str, ...], str] = {}
-        for ours, theirs in one.names_of(kind).items():
-            for name in theirs:
-                assert seen.setdefault(one.in_our_words(name), ours) == ours
-
-
-# Axes and units.
 
 
 def test_axes_that_nobody_says_are_asked_for_with_those_that_fit(tmp_path: Path) -> None:
@@ -340,9 +322,7 @@ def test_titles_or_names_may_say_where_axes_point(tmp_path: Path) -> None:
     assert any("by names such as 'CHAS_LowFor'" in fact for fact in by_names.facts)
 
 
-@pytest.mark.parametrize(
-    "titles", ["Point,x_m,y_m,z_m", "Point,X [m],Y [m],Z [m]", "Point,X in metres,Y in metres,Z in metres"]
-)
+@pytest.mark.parametrize("titles", ["Point,x_m,y_m,z_m", "Point,X in metres,Y in metres,Z in metres"])
 def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path) -> None:
     metres = {name: tuple(n / 1000 for n in place) for name, place in CAR.items()}
     if "in metres" in titles:
@@ -354,11 +334,6 @@ def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path)
 
 
 # Other forms of a table.
-
-
-def test_columns_in_another_order_and_numbers_of_lines_make_the_same_car(tmp_path: Path) -> None:
-    lines = (f"{z!r},{i},{x!r},{WORDS[n]},{y!r}" for i, (n, (x, y, z)) in enumerate(CAR.items(), 1))
-    assert drawn(imported(tmp_path, "\n".join(["Z,No.,X,Name,Y", *lines]), axes=OURS)) == CAR
 
 
 ADAMS = {
@@ -388,6 +363,11 @@ $---------------------------------------------------------------------PARAMETER
 """
 
 
+def test_columns_in_another_order_and_numbers_of_lines_make_the_same_car(tmp_path: Path) -> None:
+    lines = (f"{z!r},{i},{x!r},{WORDS[n]},{y!r}" for i, (n, (x, y, z)) in enumerate(CAR.items(), 1))
+    assert drawn(imported(tmp_path, "\n".join(["Z,No.,X,Name,Y", *lines]), axes=OURS)) == CAR
+
+
 def test_hardpoints_of_adams_car_are_known_by_their_names_with_their_axes_and_sides(tmp_path: Path) -> None:
     both = [
         f"hp{side[0]}_{theirs}  {'  '.join(map(repr, WHEELS['front', side][ours]))}"
@@ -411,6 +391,9 @@ def test_a_subsystem_of_adams_car_prints_the_left_wheel(tmp_path: Path) -> None:
     assert found.scene.mechanism.side == "left"
 
 
+UNTITLED = "has 6 numbers for 'LCA_IN_FRONT'"
+
+
 def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -426,16 +409,10 @@ def test_lines_of_settings_are_told_and_a_point_without_a_place_is_not_one(
     assert len(capsys.readouterr().err.splitlines()) == 1
 
 
-UNTITLED = "has 6 numbers for 'LCA_IN_FRONT'"
-
-
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("\n".join(BOTH).replace(",", " "), UNTITLED),
-        ("\n".join(["Point,,,,,,", *BOTH]), UNTITLED),
-        ("\n".join(["Point,X,Y,Z", *BOTH]).replace(",", "   "), UNTITLED),
-        ("\n".join(["Point,1 X,1 Y,1 Z,2 X,2 Y,2 Z", *BOTH]), "line 1: has no column of x in 'Point, 1 X"),
         ("\n".join(["Point,XL,YL,ZL,XR,YR,ZR", *BOTH]), r"titles that are not known.* \[table\]"),
         ("\n".join(["Punkt,Hoch,Quer,Laengs", *rows(str)]), "line 1: .* not known: 'Hoch, Quer, Laengs'"),
         (
@@ -447,11 +424,8 @@ UNTITLED = "has 6 numbers for 'LCA_IN_FRONT'"
             r"says where only some of its axes .*\(rearward\)",
         ),
         ("-3.5,529,122.84\n-45,190,129.9", "line 1: has coordinates without a name"),
-        ("-3.5\t529\t122.84", "line 1: has coordinates without a name"),
         ("Point,LCA_IN,LCA_OUT,LBJ\nX,1,2,3\nY,4,5,6", "titles that are not known: .* a point a line"),
-        ("Point;Left;Right\nLBJ;(1, 2, 3);(1, -2, 3)", "has no points"),
         ("Point;X;Y;Z\nLBJ;1.5;2;3\nUBJ;1,500;2;3", "line 3: has numbers with points and with commas"),
-        ("Point,X,Y,Z\nTie rod inner,0,0\nLBJ,1", "line 2: z of 'Tie rod inner' is ''"),
         (
             "Point,X (forward),Y (left),Z (up)\nA,1,2,3\nPoint,X (left),Y (up),Z (forward)\nB,1,2,3",
             "in different axes",

@@ -10,7 +10,6 @@ import pytest
 from lotus_front import BUMP, ROLLING_RADIUS
 from page_read import Read
 
-from pointcoord import Scene, simulate
 from validate.cli import main
 from validate.output.document import schema_text
 
@@ -84,23 +83,3 @@ def test_the_numbers_beside_the_page_are_the_files_and_those_it_was_held_to(fold
     off = [line for line in lines if float(line["difference"]) > float(line["held_to"])]
     assert [(line["row"], line["is"]) for line in off] == [("line 4", "wheel.camber")]
     assert np.degrees(float(off[0]["difference"])) == pytest.approx(WRONG, abs=1e-4)
-
-
-def test_a_file_over_time_that_agrees_has_a_page_by_either_command(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    motion = simulate(Scene.load("steer"))
-    at = motion.position["wheel_centre"]
-    rows = zip(motion.times, at, np.degrees(motion.wheel["camber"]), strict=True)
-    lines = ["time [s],position.wheel_centre.x [mm],position.wheel_centre.y [mm],camber [deg]"]
-    lines += [f"{t!r},{place[0]!r},{place[1]!r},{angle!r}" for t, place, angle in rows]
-    text = "\n".join(lines).replace("np.float64(", "").replace(")", "")
-    file = tmp_path / "x.csv"
-    file.write_text(text)
-    assert main(["report", str(tmp_path / "a"), "steer", "--data", str(file)]) == 0
-    said = capsys.readouterr().out.splitlines()
-    assert said == [f"{file} and the car of steer: 2 of 2 agree.", str(tmp_path / "a" / "index.html")]
-    read = Read((tmp_path / "a" / "index.html").read_text(encoding="utf-8"))
-    assert read.verdict[1] == said[0]
-    plots = [plot for _, plot in read.plots]
-    assert [plot["layout"]["xaxis"]["title"]["text"] for plot in plots] == ["time [s]"] * 4

@@ -29,12 +29,11 @@ from validate.cost.ways.registry import WAYS
 from validate.html.data import data_files
 from validate.html.hard_cases import HardCases
 from validate.html.page import page
-from validate.html.plot import fewer
 from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
 from validate.html.sections import sections
 from validate.output.document import Head, schema_text
 from validate.output.report import worst_rows
-from validate.paper.scenes import DEFAULT_SCENES
+from validate.paper.scenes import PAPER_SCENES
 from validate.paper.tables import TABLE_2, TABLE_3
 from validate.published.tables import compare_published
 
@@ -90,15 +89,21 @@ def spoiled(examined: Examined) -> Examined:
 # What the page says.
 
 
+# The paper's and one of each other kind; all of them are compared in tests/validate/commands/test_cli.py.
+FEW = (*PAPER_SCENES, "five-link", "axle-roll", "slider-crank")
+
+
 @pytest.fixture(scope="module")
 def built_in(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The report of all built-in scenes."""
+    """The report of built-in scenes."""
     folder = tmp_path_factory.mktemp("report")
-    assert main(["report", "-q", str(folder)]) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("validate.commands.comparison.DEFAULT_SCENES", FEW)
+        assert main(["report", "-q", str(folder)]) == 0
     return folder
 
 
-def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it_names(
+def test_a_report_has_every_section_and_the_data_that_it_names(
     built_in: Path,
 ) -> None:
     shown, document = read_file(built_in), checked(built_in / "results.json")
@@ -114,10 +119,10 @@ def test_a_report_of_all_that_is_built_in_has_every_section_and_the_data_that_it
     files = {link for link in links if not link.startswith("#")}
     assert files == {file.name for file in built_in.iterdir()} - {"index.html"}
     assert document["exit_status"] == 0
-    assert shown.verdict[1].startswith(f"{len(DEFAULT_SCENES)} of {len(DEFAULT_SCENES)} scenes agree; ")
+    assert shown.verdict[1].startswith(f"{len(FEW)} of {len(FEW)} scenes agree; ")
     assert shown.verdict[1].endswith("all as expected.")
     text = unescape((built_in / "index.html").read_text(encoding="utf-8"))
-    assert all(f">{Scene.load(name).title}</td>" in text for name in DEFAULT_SCENES)
+    assert all(f">{Scene.load(name).title}</td>" in text for name in FEW)
     # A line for each printed number, of tables of 11, 21, 1, 17 and 21 rows.
     with (built_in / "published.csv").open(newline="") as stream:
         assert len(list(csv.DictReader(stream))) == 11 * (5 + 7) + 21 * (6 + 5 + 3) + 10 + (11 + 17) * 3
@@ -222,20 +227,6 @@ def test_scenes_that_are_refused_or_broken_have_their_reason_beside_them_and_are
     assert all([line["name"] for line in plot["data"]] == ["pointcoord"] for _, plot in alone.plots)
 
 
-def test_a_verdict_tells_disagreements_first_and_each_reason_once_with_its_scenes(solver: Path) -> None:
-    names = ("steer", "double-wishbone", "bounce")
-    main(["report", "-q", str(solver), "--in-process", "--solver", "made_solver:rack_only", *names])
-    text = (solver / "index.html").read_text(encoding="utf-8")
-    parts = text.partition('<section id="agreement"')[0].split("<p>")[1:]
-    lines = [part.partition("</p>")[0] for part in parts if "need JavaScript" not in part]
-    assert "position of tie_rod_inner: difference 128 mm, tolerance " in lines[0]
-    assert len({line.partition(": ")[2] for line in lines}) == len(lines)
-    given = [line for line in lines if line.endswith("not given: made_solver:rack_only gives no velocity")]
-    assert {name for line in given for name in line.partition(": ")[0].split(", ")} == {*names}
-    (closing,) = [line for line in lines if "closing the drawing moves wheel_centre" in line]
-    assert closing.startswith("steer, bounce: ")
-
-
 def test_of_hundreds_of_scenes_all_are_told_some_are_drawn_and_the_page_stays_small() -> None:
     content, count = Scene.load("double-wishbone").model_dump(exclude_none=True), 400
     content["effects"] = ["velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster"]
@@ -286,23 +277,6 @@ def test_a_plot_of_differences_shows_the_largest_share_of_the_table(bounce: Draw
         assert np.nanmax(gap / held) == pytest.approx(row.share, rel=2e-3, abs=1e-300)
         assert one["layout"]["yaxis"]["type"] == "log"
         assert row.unit in one["layout"]["yaxis"]["title"]["text"]
-
-
-def test_of_very_many_instants_the_worst_is_drawn() -> None:
-    weight = np.zeros(100_000)
-    weight[[123, 77_777]] = 1.0, 2.0
-    places = fewer(weight, 600)
-    assert len(places) <= 600
-    assert {0, 123, 77_777, 99_999} <= set(places)
-
-
-def test_travel_of_the_wheel_goes_upward_and_both_models_are_on_the_curve(bounce: Drawn) -> None:
-    shown = [one for words, one in read(run_of(bounce)).plots if words.startswith("wheel travel")]
-    assert len(shown) >= 2
-    for one in shown:
-        line, dots = one["data"]
-        assert set(zip(dots["x"], dots["y"], strict=True)) <= set(zip(line["x"], line["y"], strict=True))
-        assert max(line["y"]) - min(line["y"]) > 10.0
 
 
 def test_the_drawing_that_moves_has_the_places_of_both_models_those_drawn_and_those_closed(
@@ -373,21 +347,6 @@ def test_the_line_of_a_curve_is_the_solver_that_was_given_and_the_dots_are_whom_
     assert "kingpin angle over rack" not in shown
 
 
-def test_what_a_solver_does_not_give_is_no_curve_of_it_and_does_not_empty_the_drawing(solver: Path) -> None:
-    # Options may stand between the folder and the scenes.
-    main(["report", "-q", str(solver), "--in-process", "steer", "--solver", "made_solver:rack_only"])
-    shown = read_file(solver)
-    assert "camber over rack" not in shown.by_words
-    assert "no curves: made_solver:rack_only gives no camber and no kingpin angle" in shown.text
-    (motion,) = shown.motions
-    points = list(Scene.load("steer").mechanism.topology.points)
-    assert motion["points"] == points
-    own, other = (model["frames"] for model in motion["models"])
-    chassis = set(motion["chassis"]) | {points.index("tie_rod_inner")}
-    assert all({i for i, place in enumerate(frame) if place} == chassis for frame in own)
-    assert all(all(frame) for frame in other)
-
-
 # Hard cases, times, printed tables.
 
 
@@ -452,21 +411,6 @@ def test_hard_cases_of_an_earlier_run_say_so_and_decide_with_the_scenes(tmp_path
         assert shown.verdict[0] == ("verdict disagrees" if status else "verdict agrees")
         assert json.loads((out / "results.json").read_text())["exit_status"] == status
         assert json.loads((out / "hard.json").read_text()) == json.loads(file.read_text())
-
-
-def test_hard_cases_that_are_tried_make_a_page_with_their_verdict_and_data(tmp_path: Path) -> None:
-    assert main(["hard", "-q", "knuckle-in-line-wishbone", "--report", str(tmp_path)]) == 0
-    document, shown = checked(tmp_path / "results.json"), read_file(tmp_path)
-    assert (document["kind"], document["verdict"]) == ("hard", "agree")
-    assert shown.verdict[0] == "verdict agrees"
-    assert "1 hard case at " in shown.verdict[1]
-    answers = [a for case in document["cases"] for trial in case["trials"] for a in trial["answers"]]
-    with (tmp_path / "hard.csv").open(newline="") as stream:
-        lines = list(csv.DictReader(stream))
-    for line, one in zip(lines, answers, strict=True):
-        error = "" if one["error"] is None else repr(one["error"])
-        wanted = (one["formulation"], one["outcome"], error)
-        assert (line["formulation"], line["outcome"], line["error"]) == wanted
 
 
 def test_accuracy_against_time_has_a_point_for_each_setting_and_a_look_for_each_way() -> None:

@@ -56,7 +56,6 @@ def angle_rate(motion: Motion, name: str) -> Array:
     ("name", "unit", "factor"),
     [
         ("toe", "deg/mm", 1.0),
-        ("d(toe)/d(bump)", "deg/m", 1e3),
         ("dtoe/dbump", "rad/in", 25.4 * np.pi / 180.0),
     ],
 )
@@ -236,45 +235,3 @@ def test_of_two_columns_that_a_gradient_may_be_by_its_name_says_which() -> None:
     named = {"columns": {**bump, "rack": {}, "toe": {"is": "d(wheel.toe)/d(bump)"}}}
     (toe,) = understood(columns_of_text(table.format("toe"), "mine.csv"), named, CAR, "map.toml").numbers
     assert toe.meaning.per == "travel.wheel_centre"
-
-
-def test_a_travel_with_the_other_sign_is_told_as_that_where_a_derivative_by_it_is_given() -> None:
-    """By minus x, what was d/dx is minus that."""
-    slope = -np.degrees(angle_rate(BUMP, "toe") / rise(BUMP, 1)[1:-1])
-    camber = np.degrees(BUMP.wheel["camber"][1:-1])
-    table = text(**{"bump [mm]": -rise(BUMP)[1:-1], "steer [deg/mm]": slope, "camber [deg]": camber})
-    parts = {"bump": {"is": "travel.wheel_centre"}, "steer": {"is": "wheel.toe", "accuracy": 2e-7}}
-    found = compared(table, {"columns": {**parts, "camber": {"accuracy": 1e-9}}}, CAR)
-    assert [one.words for one in found.outcome.explanations] == ["bump has the other sign"]
-    assert found.outcome.explanations[0].leftover <= 1.0
-
-
-def test_an_offset_is_said_in_our_unit_and_in_the_columns() -> None:
-    slope = np.degrees(angle_rate(BUMP, "toe") / rise(BUMP, 1)[1:-1]) + 0.25
-    table = text(**{"bump [mm]": rise(BUMP)[1:-1], "steer [deg/mm]": slope})
-    parts = {"bump": {"is": "travel.wheel_centre"}, "steer": {"is": "wheel.toe", "accuracy": 2e-6}}
-    first = compared(table, {"columns": parts}, CAR).outcome.explanations[0]
-    assert first.words.endswith("a constant offset of 0.00436332 rad/mm (0.25 deg/mm)")
-
-
-def test_angles_of_one_side_of_an_axle_are_read_by_arcsine_and_by_travel() -> None:
-    side = "left"
-    content = Scene.load("axle-parallel").model_dump(exclude_none=True)
-    over, held = f"{side}.wheel_travel", {"constant": 0.0}
-    content["inputs"] = {"left.wheel_travel": held, "right.wheel_travel": held, "rack": held}
-    content["inputs"][over] = {"sweep": [-40.0, 40.0]}
-    content |= {"effects": ["toe"], "time": {"start": 0.0, "stop": 1.0, "samples": 81}}
-    axle = Scene.from_mapping(content, "axle")
-    motion = simulate(axle)
-    x, toe = np.linspace(-40.0, 40.0, 81), motion.wheel[f"{side}.toe"]
-    spin = motion.position[f"{side}.wheel_centre"] - motion.position[f"{side}.wheel_axis_inner"]
-    camber, slope = f"{side}.camber", f"d({side}.toe)/d(input.{over})"
-    columns = {
-        f"input.{over} [mm]": x,
-        f"{camber} [deg]": np.degrees(np.arcsin(-(spin @ UP) / np.linalg.norm(spin, axis=-1))),
-        f"{slope} [deg/mm]": np.degrees(CubicSpline(x, toe)(x, 1)),
-    }
-    for definition, wrong in (("arcsine", []), ("projected", [f"wheel.{camber}"])):
-        # A spline through points 1 mm apart leaves out some 1e-6 of how toe changes.
-        map = {camber: {"accuracy": 1e-8, "definition": definition}, slope: {"accuracy": 2e-6}}
-        assert disagreeing(text(**columns), {"columns": map}, axle) == wrong

@@ -66,18 +66,6 @@ def test_a_column_that_a_map_does_not_name_goes_along_by_its_own_name_or_is_told
     assert "caster_deg, vorspur, kingpin (name not recognised, without a unit" in note
 
 
-def test_two_units_more_in_the_last_digit_of_any_number_disagree() -> None:
-    place, column = 10, 2
-    lines = CSV.splitlines()
-    cells = lines[place + 1].split(",")
-    cells[column + 1] = f"{float(cells[column + 1]) + 2e-4:.4f}"
-    lines[place + 1] = ",".join(cells)
-    found = compared("\n".join(lines))
-    assert verdicts(found) == {name: "disagrees" if name == ANGLES[column] else "agrees" for name in ANGLES}
-    (row,) = found.outcome.disagreements
-    assert row.place == f"line {place + 2}"
-
-
 def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such() -> None:
     bump = {"is": "travel.wheel_centre", "printed": 0}
     found = compared(CSV, {"columns": {**CONTENT["columns"], "bump": bump}})
@@ -94,24 +82,6 @@ def test_bump_at_the_contact_called_travel_of_the_centre_is_told_as_such() -> No
         ",".join([*c[:2], c[2] if i == 0 else str(-float(c[2])), *c[3:]]) for i, c in enumerate(lines)
     )
     assert not any(e.kind == "travel" for e in compared(turned).outcome.explanations)
-
-
-def test_the_steering_table_agrees_with_the_contact_point_held_at_its_height() -> None:
-    text = "rack;toe;camber\nmm;deg;deg\n" + "".join(
-        f"{-rack:.1f};{toe:.2f};{camber:.2f}\n".replace(".", ",") for rack, toe, camber in STEERING
-    )
-    content = {
-        "rolling_radius": ROLLING_RADIUS,
-        "held": {"travel.contact": 0.0},
-        "columns": {
-            "rack": {"is": "input.rack", "printed": 0},
-            "toe": {"is": "toe"},
-            "camber": {"is": "camber"},
-        },
-    }
-    found = compared(text, content)
-    assert found.outcome.agreed, [(r.name, r.share) for r in found.outcome.rows]
-    assert disagreeing(text, {**content, "held": {}}, CAR)
 
 
 def test_sign_offset_and_unit_of_a_column_are_undone() -> None:

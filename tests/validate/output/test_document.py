@@ -17,7 +17,6 @@ from validate.exit_status import ExitStatus, combined
 from validate.output.console import Console
 from validate.output.document import SCHEMA_VERSION, Head, Journal, json_text, schema_text
 from validate.studies.bounds import bounds
-from validate.studies.claims import claims
 from validate.studies.hard_cases import hard
 from validate.studies.random_cars import random_cars
 from validate.studies.study import Study
@@ -102,17 +101,9 @@ def test_every_ending_of_a_comparison_keeps_to_the_schema(
         assert combined(ExitStatus(scene["exit_status"]) for scene in data["scenes"]) == status
 
 
-@pytest.mark.parametrize("words", [["at-rest"], ["--list"], ["at-rest", "--list"]])
-def test_hard_cases_keep_to_the_schema(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["hard", *words, "--json", "-"]) == 0
-    data = document(capsys.readouterr().out)
-    assert data["kind"] == ("hard-list" if "--list" in words else "hard")
-    assert data["verdict"] == ("nothing compared" if "--list" in words else "agree")
-
-
 @pytest.mark.parametrize(
     "study",
-    [random_cars(1), bounds(1, motions=0), claims(1), hard(["link-twice"])],
+    [random_cars(1), bounds(1, motions=0), hard(["link-twice"])],
     ids=lambda study: study.name,
 )
 def test_what_studies_find_keeps_to_the_schema(study: Study) -> None:

@@ -103,25 +103,3 @@ def test_a_pipe_is_written_as_it_is(tmp_path: Path) -> None:
     reader.join(10)
     assert read == [b"new"]
     assert stat.S_ISFIFO(pipe.stat().st_mode)
-
-
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("no/x.json", "there is no folder"),
-        ("file/x.json", "there is no folder"),
-        ("folder", "Is a directory"),
-        ("new/", "Is a directory"),
-        ("x" * 300, "File name too long"),
-        ("a\0b", "null"),
-    ],
-)
-def test_a_target_that_cannot_be_written_is_told_before_and_when_it_is_written(
-    name: str, words: str, tmp_path: Path
-) -> None:
-    (tmp_path / "file").write_bytes(b"")
-    (tmp_path / "folder").mkdir()
-    for attempt in (lambda t: require_writable(t), lambda t: write_whole(t, put(b"new"))):
-        with pytest.raises(OutputError, match=rf"cannot be written \(.*{words}"):
-            attempt(f"{tmp_path}/{name}")
-    assert len(list(tmp_path.iterdir())) == 2

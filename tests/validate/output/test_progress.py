@@ -10,6 +10,29 @@ from validate.output.console import Console
 from validate.output.progress import Progress
 
 
+def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    console = Console()
+    with (
+        console.progress("scenes", total=2, first=0.05),
+        console.progress("cost") as told,
+    ):
+        # What is done inside is said in the same lines.
+        told("series", 60, 150)
+        err = ""
+        while not err.endswith("\n"):
+            time.sleep(0.01)
+            out, more = capsys.readouterr()
+            err += more
+            assert out == ""
+    assert re.fullmatch(r"pointcoord: note: after \d+ s: series, 60 of 150 done(, \d+ s left)?\n", err)
+    console.quiet = True
+    with console.progress("processes start", first=0.05):
+        time.sleep(0.3)
+    assert capsys.readouterr() == ("", "")
+
+
 def test_the_rest_is_told_at_the_pace_since_this_run_began(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = [0.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
@@ -41,26 +64,3 @@ def test_a_pipe_gets_a_line_now_and_then_while_a_run_only_waits_and_none_of_a_qu
     quick = Progress(said.append, "processes start", first=60.0)
     quick.end()
     assert len(said) == count
-
-
-def test_lines_go_to_standard_error_of_a_pipe_unless_the_run_is_quiet(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    console = Console()
-    with (
-        console.progress("scenes", total=2, first=0.05),
-        console.progress("cost") as told,
-    ):
-        # What is done inside is said in the same lines.
-        told("series", 60, 150)
-        err = ""
-        while not err.endswith("\n"):
-            time.sleep(0.01)
-            out, more = capsys.readouterr()
-            err += more
-            assert out == ""
-    assert re.fullmatch(r"pointcoord: note: after \d+ s: series, 60 of 150 done(, \d+ s left)?\n", err)
-    console.quiet = True
-    with console.progress("processes start", first=0.05):
-        time.sleep(0.3)
-    assert capsys.readouterr() == ("", "")

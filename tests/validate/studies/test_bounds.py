@@ -17,7 +17,7 @@ from validate.studies.bounds import bounds, held_pose, measured
 
 EXAMPLES = settings.default.max_examples if settings.default else 100
 # An end and its pose take a second, so the short profile searches briefly and the deep one as long as any.
-searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 3)
+searched = settings(deadline=None, max_examples=EXAMPLES if EXAMPLES > 100 else 2)
 
 
 @st.composite

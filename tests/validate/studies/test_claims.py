@@ -9,14 +9,14 @@ from validate.output.table import text_of
 from validate.studies.claims import claims, scene_rows
 from validate.studies.study import Row, Task
 
-# Random scenes, the last four driven up to a fold; those of other models are in formulations/.
-NUMBERS = (0, 1, 5, 16, 43, 51, 71)
+# Random scenes, the last one driven up to a fold; those of other models are in formulations/.
+NUMBERS = (0, 5, 71)
 
 
 @pytest.mark.parametrize("number", NUMBERS)
 def test_no_number_is_off_by_more_than_is_claimed(number: int) -> None:
     rows = scene_rows(Task("scenes", number), "pointcoord")
-    assert {row["kind"] for row in rows} == {"near an end" if number in NUMBERS[3:] else "regular"}
+    assert {row["kind"] for row in rows} == {"near an end" if number in NUMBERS[2:] else "regular"}
     for row in rows:
         assert row["error"] <= row["claim"], row
 

@@ -1,9 +1,9 @@
-"""Units of other programs are so many of ours, and a line's cells are what stands between its marks."""
+"""Units of other programs are so many of ours, and text is read whatever its code."""
 
 import numpy as np
 import pytest
 
-from validate.tables.cells import lines_of, text_of
+from validate.tables.cells import text_of
 from validate.tables.units import factor_of, length_called
 
 
@@ -26,30 +26,6 @@ def test_units_are_what_they_are_of_ours() -> None:
 def test_a_length_may_be_spelt(word: str, unit: str) -> None:
     assert length_called(word) == unit
     assert (factor_of(word.lower(), "mm") is not None) == bool(unit)
-
-
-@pytest.mark.parametrize(
-    ("text", "mark", "row"),
-    [
-        ("a;b;c\n1,5;2;3\n", ";", ["1.5", "2", "3"]),
-        ('a,b,c\n"1,5",2,3\n', ",", ["1.5", "2", "3"]),
-        ("a,b,c\n1,5,2\n", ",", ["1", "5", "2"]),
-        ("a b c\n1,5 2,0 3\n", "", ["1.5", "2.0", "3"]),
-        ("a\tb\n1\u22122\t \u22123 \n", "\t", ["1-2", "-3"]),
-    ],
-)
-def test_a_comma_is_a_mark_or_a_decimal_sign(text: str, mark: str, row: list[str]) -> None:
-    lines = lines_of(text)
-    assert lines.mark == mark
-    assert lines.rows[1] == (2, row)
-    assert not lines.mixed
-
-
-def test_a_line_is_counted_from_the_top_whatever_is_left_out() -> None:
-    lines = lines_of("# first\n\nname x\n% aside 1.5\n\nend 1,5 2.5\n")
-    assert [number for number, _ in lines.rows] == [3, 6]
-    assert lines.comments == [(1, ["first"]), (4, ["aside", "1.5"])]
-    assert lines.mixed == 6
 
 
 @pytest.mark.parametrize("code", ["utf-8-sig", "utf-16", "cp1252"])

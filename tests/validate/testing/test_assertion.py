@@ -5,9 +5,9 @@ import pytest
 from plain_solvers import closed_form
 
 from pointcoord import Scene
-from validate import FormulationError, NotTested, WrongStates, assert_agrees
+from validate import NotTested, WrongStates, assert_agrees
 from validate.formulations.reference_solution import reference_solution
-from validate.solvers.plain import NoSolver, given_to_solver
+from validate.solvers.plain import given_to_solver
 
 SCENE = Scene.load("double-wishbone").model_copy(update={"title": "mine"})
 
@@ -43,17 +43,6 @@ def test_one_coordinate_off_at_one_instant_is_named_with_its_size_and_its_time(s
     assert f"at {SCENE.instants[17]:.9g} s" in row
     # A fault of one number has no explanation, and none is made up.
     assert not any("what would explain it" in line for line in rest)
-
-
-@pytest.mark.parametrize(("by", "passes"), [(0.5, True), (3.0, False)])
-def test_a_solver_is_held_to_the_accuracy_that_it_states(states, by: float, passes: bool) -> None:
-    # A position may be off by the accuracy, and by as much as the missed lengths make of it.
-    off = moved(states, 3, by * 1e-4)
-    if passes:
-        assert_agrees(off, SCENE, accuracy=1e-4)
-    assert_agrees(off, SCENE, accuracy=1e-2)
-    with pytest.raises(AssertionError, match="tie_rod_outer"):
-        assert_agrees(off, SCENE, accuracy=1e-6)
 
 
 def test_other_units_are_explained_and_long_lists_are_cut(states) -> None:
@@ -103,14 +92,6 @@ def test_a_number_that_cannot_be_compared_fails_the_test_whatever_the_others_are
     assert assert_agrees(good | {"iterations": 3, "seconds": [0.1]}, SCENE).passed
 
 
-def test_points_that_stay_where_they_are_drawn_are_no_agreement(states) -> None:
-    chassis = {name: states["position"][name] for name in SCENE.mechanism.topology.chassis}
-    with pytest.raises(
-        AssertionError, match=r"say nothing of .*: whatever agrees is what the solver was given"
-    ):
-        assert_agrees({"position": chassis}, SCENE)
-
-
 def test_what_is_needed_must_be_there_all_of_it(states) -> None:
     assert assert_agrees(states, SCENE, needed=("position", "camber", "wheel")).passed
     alone = {"camber": states["wheel"]["camber"]}
@@ -133,10 +114,3 @@ def test_an_accuracy_that_says_nothing_is_no_agreement_either(states) -> None:
     with pytest.raises(NotTested) as caught:
         assert_agrees(states, SCENE, accuracy=1e3)
     assert {"position of wheel_centre", "camber"} <= set(caught.value.numbers)
-
-
-def test_what_is_no_mapping_and_no_accuracy_is_refused(states) -> None:
-    with pytest.raises(FormulationError, match="it answers with data of type list"):
-        assert_agrees([1.0], SCENE)
-    with pytest.raises(NoSolver, match="give a length above 0"):
-        assert_agrees(states, SCENE, accuracy=0.0)

@@ -16,7 +16,7 @@ from validate.hard.case import HARD
 from validate.hard.catalogue import CASES
 from validate.hard.subjects import SUBJECTS
 from validate.solvers.plain import given_to_solver
-from validate.testing.scenes import NOT_ASKED, impossible_scenes, scenes_to_try
+from validate.testing.scenes import NOT_ASKED, impossible_scenes
 
 
 def mark(name: str, *names: object, **options: object) -> SimpleNamespace:
@@ -100,20 +100,16 @@ def test_one(scene):
     ("marked", "words"),
     [
         (mark("suspension_scenes", "bunce"), "did you mean 'bounce'?"),
-        (mark("suspension_scenes", "arm-highest-hold"), "did you mean 'arm-highest-held'?"),
         (
             mark("suspension_scenes", "link-twice"),
             "cannot be asked of a solver: it is no scene, or one that may be refused",
         ),
         (mark("suspension_scenes", "arm-highest-beyond"), "without a pose; mark with impossible_scenes"),
-        (mark("suspension_scenes", hrad=True), "unexpected keyword argument 'hrad'; it takes (*names"),
         (
             mark("suspension_scenes", suspension="wishbone"),
             "'wishbone': there is none; there are: andrews_squeezer, axle, ",
         ),
-        (mark("suspension_scenes", closure="bent"), "'bent': there is none; there are: drawn, collinear"),
         (mark("suspension_scenes", "arm-highest-held", near=0.0), "near=0.0 is no number above 0"),
-        (mark("suspension_scenes", 3.0), "3.0: is a float, and names no scene"),
         (
             mark("suspension_scenes", "steer", suspension="double_wishbone"),
             "no scene is as the mark says; leave `suspension` out",
@@ -155,17 +151,6 @@ def test_of_something_else(): ...
     assert "Traceback" not in said
 
 
-def test_hard_scenes_are_nearer_where_asked_for() -> None:
-    some = [scenes_to_try(["arm-highest-held"], near=near) for near in (1e-1, 1e-9)]
-    assert [list(one) for one in some] == [["arm-highest-held at 0.1"], ["arm-highest-held at 1e-09"]]
-    (far,), (near,) = (one.values() for one in some)
-    assert far.inputs["arm_angle"] != near.inputs["arm_angle"]
-    assert near.title == "arm-highest-held at 1e-09"
-    every = scenes_to_try(["arm-highest-held"], near=None)
-    assert len(every) > 10
-    assert {"arm-highest-held at 0.1", "arm-highest-held at 1e-09"} <= set(every)
-
-
 def test_every_hard_case_is_asked_or_cannot_be() -> None:
     asked = {case.name for case in CASES if case.answered}
     refused = {case.name for case in CASES if case.without_pose}
@@ -178,9 +163,8 @@ def test_every_hard_case_is_asked_or_cannot_be() -> None:
         assert (f"turned-at-random{subject.suffix}" in asked) == (subject.name not in HARD)
 
 
-@pytest.mark.parametrize("name", ["arm-lowest-beyond-wishbone", "branches-met", "start-beyond-both"])
-def test_a_case_without_a_pose_is_answered_by_none_that_is_right(name: str) -> None:
-    (scene,) = impossible_scenes([name]).values()
+def test_a_case_without_a_pose_is_answered_by_none_that_is_right() -> None:
+    (scene,) = impossible_scenes(["arm-lowest-beyond-wishbone"]).values()
     plain = given_to_solver(scene)
     answer = {"position": {"wheel_centre": np.zeros((len(plain["instants"]), 3))}}
     with pytest.raises(AssertionError, match="where there is no pose: ") as caught:

@@ -48,8 +48,6 @@ def broken(**changes: Any) -> Callable[[FormulationError], FormulationError]:
     ("change", "says"),
     [
         (broken(reached=lambda r: r | {"rack": r["rack"] * (1.0 - 1e-8)}), "stops at rack"),
-        (broken(reached=lambda r: r | {"arm_angle": 1.5}), "arm_angle is said to stop"),
-        (broken(wanted=lambda w: w | {"rack": 100.0}), "lies before the end"),
         (broken(reduce=lambda _: "arm_angle"), "'arm_angle' is to be reduced"),
         (broken(limits=lambda limits: limits[3:]), "not what lies in line"),
         (lambda refusal: FormulationError(refusal.formulation, refusal.reason), "is not kept"),
@@ -70,8 +68,8 @@ def test_a_refusal_that_says_something_wrong_is_wrong(
     assert says in answer.reason
 
 
-@pytest.mark.parametrize("solver", ["pointcoord", "pointcoord-newton", "absolute"])
-def test_a_kept_motion_that_is_short_or_wrong_is_found_out(solver: str) -> None:
+def test_a_kept_motion_that_is_short_or_wrong_is_found_out() -> None:
+    solver = "pointcoord"
     scene = Scene.from_mapping(PAPER_RACK.beyond(PAPER, 1e-3))
     end, refusal = float(PAPER_RACK.last.value), refused(scene, solver)
     kept = refusal.partial

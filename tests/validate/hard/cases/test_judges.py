@@ -1,0 +1,170 @@
+"""Cases show what they are in the catalogue for, and what is wrong in their own way is found out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from stand_in import stand_in
+
+import pointcoord.solve.taylor
+from pointcoord import Scene
+from validate.formulations.input_rates import rates
+from validate.formulations.protocol import Solution
+from validate.formulations.registry import formulation
+from validate.hard.answer import Answer
+from validate.hard.cars import PAPER_CAR, scene_content
+from validate.hard.case import Case
+from validate.hard.cases import laws, links, numbers
+from validate.hard.catalogue import CASES
+from validate.hard.run import examine
+from validate.hard.subjects import PAPER
+from validate.hard.trial import Trial, solved, try_scene
+
+BY_NAME = {case.name: case for case in CASES}
+OURS = ("pointcoord", "pointcoord-newton", "absolute", "relative")
+
+
+def at(case: str, *values: float) -> Case:
+    """A case at some values of its parameter only."""
+    return replace(BY_NAME[case], values=values)
+
+
+def solution_of(came: object) -> Solution:
+    """What came, which is no refusal."""
+    assert isinstance(came, Solution)
+    return came
+
+
+def omega_error(trial: Trial, name: str) -> float:
+    """Of the knuckle's angular velocity, in parts of it."""
+    both = map(solution_of, (trial.reference, trial.came[name]))
+    true, found = (one.angular_velocity["knuckle"] for one in both)
+    return float(np.abs(found - true).max() / np.abs(true).max())
+
+
+def test_the_printed_omega_loses_its_digits_and_ours_keeps_them() -> None:
+    near, nearer, there = examine(at("omega-in-the-knuckle-plane", 1e-3, 1e-9, 0.0)).trials
+    assert omega_error(nearer, "printed") > max(1e-8, 1e4 * omega_error(near, "printed"))
+    assert not omega_error(there, "printed") < 1e-3
+    for trial in (nearer, there):
+        assert all(omega_error(trial, ours) < 1e-12 for ours in OURS)
+
+
+def test_a_car_at_rest_has_rates_of_exactly_zero() -> None:
+    (trial,) = examine(at("arm-hardly-moves", 0.0)).trials
+    assert set(trial.came) == set(OURS)
+    for came in trial.came.values():
+        for quantity in ("velocity", "acceleration", "angular_velocity", "angular_acceleration"):
+            assert all(not array.any() for array in solution_of(came).numbers[quantity].values())
+
+
+def mirror(solution: Solution) -> Solution:
+    """The other assembly of the same pose: the tie rod's outer end reflected in the plane of the rest."""
+    p = solution.position
+    ball = p["lower_ball_joint"]
+    normal = np.cross(p["strut_top"] - ball, p["tie_rod_inner"] - ball)
+    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
+    outer = p["tie_rod_outer"]
+    height = np.sum((outer - ball) * normal, axis=-1, keepdims=True)
+    return solution.with_numbers({"position": {**p, "tie_rod_outer": outer - 2.0 * height * normal}})
+
+
+def test_a_jump_to_the_mirror_image_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    content = scene_content(PAPER_CAR, (1.5, 0.1), (0.0, 20.0), stop=0.5)
+    straight = formulation("absolute").solve(Scene.from_mapping(content))
+    other = mirror(straight)
+    # The mirror image closes all links as well.
+    for end in ("lower_ball_joint", "strut_lower", "tie_rod_inner"):
+        lengths = [
+            np.linalg.norm(s.position["tie_rod_outer"] - s.position[end], axis=-1) for s in (straight, other)
+        ]
+        assert np.allclose(lengths[0], lengths[1], rtol=1e-14, atol=0.0)
+    stand_in(monkeypatch, lambda scene: other)
+    assert try_scene(1.0, content, ("absolute",)).answers[0].outcome == "wrong"
+
+
+def test_an_error_as_of_subtracted_far_coordinates_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    far, quantity, value = BY_NAME["far-from-the-origin"], "velocity", 1e-6
+    lost = 4.0 * float(np.spacing(3.0 / value))  # of positions so far away, and of all made from them
+
+    def losing(scene: Scene) -> Solution:
+        solution = formulation("pointcoord-newton").solve(scene)
+        arrays = dict(solution.numbers[quantity])
+        arrays["tie_rod_outer"] = arrays["tie_rod_outer"] + lost
+        # It knows that digits are lost, and says so, so that its own bounds hold.
+        claims = solution.accuracy.claims[quantity]
+        wider = {n: claim + 1e3 * lost for n, claim in claims.items()}
+        accuracy = solution.accuracy.with_claims({quantity: wider})
+        return replace(solution.with_numbers({quantity: arrays}), accuracy=accuracy)
+
+    far.examine(value)  # the car at home is solved before the model is replaced
+    stand_in(monkeypatch, losing, "pointcoord-newton")
+    answers = {answer.formulation: answer for answer in far.examine(value).answers}
+    assert answers["pointcoord-newton"].outcome == "wrong"
+    assert "bounds of the car at home" in answers["pointcoord-newton"].reason
+    assert answers["pointcoord"].outcome == "right"
+
+
+def test_a_million_swings_are_right_by_a_map_and_at_their_instants() -> None:
+    trial = BY_NAME["long-sine"].examine(1e6)
+    assert {answer.outcome for answer in trial.answers} == {"right"}
+
+
+def test_a_jump_refused_for_another_reason_is_wrong() -> None:
+    def told(reason: str) -> str:
+        trial = Trial(1e-9, (Answer("pointcoord", "refused", reason),))
+        return laws.told_as_rough(PAPER, 1e-9, trial).answers[0].outcome
+
+    assert told("MotionTooRough: input 'arm_angle' changes too fast") == "refused"
+    assert told("MotionTooRough: input 'rack' changes too fast") == "wrong"
+    assert told("SingularConfiguration: singular configuration at t = 0.5 s") == "wrong"
+
+
+def test_a_refusal_that_names_nothing_of_what_is_at_fault_is_wrong() -> None:
+    told = Trial(1.0, (Answer("pointcoord", "refused", "MechanismError: free: x of strut_rod_end"),))
+    assert links.named(told, frozenset(("strut_rod_end",))).answers == told.answers
+    (answer,) = links.named(told, frozenset(("tie_rod", "tie_rod_inner"))).answers
+    assert answer.outcome == "wrong"
+    assert "names none of tie_rod, tie_rod_inner" in answer.reason
+
+
+def test_a_wrong_place_far_away_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    law = numbers.law(("constant",), 1e308)
+    unjudged = Trial(1.0, (Answer("absolute", "unjudged"),))
+    scene = Scene.from_mapping(numbers.heaved(law))
+    plain = solved("absolute", Scene.from_mapping(numbers.heaved(None)))
+    assert isinstance(plain, Solution)
+    law_there = rates(scene.inputs["heave"], scene.instants)
+    for factor, outcome in ((1.0, "right"), (1.0 + 1e-14, "wrong")):
+        answer = numbers.added(plain, factor * law_there, scene.mechanism.up)
+        monkeypatch.setattr(numbers, "solved", lambda *_, answer=answer: answer)
+        assert numbers.displaced(unjudged, law).answers[0].outcome == outcome
+
+
+def answers(name: str, *values: float) -> list[Answer]:
+    """What pointcoord answers in a case at some values, by default all."""
+    case = BY_NAME[name]
+    ours = replace(case, expected={"pointcoord": case.expected["pointcoord"]})
+    return [answer for value in values or case.values for answer in ours.examine(value).answers]
+
+
+def test_the_searched_bound_is_all_but_met_and_never_broken() -> None:
+    values = BY_NAME["error-all-but-its-bound"].values[::2]
+    shares = [answer.share or np.inf for answer in answers("error-all-but-its-bound", *values)]
+    assert 0.99 < max(shares) <= 1.0
+
+
+def test_a_turn_leads_to_another_branch_where_the_branch_is_not_followed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    name, near = "turn-at-a-coarse-tolerance", (1e-10, 1e-11, 1e-12, 1e-13, 1e-14)
+    assert "wrong" not in {answer.outcome for answer in answers(name, *near)}
+
+    def blind(system: Any, side: Any, series: Any, s: float, reached: Any) -> Any:
+        return np.ones(reached.y.shape[:-1], dtype=bool)
+
+    monkeypatch.setattr(pointcoord.solve.taylor, "on_branch", blind)
+    assert "wrong" in {answer.outcome for answer in answers(name, *near)}
