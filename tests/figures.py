@@ -2,7 +2,7 @@
 
     python tests/figures.py NAME [NAME ...]
 
-Names: agreement, hard, assemblies, random, bounds, cost, growth, speed, struts, tables.
+Names: agreement, hard, assemblies, random, bounds, cost, effects, growth, speed, struts, tables.
 
 A figure stands in its page between two comments, `<!-- figure NAME -->` and `<!-- end -->`; what is between
 them is replaced, and nothing else is. Long ones (see `FIGURES`) take as long as their command.
@@ -49,6 +49,11 @@ def _from(first: str) -> Callable[[str, Path], str]:
         return "\n".join(["```text", *lines[begin:], "```"])
 
     return shown
+
+
+def _as_printed(printed: str, folder: Path) -> str:
+    """What is Markdown already."""
+    return printed.strip()
 
 
 def _agreement(printed: str, folder: Path) -> str:
@@ -136,11 +141,8 @@ FIGURES = {
         _speed,
     ),
     "tables": Figure("validate/published/README.md", "pointcoord validate --tables", _from(r"")),
-    "struts": Figure(
-        "validate/formulations/README.md",
-        "tests.support.badly_drawn_struts",
-        lambda printed, folder: printed.strip(),
-    ),
+    "struts": Figure("validate/formulations/README.md", "tests.support.badly_drawn_struts", _as_printed),
+    "effects": Figure("pointcoord/effects/README.md", "tests.support.table_of_effects", _as_printed),
 }
 
 

@@ -74,26 +74,51 @@ def _track(left: Corner[Any], right: Corner[Any]) -> Any:
     return right.drawn.along(right.drawn.contact_place() - left.drawn.contact_place(), "outboard")
 
 
-def _number(name: str, words: str, sign: str, formula: Any, quantity: Quantity, power: int) -> Number:
-    return Number(name, words, sign, formula, quantity=quantity, data=("wheelbase",), power=power)
+def _number(
+    name: str,
+    words: str,
+    sign: str,
+    definition: str,
+    formula: Any,
+    quantity: Quantity,
+    power: int,
+    source: str = "",
+) -> Number:
+    data = ("wheelbase",)
+    return Number(
+        name, words, sign, definition, formula, quantity=quantity, data=data, power=power, source=source
+    )
 
 
 ACKERMANN = CarNumbers.of(
     "ackermann",
     "turning radius, mm, Ackermann, %, and steer error, rad, of the axle",
-    _number("turning_radius", "turning radius", "", turning_radius, DIMENSION, 1),
+    _number(
+        "turning_radius",
+        "turning radius",
+        "",
+        "R = L abs(cot d_l + cot d_r) / 2, d the steer angles of the left and the right wheel",
+        turning_radius,
+        DIMENSION,
+        1,
+        "Lotus",
+    ),
     _number(
         "ackermann",
         "Ackermann",
         "where the inner wheel is steered more than the outer one",
+        "100 (d_i - d_o) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)), of the inner and the outer "
+        "wheel's, t the track as drawn",
         ackermann,
         ACKERMANN_SHARE,
         0,
+        "within 0.04 points of Lotus",
     ),
     _number(
         "ackermann_error",
         "steer error of the outer wheel",
         "where it is steered more than it would have to be",
+        "d_o - arccot(cot d_i + t / L)",
         ackermann_error,
         STEER_ERROR,
         0,

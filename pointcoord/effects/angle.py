@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 
 WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
 AXES = {"wheel_axis": "the wheel's spin axis", "steering_axis": "the steering axis"}
+LETTERS = {"wheel_axis": "n", "steering_axis": "k"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +34,7 @@ class Angle:
     """An angle of a line of the car, in a plane of the car's axes; rad. See `car_number.Number`.
 
     Attributes:
-        name, words, sign: see `car_number.Number`.
+        name, words, sign, source: see `car_number.Number`.
         line: the axis that the topology names so, from its first point to its second.
         sine, cosine: the directions along which the line has the angle's sine and cosine.
         steepest: degrees beyond which a drawing looks misdrawn.
@@ -48,11 +49,19 @@ class Angle:
     cosine: Direction
     steepest: float = 180.0
     steepest_by_default: float = 180.0
+    source: str = ""
 
     quantity: ClassVar[Quantity] = WHEEL
     needs_radius: ClassVar[bool] = False
     data: ClassVar[tuple[str, ...]] = ()
     way: ClassVar[str] = ""
+
+    @property
+    def definition(self) -> str:
+        """Its two components, in the letters of the page of effects."""
+        line = LETTERS[self.line]
+        sine, cosine = (direction.replace("_", " ") for direction in (self.sine, self.cosine))
+        return f"atan2({line} . {sine}, {line} . {cosine})"
 
     @property
     def roles(self) -> tuple[str, ...]:

@@ -43,10 +43,24 @@ def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
     return part * slope * ratio(car["wheelbase"], height)
 
 
-def _number(name: str, words: str, sign: str, formula: Any, share: str) -> Number:
+def _number(
+    name: str, words: str, sign: str, definition: str, formula: Any, share: str, source: str
+) -> Number:
     data = ("axle", "wheelbase", "centre_of_gravity_height", share)
     roles = ("wheel_axis", "knuckle")
-    return Number(name, words, sign, formula, roles, quantity=SHARE, data=data, way=BY_TRAVEL, power=0)
+    return Number(
+        name,
+        words,
+        sign,
+        definition,
+        formula,
+        roles,
+        quantity=SHARE,
+        data=data,
+        way=BY_TRAVEL,
+        power=0,
+        source=source,
+    )
 
 
 ANTI_FEATURES = CarNumbers.of(
@@ -56,14 +70,18 @@ ANTI_FEATURES = CarNumbers.of(
         "anti_brake",
         "anti-dive of a front axle, anti-lift of a rear one, as it brakes",
         "where the car dives or lifts less",
+        "100 b s (v . rearward)/(v . up) L/(H - `contact_travel`), v of c fixed in the knuckle",
         anti_brake,
         "brake_share",
+        "within 0.0071 points of Lotus",
     ),
     _number(
         "anti_drive",
         "anti-lift of a front axle, anti-squat of a rear one, as it drives",
         "where the car lifts or squats less",
+        "100 d s (v . rearward)/(v . up) L/(H - `contact_travel`), v of W",
         anti_drive,
         "drive_share",
+        "Lotus, suspension-explorer",
     ),
 )

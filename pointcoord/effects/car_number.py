@@ -53,17 +53,20 @@ class Number:
     Attributes:
         name: in results and files. words: for people.
         sign: where it is positive, in words; empty of what is never negative.
+        definition: the formula in words, as the page of effects has it, in the page's letters.
         formula: what it is of a corner, or of the left and the right one; lengths in the unit of the points.
         roles: of the mechanism, whose points it is made of. needs_radius: whether of the wheel's radius too.
         quantity: the kind of number that it is.
         data: what it is made of beside, of what the scene says of the car.
         way: along which it takes the points' derivatives; empty if it takes none.
         power: of the unit of the points, mm, that it is multiplied by.
+        source: who else has it so.
     """
 
     name: str
     words: str
     sign: str
+    definition: str
     formula: Callable[..., Any]
     roles: tuple[str, ...] = ("wheel_axis",)
     needs_radius: bool = True
@@ -71,6 +74,7 @@ class Number:
     data: tuple[str, ...] = ()
     way: str = ""
     power: int = 1
+    source: str = ""
 
     def errors(self, corners: Sequence[Corner[Any]], found: Array, unit: float) -> Array:
         """Proven and expected error of a value that was found, (2, N), from where it exactly is.

@@ -147,14 +147,25 @@ def _meeting(left: Corner[Dual[Any]], right: Corner[Dual[Any]]) -> tuple[Any, An
     return -(share * v_u), share * v_h
 
 
-def _number(name: str, words: str, sign: str, formula: Any, *roles: str) -> Number:
-    return Number(name, words, sign, formula, ("wheel_axis", *roles, "knuckle"), way=BY_TRAVEL)
+def _number(
+    name: str, words: str, sign: str, definition: str, formula: Any, *roles: str, source: str = ""
+) -> Number:
+    every = ("wheel_axis", *roles, "knuckle")
+    return Number(name, words, sign, definition, formula, every, way=BY_TRAVEL, source=source)
 
 
 ROLL_CENTRE = CarNumbers.of(
     "roll_centre",
     "height of the roll centre above the contact point, mm",
-    _number("roll_centre_height", "roll centre height", "above the contact point", roll_centre_height),
+    _number(
+        "roll_centre_height",
+        "roll centre height",
+        "above the contact point",
+        "above c, where the line through c at right angles to the velocity of c, as a point of the knuckle, "
+        "meets the car's middle plane in the front view",
+        roll_centre_height,
+        source="within 0.08 mm of Lotus, whose rule is not published",
+    ),
 )
 ARM_ROLL_CENTRE = CarNumbers.of(
     "arm_roll_centre",
@@ -163,6 +174,8 @@ ARM_ROLL_CENTRE = CarNumbers.of(
         "arm_roll_centre_height",
         "roll centre height by the arms",
         "above the contact point",
+        "`roll_centre_height` of the motion, of those that differ by a turn about k, that is a pure "
+        "rotation; up to 7 mm from the one before where the wheel steers as it travels",
         arm_roll_centre_height,
         "steering_axis",
     ),
@@ -175,24 +188,29 @@ INSTANT_CENTRES = CarNumbers.of(
         "front_view_swing_arm",
         "front-view swing arm",
         "where the centre is inboard of the contact point",
+        "from c to the point of the transverse plane through c where the knuckle does not move in that "
+        "plane, as the wheel travels",
         partial(swing_arm, "outboard"),
     ),
     _number(
         "front_view_centre_height",
         "height of the front-view centre",
         "above the contact point",
+        "of that point above c",
         partial(centre_height, "outboard"),
     ),
     _number(
         "side_view_swing_arm",
         "side-view swing arm",
         "where the centre is behind the contact point",
+        "as `front_view_swing_arm`, in the plane through c along the car",
         partial(swing_arm, "forward"),
     ),
     _number(
         "side_view_centre_height",
         "height of the side-view centre",
         "above the contact point",
+        "of that point above c",
         partial(centre_height, "rearward"),
     ),
     nowhere="the centre is at infinity",
@@ -200,17 +218,20 @@ INSTANT_CENTRES = CarNumbers.of(
 AXLE = CarNumbers.of(
     "axle",
     "track and roll centre of the axle, mm",
-    _number("track", "track", "", track),
+    _number("track", "track", "", "(right c - left c) . right", track),
     _number(
         "axle_roll_centre_height",
         "height of the axle's roll centre",
         "above the line through both contact points",
+        "above the line through both c, of P: where the two lines meet in the front view that each lead "
+        "through c at right angles to the velocity of c, as a point of its knuckle, as that wheel travels",
         axle_roll_centre_height,
     ),
     _number(
         "axle_roll_centre_offset",
         "offset of the axle's roll centre",
         "right of the car's middle plane",
+        "of P from the car's middle plane, through the origin of the axes",
         axle_roll_centre_offset,
     ),
     nowhere="the lines of the two wheels are parallel",

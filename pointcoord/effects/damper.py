@@ -61,33 +61,89 @@ def _number(
     name: str,
     words: str,
     sign: str,
+    definition: str,
     formula: Any,
     quantity: Quantity,
     power: int = 0,
     data: tuple[str, ...] = (),
+    source: str = "",
 ) -> Number:
     roles = ("damper", "wheel_axis")
-    return Number(name, words, sign, formula, roles, False, quantity, data, BY_TRAVEL, power)
+    return Number(
+        name, words, sign, definition, formula, roles, False, quantity, data, BY_TRAVEL, power, source
+    )
 
 
 DAMPER = CarNumbers.of(
     "damper",
     "length of the damper, mm",
-    Number("damper_length", "length of the damper", "", damper_length, ("damper",), needs_radius=False),
+    Number(
+        "damper_length",
+        "length of the damper",
+        "",
+        "the distance of the two points of the role `damper`",
+        damper_length,
+        ("damper",),
+        needs_radius=False,
+    ),
 )
 _SHORTENED = "where the damper is shortened as the wheel centre goes up"
 MOTION_RATIO = CarNumbers.of(
     "motion_ratio",
     "motion ratio, damper per wheel and wheel per damper, mm/mm",
-    _number("damper_per_wheel", "damper per wheel travel", _SHORTENED, damper_per_wheel, QUANTITIES["mm"]),
-    _number("wheel_per_damper", "wheel per damper travel", _SHORTENED, wheel_per_damper, QUANTITIES["mm"]),
+    _number(
+        "damper_per_wheel",
+        "damper per wheel travel",
+        _SHORTENED,
+        "what the damper is shortened by per mm of `travel`",
+        damper_per_wheel,
+        QUANTITIES["mm"],
+        source="Simscape",
+    ),
+    _number(
+        "wheel_per_damper",
+        "wheel per damper travel",
+        _SHORTENED,
+        "1 / `damper_per_wheel`",
+        wheel_per_damper,
+        QUANTITIES["mm"],
+        source="Lotus, OptimumK",
+    ),
     nowhere="the damper's length does not change",
 )
 _DATA = ("spring_rate", "spring_free_length")
 SPRING = CarNumbers.of(
     "spring",
     "force of the spring, and force and rate at the wheel, N and N/mm",
-    _number("spring_force", "force of the spring", "where it pushes", spring_force, FORCE, 1, _DATA),
-    _number("wheel_force", "the spring's force at the wheel", "downward", wheel_force, FORCE, 1, _DATA),
-    _number("wheel_rate", "wheel rate", "", wheel_rate, RATE, 0, _DATA),
+    _number(
+        "spring_force",
+        "force of the spring",
+        "where it pushes",
+        "`spring_rate` (`spring_free_length` - `damper_length`)",
+        spring_force,
+        FORCE,
+        1,
+        _DATA,
+    ),
+    _number(
+        "wheel_force",
+        "the spring's force at the wheel",
+        "downward",
+        "`spring_force` `damper_per_wheel`",
+        wheel_force,
+        FORCE,
+        1,
+        _DATA,
+        "virtual work",
+    ),
+    _number(
+        "wheel_rate",
+        "wheel rate",
+        "",
+        "`spring_rate` `damper_per_wheel`^2: the part of a constant ratio",
+        wheel_rate,
+        RATE,
+        0,
+        _DATA,
+    ),
 )

@@ -33,12 +33,17 @@ class Quantity:
         unit: of what is computed.
         of: what each number belongs to; points, bodies and joints have vectors (N, 3), a
             car has scalars (N,).
+        definition: what such a number is, as the page of effects has it; empty if the words say it, or
+            if each has its own.
+        sign: where it is positive, in words; empty if its effect says it.
     """
 
     name: str
     words: str
     unit: str
     of: Literal["point", "body", "joint", "car"]
+    definition: str = ""
+    sign: str = ""
 
 
 @dataclass(frozen=True, eq=False)

@@ -48,6 +48,7 @@ def _gradient(number: CarNumber, way: str) -> Number:
         name=f"{number.name}_{way}",
         words=f"{number.words} per {per}",
         sign=f"where it grows {WAYS[way]}",
+        definition=f"the derivative of `{number.name}` {WAYS[way]}",
         formula=partial(_by_travel if travels else _slope, number),
         roles=tuple(dict.fromkeys((*number.roles, *(TRAVEL.roles if travels else ())))),
         needs_radius=number.needs_radius,

@@ -40,9 +40,33 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ROD_FORCE = Quantity("rod_force", "force in the rod", "N", "car")
-JOINT_FORCE = Quantity("joint_force", "force at the joint", "N", "joint")
-HINGE_THRUST = Quantity("hinge_thrust", "force along the hinge", "N", "car")
+ROD_FORCE = Quantity(
+    "rod_force",
+    "force in the rod",
+    "N",
+    "car",
+    "of each rod, and of `damper`: the work of the loads per mm that it is lengthened, all else held",
+    "tension",
+)
+JOINT_FORCE = Quantity(
+    "joint_force",
+    "force at the joint",
+    "N",
+    "joint",
+    "of each ball joint, of both points of a hinge, and of each point on a slide: (Fx, Fy, Fz) on the "
+    "knuckle, or where it is none of the two on the moving body that the mechanism's file names first; of a "
+    "hinge across its line; of a slide across its line, and along it where an input drives the travel, on "
+    "the point itself if no body has it, as on the end of a rack",
+    "along the user's axes",
+)
+HINGE_THRUST = Quantity(
+    "hinge_thrust",
+    "force along the hinge",
+    "N",
+    "car",
+    "of each hinge, by its first point: what acts on the same body along the line, at both points together",
+    "from the first point that the body lists to the second",
+)
 HOLDING = "damper"
 ROLES = ("wheel_axis", "knuckle")
 AXES = np.eye(3)

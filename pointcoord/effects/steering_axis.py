@@ -122,20 +122,57 @@ def hub_trail(axis: Axis[S]) -> S:
     return axis.view.along(axis.at_wheel, "rearward")
 
 
-LENGTHS: tuple[tuple[str, str, str, Callable[[Axis[S]], S]], ...] = (
-    ("kingpin_offset", "kingpin offset at ground", "where the axis is inboard", kingpin_offset),
-    ("scrub_radius", "scrub radius", "", scrub_radius),
-    ("mechanical_trail", "mechanical trail", "where the axis is ahead", mechanical_trail),
-    ("castor_offset", "castor offset at ground", "where the axis is ahead", castor_offset),
+LENGTHS: tuple[tuple[str, str, str, str, str, Callable[[Axis[S]], S]], ...] = (
+    (
+        "kingpin_offset",
+        "kingpin offset at ground",
+        "where the axis is inboard",
+        "from the axis at the height of c to c, along outboard",
+        "Lotus, Altair",
+        kingpin_offset,
+    ),
+    (
+        "scrub_radius",
+        "scrub radius",
+        "",
+        "the distance of c from the axis at its height",
+        "ISO 8855, 7.2.10",
+        scrub_radius,
+    ),
+    (
+        "mechanical_trail",
+        "mechanical trail",
+        "where the axis is ahead",
+        "from c to the axis at its height, along the tyre's own x",
+        "ISO 8855, 7.2.3",
+        mechanical_trail,
+    ),
+    (
+        "castor_offset",
+        "castor offset at ground",
+        "where the axis is ahead",
+        "from c to the axis at its height, along forward",
+        "Lotus, Altair",
+        castor_offset,
+    ),
     (
         "kingpin_offset_at_wheel",
         "kingpin offset at the wheel centre",
         "where the axis is inboard",
+        "from the axis at the height of W to W, along outboard",
+        "Lotus",
         kingpin_offset_at_wheel,
     ),
-    ("hub_trail", "hub trail", "where the axis is behind", hub_trail),
+    (
+        "hub_trail",
+        "hub trail",
+        "where the axis is behind",
+        "from W to the axis at its height, along rearward",
+        "Lotus",
+        hub_trail,
+    ),
 )
-"""Name, words, sign and formula of each length of an axis."""
+"""Name, words, sign, definition, source and formula of each length of an axis."""
 
 
 def _of_role(formula: Callable[[Axis[S]], S], corner: Corner[S]) -> S:
@@ -150,11 +187,13 @@ STEERING_AXIS = CarNumbers.of(
             name,
             words,
             sign,
+            definition,
             partial(_of_role, formula),
             ("steering_axis", "wheel_axis"),
             formula not in (hub_trail, kingpin_offset_at_wheel),
+            source=source,
         )
-        for name, words, sign, formula in LENGTHS
+        for name, words, sign, definition, source, formula in LENGTHS
     ),
 )
 
@@ -190,12 +229,22 @@ def _lean(sine: Any, cosine: Any, corner: Corner[Dual[Any]]) -> Any:
     return angle(axis.view.along(axis.direction, sine), axis.view.along(axis.direction, cosine))
 
 
-def _number(name: str, words: str, sign: str, formula: Any, quantity: Quantity, power: int) -> Number:
+def _number(
+    name: str,
+    words: str,
+    sign: str,
+    formula: Any,
+    quantity: Quantity,
+    power: int,
+    definition: str = "",
+    source: str = "suspension-explorer, Altair",
+) -> Number:
     roles = ("wheel_axis", "knuckle")
     return Number(
         f"screw_{name}",
         f"{words} of the screw axis",
         sign,
+        definition or f"`{name}` with that axis in place of k",
         formula,
         roles,
         True,
@@ -203,6 +252,7 @@ def _number(name: str, words: str, sign: str, formula: Any, quantity: Quantity, 
         (),
         BY_RACK,
         power,
+        source,
     )
 
 
@@ -215,8 +265,17 @@ SCREW_AXIS = CarNumbers.of(
     ),
     *(
         _number(name, words, sign, partial(_length, formula), DIMENSION, 1)
-        for name, words, sign, formula in LENGTHS
+        for name, words, sign, _, _, formula in LENGTHS
     ),
-    _number("pitch", "pitch", "where it is a right-handed screw", pitch, PITCH, 1),
+    _number(
+        "pitch",
+        "pitch",
+        "where it is a right-handed screw",
+        pitch,
+        PITCH,
+        1,
+        "how far the knuckle goes along the screw axis for a radian about it",
+        "",
+    ),
     nowhere="the wheel does not turn as the rack moves",
 )

@@ -36,9 +36,19 @@ def _components(corner: Corner[S]) -> tuple[S, S, S]:
     return view.along(view.spin, "up"), view.along(view.spin, "forward"), view.along(view.spin, "outboard")
 
 
-def _arcsine(of: Angle, formula: Any) -> Number:
+def _arcsine(of: Angle, definition: str, formula: Any, source: str) -> Number:
     name, words = f"{of.name}_by_arcsine", f"{of.words} by arcsine"
-    return Number(name, words, of.sign, formula, needs_radius=False, quantity=WHEEL, power=0)
+    return Number(
+        name,
+        words,
+        of.sign,
+        definition,
+        formula,
+        needs_radius=False,
+        quantity=WHEEL,
+        power=0,
+        source=source,
+    )
 
 
 LEAN = Angle(
@@ -50,6 +60,7 @@ LEAN = Angle(
     cosine="outboard",
     steepest=45.0,
     steepest_by_default=10.0,
+    source="paper, eq. 17; Lotus",
 )
 POINTING = Angle(
     name="toe",
@@ -58,6 +69,7 @@ POINTING = Angle(
     line="wheel_axis",
     sine="forward",
     cosine="outboard",
+    source="ISO 8855, 7.1.6; Lotus",
 )
 STEER = Angle(
     name="steer_angle",
@@ -76,6 +88,7 @@ KINGPIN = Angle(
     cosine="up",
     steepest=45.0,
     steepest_by_default=45.0,
+    source="paper, eq. 16; Lotus",
 )
 LEAN_REARWARD = Angle(
     name="caster",
@@ -84,6 +97,7 @@ LEAN_REARWARD = Angle(
     line="steering_axis",
     sine="rearward",
     cosine="up",
+    source="all",
 )
 CAMBER = CarNumbers.of("camber", "camber angle, rad", LEAN)
 WHEEL_ANGLES = CarNumbers.of("wheel_angles", "camber and kingpin angle, rad", LEAN, KINGPIN)
@@ -93,6 +107,6 @@ CASTER = CarNumbers.of("caster", "caster angle, rad", LEAN_REARWARD)
 ANGLES_BY_ARCSINE = CarNumbers.of(
     "angles_by_arcsine",
     "camber and toe as arcsines, rad",
-    _arcsine(LEAN, camber_by_arcsine),
-    _arcsine(POINTING, toe_by_arcsine),
+    _arcsine(LEAN, "-asin(n . up)", camber_by_arcsine, "Adams/Car's turning tables"),
+    _arcsine(POINTING, "asin(n . forward)", toe_by_arcsine, "OptimumK"),
 )

@@ -31,17 +31,35 @@ def recession(corner: Corner[S]) -> S:
     return corner.seen.along(corner.moved(), "rearward")
 
 
-TRAVEL = Number("travel", "travel of the wheel centre", "up", travel, needs_radius=False)
+TRAVEL = Number(
+    "travel", "travel of the wheel centre", "up", "(W - drawn W) . up", travel, needs_radius=False
+)
 WHEEL_TRAVEL = CarNumbers.of(
     "wheel_travel",
     "travel, half-track change and recession of the wheel, mm",
     TRAVEL,
-    Number("contact_travel", "travel of the contact point", "up", contact_travel),
-    Number("half_track_change", "half-track change", "where the contact point goes out", half_track_change),
+    Number(
+        "contact_travel",
+        "travel of the contact point",
+        "up",
+        "(c - drawn c) . up, which Lotus calls bump",
+        contact_travel,
+        source="Lotus",
+    ),
+    Number(
+        "half_track_change",
+        "half-track change",
+        "where the contact point goes out",
+        "(c - drawn c) . outboard",
+        half_track_change,
+        source="Lotus",
+    ),
     Number(
         "recession",
         "recession",
         "where the contact point goes rearward, which at a rear axle makes the wheelbase longer",
+        "(c - drawn c) . rearward: the change of the wheelbase at a rear axle, minus it at a front one",
         recession,
+        source="Lotus",
     ),
 )

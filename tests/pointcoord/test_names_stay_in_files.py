@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from every_effect import OF_A_WHEEL
+from table_of_effects import rows, table
 
 import pointcoord
 from pointcoord.effects import registry
@@ -114,3 +115,13 @@ def test_every_effect_of_positions_of_the_car_has_gradients_along_every_way() ->
     effects = [EFFECTS[name] for name in OF_A_WHEEL]
     plain = {n for one in effects if not (one.way or one.base) for n in one.own_names}
     assert {n + way for n in plain for way in WAYS} <= NUMBERS_OF_THE_CAR.keys()
+
+
+def test_the_table_of_the_page_is_what_the_effects_say_of_themselves() -> None:
+    (shown,) = re.findall(r"<!-- figure effects -->\n.*?\n\n(.*?)\n\n<!-- end -->", PAGE, flags=re.S)
+    assert shown == table(), "python tests/figures.py effects"
+
+
+def test_each_number_has_a_definition_in_the_table_and_a_unit() -> None:
+    assert [row for row in rows() if row[2].endswith(": ") or not (row[1] and row[4])] == []
+    assert [row for row in rows() if "|" in "".join(row)] == []
