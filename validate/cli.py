@@ -157,7 +157,7 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
     if name not in COMMANDS:
         problem = "no command is given"
         if name:
-            problem = f"no command is called {shown(name)}{meant(name, COMMANDS)}"
+            problem = f"no command is called {shown(name)}{_scene_instead(name) or meant(name, COMMANDS)}"
         raise UsageError(f"{problem}; there are: {', '.join(COMMANDS)}; see pointcoord --help")
     one = parser(name)
     try:
@@ -167,6 +167,33 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
         with suppress(UsageError, TypeError):
             return one.parse_intermixed_args(words[1:])
         raise
+
+
+def _scene_instead(name: str) -> str:
+    """What to write where a word that is no command has to do with scenes; empty if it does not.
+
+    It is a scene's file, or a whole word or several of the name of a built-in scene or a shipped mechanism.
+    """
+    from pointcoord import Scene, built_in_scenes
+    from pointcoord.mechanism import shipped
+
+    plain, scenes = name.lower().replace("_", "-"), built_in_scenes()
+
+    def within(one: str) -> bool:
+        return f"-{plain}-" in f"-{one.replace('_', '-')}-"
+
+    named = [plain] if plain in scenes else [scene for scene in scenes if within(scene)]
+    if name.endswith(".toml"):
+        what, named = "a scene's file stands after a command", [shown(name)]
+    elif plain in named:
+        what = f"{plain} is a scene"
+    elif named:
+        what = f"there is {' and '.join(named)} among the scenes"
+    else:
+        types = [type for type in shipped() if within(type)]
+        named = [scene for scene in scenes if types and Scene.load(scene).mechanism.type in types]
+        what = f"{' and '.join(types)} is a mechanism, of {', '.join(named)}"
+    return f" ({what}: pointcoord simulate {named[0]})" if named else ""
 
 
 def parser(name: str) -> Parser:

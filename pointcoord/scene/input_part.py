@@ -7,12 +7,12 @@ from itertools import pairwise
 from math import isfinite
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from pointcoord.mechanism.faults import TableFault
 from pointcoord.scene.scene_part import AS_LIST, Number, Part, Place
 from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
-from pointcoord.wording import shown
+from pointcoord.wording import meant, shown
 
 SUM, SWEEP = "sum", "sweep"
 LAWS = ("constant", "polynomial", "sine", "table", SUM)
@@ -22,20 +22,31 @@ DRAWN = "drawn"
 VALUES = {"sine": "offset", "table": "values"}
 
 
+def _no_word(value: object) -> object:
+    """Anything but text: "drawn" has become a number before."""
+    if isinstance(value, str):
+        raise ValueError(f'is {shown(value)}{meant(value, (DRAWN,))}; allowed: a number, or "{DRAWN}"')
+    return value
+
+
+Value = Annotated[Number, BeforeValidator(_no_word)]
+"""A number that may be written as "drawn"."""
+
+
 class SinePart(Part):
     """offset + amplitude sin(angular_frequency t + phase)."""
 
     amplitude: Number
     angular_frequency: Number
     phase: Number = 0.0
-    offset: Number = 0.0
+    offset: Value = 0.0
 
 
 class TablePart(Part):
     """A cubic spline through values at increasing times."""
 
     times: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
-    values: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=4)]
+    values: Annotated[tuple[Value, ...], AS_LIST, Field(min_length=4)]
 
     def agree(self) -> None:
         if len(self.times) != len(self.values):
@@ -56,8 +67,8 @@ class InputPart(Part):
 
     short_forms = (SWEEP,)
 
-    constant: Number | None = None
-    polynomial: Annotated[tuple[Number, ...], AS_LIST, Field(min_length=1)] | None = None
+    constant: Value | None = None
+    polynomial: Annotated[tuple[Value, ...], AS_LIST, Field(min_length=1)] | None = None
     sine: SinePart | None = None
     table: TablePart | None = None
     sum: Annotated[tuple[InputPart, ...], AS_LIST, Field(min_length=1)] | None = None
@@ -89,6 +100,13 @@ class InputPart(Part):
         """The tables that it is made of."""
         of_terms = (table for term in self.sum or () for table in term.tables)
         return (*of_terms, *(() if self.table is None else (self.table,)))
+
+
+def stands_still(law: Any) -> bool:
+    """Whether a law as plain data is a constant, or a sum of such."""
+    return isinstance(law, Mapping) and (
+        [*law] == ["constant"] or ([*law] == [SUM] and all(map(stands_still, _terms(law))))
+    )
 
 
 def sweeps(law: Any) -> bool:

@@ -38,7 +38,16 @@ from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.csv_table import beside, read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, says_drawn, sweeps, swept, with_drawn
+from pointcoord.scene.input_part import (
+    LAWS,
+    SWEEP,
+    InputPart,
+    says_drawn,
+    stands_still,
+    sweeps,
+    swept,
+    with_drawn,
+)
 from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
@@ -59,7 +68,8 @@ from pointcoord.wording import meant, shown
 # The built-in ones. (importlib.resources takes as long to import as a fifth of numpy.)
 SCENES = Path(__file__).parents[1] / "scenes"
 
-# The instants of a scene that sweeps and says nothing of time; s.
+# The instants of a scene that says nothing of time, if it stands still and if it sweeps; s.
+ONE_POSE = {"start": 0.0, "stop": 0.0, "samples": 1}
 PLAIN_TIME = {"start": 0.0, "stop": 1.0, "samples": 101}
 # Seconds. The power of two above 2e15 s, 2^51, is the largest unit of time of a motion; to the 20th
 # power, the order of its series, it stays below the largest number, 2^1024.
@@ -525,7 +535,9 @@ class Scene(Part):
                 values = _drawn_values(content.get("mechanism"), inputs)
                 inputs = {name: with_drawn(law, values.get(name, 0.0)) for name, law in inputs.items()}
             if any(map(sweeps, inputs.values())):
-                content["time"] = content.get("time", PLAIN_TIME)
+                content.setdefault("time", PLAIN_TIME)
+            elif inputs and all(map(stands_still, inputs.values())):
+                content.setdefault("time", ONE_POSE)
             inputs = {n: swept(law, content.get("time"), ("inputs", n)) for n, law in inputs.items()}
         content["inputs"] = inputs
         return content

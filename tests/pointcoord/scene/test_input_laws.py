@@ -43,6 +43,18 @@ def test_at_its_drawn_value_an_input_leaves_every_point_where_it_is_drawn(law: A
     assert abs(value - drawn_value - amplitude * np.sin(frequency * 0.2)) <= 4e-16
 
 
+@pytest.mark.parametrize("still", [{"constant": "drawn"}, {"sum": [{"constant": "drawn"}, HELD]}])
+def test_a_scene_whose_inputs_are_constant_is_one_pose_and_needs_no_time(still: Any) -> None:
+    content = {name: value for name, value in wishbone(still).items() if name != "time"}
+    scene = Scene.from_mapping(content)
+    assert scene.instants.tolist() == [0.0]
+    motion = simulate(scene)
+    for name, drawn in scene.mechanism.points.items():
+        assert np.allclose(motion.position[name], [drawn], rtol=0.0, atol=2e-12)
+    with pytest.raises(SceneError, match="time: this key is missing"):
+        Scene.from_mapping({**content, "inputs": {"arm_angle": AROUND, "rack": HELD}})
+
+
 def test_units_and_tables_in_files_hold_for_terms_too(tmp_path: Path) -> None:
     (tmp_path / "bump.csv").write_text("0,0\n0.5,0.01\n1,0.02\n2,0.01\n")
     laws = '{ sum = [{ table = "bump.csv" }, { constant = 0.005 }] }'
@@ -64,7 +76,13 @@ def test_units_and_tables_in_files_hold_for_terms_too(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        ({"constant": "drawm"}, "arm_angle.constant: Input should be a valid number, not 'drawm'"),
+        (
+            {"constant": "draw"},
+            "arm_angle.constant: is 'draw' (did you mean 'drawn'?); allowed: a number, or \"drawn\"",
+        ),
+        ({"polynomial": [0.0, "up"]}, "arm_angle.polynomial.1: is 'up'; allowed: a number, or \"drawn\""),
+        ({"sum": [{"sine": {**AROUND["sine"], "offset": "up"}}]}, "arm_angle.sum.0.sine.offset: is 'up'; a"),
+        ({"table": {"times": [0, 1, 2, 3], "values": ["up"] * 4}}, "arm_angle.table.values.0: is 'up'; a"),
         (
             {"sine": {"amplitude": "drawn", "angular_frequency": 1.0}},
             "arm_angle.sine.amplitude: Input",
