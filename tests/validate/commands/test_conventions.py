@@ -1,5 +1,6 @@
 """Names mean what Adams/Car, OptimumK and Lotus mean by them where a table or a map says so."""
 
+import csv
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from validate.curves.numbers import as_meant, found
 
 Array = NDArray[np.float64]
 CAR = Scene.load("double-wishbone")
-UP, FORWARD = 2, 0  # of its axes; x points rearward
+UP, OUTBOARD, FORWARD = 2, 1, 0  # of its axes; x points rearward
 
 
 def spin_axis() -> tuple[Array, Array]:
@@ -32,6 +33,32 @@ def camber_of_adams() -> Array:
 def toe_of_optimumk() -> Array:
     """+ out: minus the arcsine of what points forward."""
     return np.degrees(np.arcsin(spin_axis()[1][:, FORWARD]))
+
+
+def steer_angle_of_iso() -> Array:
+    """Of a right wheel: + where what points outboard points forward too, projected into the road."""
+    _, n = spin_axis()
+    return np.degrees(np.arctan2(-n[:, FORWARD], n[:, OUTBOARD]))
+
+
+@pytest.mark.parametrize(
+    ("convention", "number", "heading", "defined"),
+    [
+        ("adams", "camber", "camber_by_arcsine [deg]", camber_of_adams),
+        ("optimumk", "toe", "-toe_by_arcsine [deg]", toe_of_optimumk),
+        ("optimumk", "steer_angle", "steer_angle [deg]", steer_angle_of_iso),
+    ],
+)
+def test_a_table_has_the_number_that_a_program_means(
+    convention: str, number: str, heading: str, defined: Callable[[], Array], tmp_path: Path
+) -> None:
+    path = tmp_path / "car.csv"
+    rows = ("--rows", str(len(CAR.instants)))
+    said = ("--number", number, "--convention", convention)
+    assert main(["table", "double-wishbone", *said, *rows, "-o", str(path), "--quiet"]) == 0
+    found = [float(row[heading]) for row in csv.DictReader(path.read_text().splitlines())]
+    # Both from the same points, in degrees: some roundings of 57.
+    np.testing.assert_allclose(found, defined(), rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize(
