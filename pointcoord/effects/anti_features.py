@@ -70,7 +70,8 @@ ANTI_FEATURES = CarNumbers.of(
         "anti_brake",
         "anti-dive of a front axle, anti-lift of a rear one, as it brakes",
         "where the car dives or lifts less",
-        "100 b s (v . rearward)/(v . up) L/(H - `contact_travel`), v of c fixed in the knuckle",
+        "100 s brake_share (v . rearward)/(v . up) wheelbase/(centre_of_gravity_height - `contact_travel`), "
+        "s = -1 in front and 1 behind, v of c fixed in the knuckle",
         anti_brake,
         "brake_share",
         "within 0.0071 points of Lotus",
@@ -79,7 +80,8 @@ ANTI_FEATURES = CarNumbers.of(
         "anti_drive",
         "anti-lift of a front axle, anti-squat of a rear one, as it drives",
         "where the car lifts or squats less",
-        "100 d s (v . rearward)/(v . up) L/(H - `contact_travel`), v of W",
+        "100 s drive_share (v . rearward)/(v . up) wheelbase/(centre_of_gravity_height - `contact_travel`), "
+        "v of W",
         anti_drive,
         "drive_share",
         "Lotus, suspension-explorer",
