@@ -9,6 +9,7 @@ import pytest
 
 from pointcoord import Scene
 from validate import Accuracy, FormulationError, Outcome, Solution, compare
+from validate.formulations.protocol import AccuracyError
 
 SCENE = Scene.load("double-wishbone")
 COUNT = len(SCENE.instants)
@@ -132,3 +133,18 @@ def test_numbers_that_are_none_are_counted_by_instants_and_whole_ones_not_told_o
     told = f"mine: position of wheel_centre is not a number at 2 of {COUNT} instants"
     assert told in notes[0]
     assert not any("not a number" in note or "instants; the others" in note for note in notes[1])
+
+
+@pytest.mark.parametrize(
+    ("claim", "said"),
+    [
+        (np.full((COUNT, 3), -1e-9), "velocity of wheel_centre is -1e-09 at instant number 0"),
+        (np.full((COUNT, 3), np.nan), "is nan"),
+        (np.ones((COUNT, 3), dtype=int), "is of type int64"),
+        (np.ones(COUNT), "has the shape"),
+    ],
+)
+def test_a_claim_that_is_no_bound_is_refused_with_what_is_allowed(claim: Any, said: str) -> None:
+    with pytest.raises(AccuracyError, match="allowed: ") as caught:
+        Accuracy(np.ones(COUNT), {"velocity": {"wheel_centre": claim}})
+    assert said in str(caught.value)

@@ -11,7 +11,7 @@ from mechanism_files import mechanism_file, plain, plain_scene
 from numpy.typing import NDArray
 from sample_cars import GENERAL_STRUT, PAPER_STRUT, SampleCar
 
-from validate.peers.errors import HardpointsError, PeerError, PoseError
+from validate.peers.errors import HardpointsError, InputError, PeerError, PoseError
 from validate.peers.in_exudyn import InExudyn
 from validate.peers.in_mujoco import InMujoco
 from validate.peers.in_pinocchio import InPinocchio
@@ -32,9 +32,9 @@ def held(values: Array) -> Array:
     return np.stack([values, 0.0 * values, 0.0 * values], axis=-1)
 
 
-def solved(mechanism: Any, laws: dict[str, Array]) -> Poses:
+def solved(mechanism: Any, laws: dict[str, Array], program_of: Any = InPinocchio) -> Poses:
     linkage = linkage_of(mechanism)
-    program = InPinocchio(linkage)
+    program = program_of(linkage)
     return program.poses(linkage.inputs(laws).values, 1e-12, program.closed(1e-12))
 
 
@@ -77,6 +77,18 @@ def test_inputs_that_are_too_many_or_too_few_are_refused() -> None:
         InPinocchio(linkage_of(mechanism)).closed(1e-12)
 
 
+@pytest.mark.parametrize("wrong", [np.nan, None])
+def test_an_input_that_is_no_number_or_missing_is_refused_with_its_instant(wrong: float | None) -> None:
+    laws = {name: held(np.full(9, value)) for name, value in PAPER_STRUT.drawn_inputs.items()}
+    if wrong is None:
+        del laws["rack"]
+    else:
+        laws["rack"][7, 0] = wrong
+    with pytest.raises(InputError, match="rack") as caught:
+        linkage_of(plain_car(PAPER_STRUT)).inputs(laws)
+    assert caught.value.instant == (None if wrong is None else 7)
+
+
 def test_two_branches_that_cross_at_once_are_not_exchanged() -> None:
     """With its cranks in line both loops change the sign of a determinant, and not that of their product."""
     with pytest.raises(PoseError, match="cannot be reached"):
@@ -114,7 +126,7 @@ def test_a_way_that_turns_back_before_a_fold_is_followed_back(program_of: Any) -
     with pytest.raises(PoseError) as caught:
         solved(mechanism, {"stroke": held(np.array([15.0, 75.0]))}, program_of)
     strokes = np.array([15.0, caught.value.reached["stroke"] - 1e-11, 15.0])
-    _, poses = solved(mechanism, {"stroke": held(strokes)}, program_of)
+    poses = solved(mechanism, {"stroke": held(strokes)}, program_of)
     assert np.abs(poses.coordinates[0] - poses.coordinates[2]).max() < 1e-11
 
 
