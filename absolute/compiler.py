@@ -103,7 +103,8 @@ class _Compiler:
             if "turns" in given:
                 _one_of(f"the point of input {name!r}", self.points, given["about"])
                 _one_of(f"`along` of input {name!r}", self.directions, given["along"])
-                self.turns[name] = Turn(self.points[given["about"]], self.directions[given["along"]])
+                rolls = given["along"] in ("forward", "rearward")
+                self.turns[name] = Turn(self.points[given["about"]], self.directions[given["along"]], rolls)
             elif "moves" not in given:
                 kind = next((kind for kind in INPUTS if kind in given), "")
                 _one_of(f"the kind of input {name!r}", INPUTS, kind or str(list(given)))

@@ -57,7 +57,8 @@ class Effect:
         unit: of the value.
         value: (N,) of a motion looked at from a wheel; or, of an axle, from the left and the right one.
         by: the input of each wheel that it takes derivatives by: "rack", the one that is the travel of a
-            slide, "travel", the one that is not; "time" for all of them as they move; or "" for none.
+            slide, "travel", the one that is not, "roll", the one that rolls the chassis; "time" for all of
+            them as they move; or "" for none.
     """
 
     unit: str
@@ -282,7 +283,7 @@ OF_VELOCITIES: Mapping[str, tuple[str, Callable[[Motion], Array]]] = {
 
 def derived(number: Number, by: str) -> Callable[[Motion], Array]:
     """A number, or its change: for each mm of travel, all other inputs and the chassis held; for each mm of
-    the slide, all else held; for each second, as everything moves."""
+    the slide, or rad of roll, all else held; for each second, as everything moves."""
 
     def of(motion: Motion) -> Array:
         found = number(motion)
@@ -298,7 +299,7 @@ def _wheel_effects() -> Iterator[tuple[str, Effect]]:
     for unit, numbers in (("rad", ANGLES), ("mm", LENGTHS)):
         for name, number in numbers.items():
             yield name, Effect(unit, derived(number, ""))
-            for by, per in (("travel", "mm"), ("rack", "mm"), (TIME, "s")):
+            for by, per in (("travel", "mm"), ("rack", "mm"), ("roll", "rad"), (TIME, "s")):
                 yield f"{name}_by_{by}", Effect(f"{unit}/{per}", derived(number, by), by)
     for by, table in (("travel", OF_VELOCITIES), ("rack", OF_RACK)):
         for name, (unit, value) in table.items():
@@ -558,7 +559,7 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
 
 
 def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str], str]:
-    """Part and "travel" or "rack" -> the value of the input that effects take their derivatives by.
+    """Part and "travel", "rack" or "roll" -> the value of the input that effects take their derivatives by.
 
     Raises:
         DescriptionError: there is not exactly one such input.

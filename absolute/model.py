@@ -11,6 +11,11 @@ from absolute.errors import DescriptionError
 from absolute.solution import Array
 
 CHASSIS = "chassis"
+KINDS = {
+    "travel": "is not the travel of a slide",
+    "rack": "is the travel of a slide",
+    "roll": "rolls the chassis",
+}
 
 
 class Row(NamedTuple):
@@ -153,10 +158,14 @@ def _lacking(what: str, where: str, name: str) -> DescriptionError:
 
 @dataclass(frozen=True)
 class Turn:
-    """A line through the drawn place of a point, mm, about which an input turns the whole car."""
+    """A line through the drawn place of a point, mm, about which an input turns the whole car.
+
+    It rolls the car where the line leads forward or rearward.
+    """
 
     about: Array
     axis: Array
+    rolls: bool
 
 
 @dataclass(frozen=True)
@@ -203,7 +212,8 @@ class Model:
         return tuple(dict.fromkeys(drive.value for drive in self.inputs))
 
     def input_of(self, part: str, by: str, what: str) -> str:
-        """The one driven input of a part, or of all, that is the travel of a slide ("rack") or is not.
+        """The one driven input of a part, or of all, that is the travel of a slide ("rack"), that is not
+        ("travel"), or that rolls the chassis ("roll").
 
         Raises:
             DescriptionError: there is none, or another; `what` needs it.
@@ -212,8 +222,10 @@ class Model:
         holding = (drive for drive in self.inputs if not drive.moves)
         own = {drive.value: drive.steers for drive in holding if not drive.value.startswith(others)}
         found = [value for value, steers in own.items() if bool(steers) == (by == "rack")]
+        if by == "roll":
+            found = [value for value, turn in self.turns.items() if turn.rolls]
         if len(found) != 1:
-            kind = "is the travel of a slide" if by == "rack" else "is not the travel of a slide"
+            kind = KINDS[by]
             raise DescriptionError(
                 f"{what} needs exactly one driven input that {kind}, and there are {len(found)}: "
                 f"{found} of {list(own)}; drive other inputs, or ask for other effects",

@@ -58,8 +58,8 @@ class Motion:
 
     Attributes:
         chassis: (N, 1 + R, 3) displacement of the chassis and its rates, mm and s, after its turns.
-        by: part, and "travel" or "rack", of the K inputs that effects take derivatives by; behind these are
-            those by time.
+        by: part, and "travel", "rack" or "roll", of the K inputs that effects take derivatives by; behind
+            these are those by time.
         part: whose wheel is looked at.
     """
 
@@ -125,11 +125,12 @@ class Motion:
         moved = self.place(point)
         moved[0] -= self.mechanism.drawing.origins[body] + arm
         # A turn takes the difference of two places as a vector, and moves the drawn one as well.
-        turned = np.zeros((2, *moved.shape[1:]))
-        for turn in self.turns:
-            turned = turn.seen_point(turned, self.mechanism.drawing.points[point])
         slopes = np.zeros_like(moved[1:])
-        slopes[-1] = turned[1]
+        for column, turns in self._turning:
+            turned = np.zeros((2, *moved.shape[1:]))
+            for turn in turns:
+                turned = turn.seen_point(turned, self.mechanism.drawing.points[point])
+            slopes[column] = turned[1]
         return self._seen(moved) + Dual(turned[0].T, slopes.T)
 
     def drawn(self, point: str) -> Dual:
@@ -144,11 +145,19 @@ class Motion:
         """(3, N, K + 1) angular velocity of a body for unit rates of inputs, and over time, as the ground
         sees it."""
         spins = self._slopes(self.mechanism.drawing.bodies[on], 1)
-        seen, over_time = self.turned(spins), spins[-1:]
-        for turn in self.turns:
-            over_time = turn.seen(over_time) + turn.rates[:1]
-        seen[-1] = over_time[0]
+        seen = self.turned(spins)
+        for column, turns in self._turning:
+            spin = spins[column][None]
+            for turn in turns:
+                spin = turn.seen(spin) + turn.rates[:1]
+            seen[column] = spin[0]
         return seen.T
+
+    @property
+    def _turning(self) -> tuple[tuple[int, tuple[Turning, ...]], ...]:
+        """The slopes in which the chassis turns, and how: by roll, and by time."""
+        rolling = tuple(turn.by_roll for turn in self.turns)
+        return (*((k, rolling) for k, (_, by) in enumerate(self.by) if by == "roll"), (-1, self.turns))
 
     def turned_back(self, vector: Array) -> Array:
         """Vectors (N, 3) that the ground sees, in the frame of the chassis."""
@@ -164,10 +173,12 @@ class Motion:
 
     def _seen(self, vector: Array) -> Dual:
         """A vector and its slopes (2 + K, N, 3), in units of size, as the ground sees it, mm."""
-        seen, over_time = self.turned(vector), vector[[0, -1]]
-        for turn in self.turns:
-            over_time = turn.seen(over_time)
-        seen[-1] = over_time[1]
+        seen = self.turned(vector)
+        for column, turns in self._turning:
+            state = np.stack((vector[0], vector[1:][column]))
+            for turn in turns:
+                state = turn.seen(state)
+            seen[1:][column] = state[1]
         seen = (seen * self.mechanism.drawing.size).T
         return Dual(seen[..., 0], seen[..., 1:])
 

@@ -141,9 +141,9 @@ class Assembled:
         still = np.zeros((len(series), orders, 3))
         carried = still if chassis is None else checked("chassis", chassis, (orders, 3), len(series))
         turns = [
-            (turn, checked(name, inputs[name], (orders,), len(series)))
+            (turn, checked(name, inputs.get(name, still[..., 0]), (orders,), len(series)))
             for name, turn in model.turns.items()
-            if name in inputs
+            if name in inputs or name in by.values()
         ]
         # Inputs that take the same value have a column each.
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
@@ -152,7 +152,7 @@ class Assembled:
         def solution(count: int | None = None) -> Solution:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
             there = len(found.residual)
-            turned = tuple(Turning(turn.about, turn.axis, angle[:there]) for turn, angle in turns)
+            turned = tuple(Turning(turn.about, turn.axis, angle[:there], turn.rolls) for turn, angle in turns)
             motion = Motion(mechanism, found, carried[:there], turned, tuple(by))
             carried_by = forces(motion) if loads else {}
             return motion.solution(rates, conditions, effects=numbers_of(asked, motion), **carried_by)

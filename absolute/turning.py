@@ -14,7 +14,7 @@ whose rates are s and s', angular velocity w + R s and angular acceleration a + 
 next one takes what the one before has made. A displacement is added last.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
@@ -29,11 +29,19 @@ class Turning:
 
     Attributes:
         about: P, (3,), mm. axis: u, (3,). angle: t, t', t'' and so on, (N, orders), rad and s.
+        rolls: whether it rolls the car.
     """
 
     about: Array
     axis: Array
     angle: Array
+    rolls: bool
+
+    @property
+    def by_roll(self) -> "Turning":
+        """The same at unit rate if it rolls the car, and at rest if not."""
+        rate = np.full(len(self.angle), float(self.rolls))
+        return replace(self, angle=np.stack((self.angle[:, 0], rate), axis=1))
 
     @property
     def rotation(self) -> Array:

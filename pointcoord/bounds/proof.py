@@ -252,7 +252,9 @@ def _slopes(
         for points, gap in zip(places, (np.zeros(3), np.eye(3)[way.axis]), strict=True):
             points[GAP] = Enclosed.of(np.broadcast_to(gap, (len(slopes), 3))).together(poses.groups.together)
     values = {n: laws[n][0] for n in chassis.turning}
-    held = {n: [value, value.like(np.zeros(value.middle.shape))] for n, value in values.items()}
+    held = {
+        n: [value, value.like(np.full(value.middle.shape, float(n == driven)))] for n, value in values.items()
+    }
     return chassis.turned_exactly(held, places, float(mechanism.unit))[1], places[1]
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 DIMENSION = Quantity("dimension", "dimension", "mm", "car")
-BY_TRAVEL, BY_RACK = "by_travel", "by_rack"
+BY_TRAVEL, BY_RACK, BY_ROLL = "by_travel", "by_rack", "by_roll"
 # What a scene may say of the car, and how, for those who did not.
 SUCH_AS = {
     "axle": '"front"',
@@ -43,7 +43,11 @@ SUCH_AS = {
     "spring_free_length": "350.0",
 }
 LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
-KINDS = {BY_TRAVEL: "is no travel of a slide", BY_RACK: "is the travel of a slide or a steering wheel"}
+KINDS = {
+    BY_TRAVEL: "is no travel of a slide",
+    BY_RACK: "is the travel of a slide or a steering wheel",
+    BY_ROLL: "rolls the chassis",
+}
 
 
 @dataclass(frozen=True, eq=False)

@@ -124,11 +124,15 @@ class Topology:
         return self.wheel_axis[1] if self.wheel_axis else ""
 
     def driven_along(self, way: str, part: str = "") -> tuple[str, ...]:
-        """The driven inputs that are the travel of a slide, `by_rack`, or those that are not, `by_travel`.
+        """The driven inputs that are the travel of a slide, `by_rack`, those that are not, `by_travel`, or
+        those that roll the chassis, `by_roll`.
 
         Args:
             part: whose wheel they move; those of another part are left out.
         """
+        if way == "by_roll":
+            turns = self.chassis_turns.items()
+            return tuple(name for name, (along, _) in turns if along in ("forward", "rearward"))
         steering = {drive.input for drive in self.drives if drive.of_slide}
         others = tuple(f"{other}." for other in self.sides if other != part)
         return tuple(

@@ -15,7 +15,7 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import Way, moved_along
+from pointcoord.linkage.slopes import ByInput, Way, moved_along
 from pointcoord.results.samples import Channel, Samples
 from pointcoord.results.table import State, Table, triples, vectors
 
@@ -177,10 +177,9 @@ class Readout:
     def slopes(self, laws: Laws, y: Array) -> Slopes:
         """By way, the derivatives of positions along it, after the turns of the chassis and before."""
         ways = self.plan.ways(self.mechanism.topology)
-        held = {name: [law[0], np.zeros_like(law[0])] for name, law in laws.items()}
         places, every = moved_along(self.mechanism, y, ways)
         return {
-            way: (self.chassis.turned_by(held, [places, slopes])[1], slopes)
+            way: (self.chassis.turned_by(_alone(laws, way), [places, slopes])[1], slopes)
             for way, slopes in zip(ways, every, strict=True)
         }
 
@@ -193,3 +192,9 @@ class Readout:
         elif origin.any():
             found[0] = origin
         return found
+
+
+def _alone(laws: Laws, way: Way) -> dict[str, list[Array]]:
+    """Laws by which one input goes at unit rate and the others are held."""
+    driven = way.input if isinstance(way, ByInput) else ""
+    return {name: [law[0], np.full_like(law[0], float(name == driven))] for name, law in laws.items()}

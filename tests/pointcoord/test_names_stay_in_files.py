@@ -19,7 +19,7 @@ from pointcoord.scene.scene_file import MOVES, CarPart
 PACKAGE = Path(pointcoord.__file__).parent
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
 PAGE = (PACKAGE / "effects" / "README.md").read_text(encoding="utf-8")
-WAYS = ("_by_travel", "_by_rack", "_by_time")
+WAYS = ("_by_travel", "_by_rack", "_by_roll", "_by_time")
 
 
 def said(tree: ast.Module) -> Iterator[str]:

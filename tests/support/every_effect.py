@@ -1,6 +1,7 @@
 """Scenes that ask for all that their cars have."""
 
 from pointcoord import Scene
+from pointcoord.effects.car_number import BY_ROLL
 from pointcoord.effects.registry import EFFECTS
 
 NUMBERS_OF_A_CAR = {
@@ -16,9 +17,9 @@ NUMBERS_OF_A_CAR = {
 OF_A_WHEEL = tuple(
     name
     for name, effect in EFFECTS.items()
-    if (effect.lines or effect.derivative) and not getattr(effect, "of_axle", False)
+    if (effect.lines or effect.derivative) and not getattr(effect, "of_axle", False) and effect.way != BY_ROLL
 )
-"""The effects that a mechanism without parts and loads may have."""
+"""The effects that a mechanism without parts, loads and a chassis that rolls may have."""
 
 
 def every_effect(name: str) -> Scene:

@@ -111,11 +111,12 @@ def place(name: str, values: Mapping[str, Any], turns: tuple[str, ...] = BOTH) -
 def numbers(effects: Sequence[str], given: Mapping[str, list[float]], time: float) -> dict[str, mpf]:
     """The numbers of effects, the inputs being polynomials of time, rad and mm."""
     with mp.workdps(DIGITS):
-        cars = {by: _car(given, time, by) for by in ("steer", "turn")}
+        cars = {by: _car(given, time, by) for by in ("steer", "turn", "roll")}
+        of_way = {"rack": "steer", "roll": "roll"}
         return {
             n: one
             for effect in effects
-            for of in by_hand(effect, cars["steer" if effect.endswith("_by_rack") else "turn"]).values()
+            for of in by_hand(effect, cars[of_way.get(effect.rpartition("_by_")[2], "turn")]).values()
             for n, (one,) in of.items()
         }
 

@@ -47,6 +47,7 @@ DIGITS = {
     "mm": 3,
     "deg/mm": 6,
     "mm/mm": 5,
+    "deg/rad": 4,
     "deg/s": 3,
     "mm/s": 2,
     "%": 2,

@@ -14,10 +14,11 @@ from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
 from validate.reference.dual import Dual, value_of
 from validate.reference.effects.car import KNUCKLE, LINES, RADIUS, Car, DrawnCar, Frame, lines_of
-from validate.reference.effects.effect import PAIR, RACK, TIME, TRAVEL, Effect
+from validate.reference.effects.effect import PAIR, RACK, ROLL, TIME, TRAVEL, Effect
 from validate.reference.effects.registry import named
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
+from validate.reference.jet import Jet
 from validate.reference.kinematics import unknown_rates
 from validate.reference.vectors import Scalar, Vector, times
 
@@ -90,12 +91,14 @@ def drawn_car(design: Design, number: Callable[[Fraction], Scalar], prefix: str 
 
 
 def drivers(design: Design, prefix: str = "") -> dict[str, str]:
-    """The driven input that `TRAVEL` and `RACK` go along in a part, where there is exactly one."""
+    """The driven input that `TRAVEL`, `RACK` and `ROLL` go along in a part, where there is exactly one."""
     inputs = design.plain["inputs"]
     others = tuple(other for other in design.corners if other != prefix)
     own = [name for name in design.mechanism.drives if not name.startswith(others)]
     racks = [name for name in own if not inputs[name].keys().isdisjoint(("travel", "steers"))]
-    of_kind = {TRAVEL: [name for name in own if name not in racks], RACK: racks}
+    turns = {name: spec for name, spec in inputs.items() if "turns" in spec}
+    rolls = [name for name, spec in turns.items() if spec["along"] in ("forward", "rearward")]
+    of_kind = {TRAVEL: [name for name in own if name not in racks], RACK: racks, ROLL: rolls}
     return {along: names[0] for along, names in of_kind.items() if len(names) == 1}
 
 
@@ -157,6 +160,10 @@ def effects_at(
                 if "steers" in design.plain["inputs"][driver]:
                     rate /= travel_per_radian(design.plain)
                 driven = known.driven_at(driver, rate)
+                if along == ROLL:
+                    laws = {n: Jet(jet.value, arb(n == driver)) for n, jet in known.inputs.items()}
+                    plain, table = design.plain, design.table
+                    chassis = ChassisMotion.of(plain, table, design.unit, laws, as_ball).with_slopes()
             if along is not None:
                 rates = unknown_rates(enclosure, driven, inverse)
                 pose = [Dual(y, slope) for y, slope in zip(enclosure, rates, strict=True)]

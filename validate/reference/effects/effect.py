@@ -17,7 +17,7 @@ from validate.reference.car_data import (
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL
 from validate.reference.vectors import Scalar
 
-TRAVEL, RACK, TIME = "by_travel", "by_rack", "by_time"
+TRAVEL, RACK, ROLL, TIME = "by_travel", "by_rack", "by_roll", "by_time"
 PAIR = "pair"
 
 NEEDS = {
@@ -28,6 +28,7 @@ NEEDS = {
     RADIUS: "a wheel_radius, mm",
     TRAVEL: "exactly one driven input that is not the travel of a slide and steers none",
     RACK: "exactly one driven input that is the travel of a slide or steers one",
+    ROLL: "exactly one driven input that turns the chassis about a line along the car",
     PAIR: "two parts on opposite sides of the car",
     AXLE: "the car's axle, 'front' or 'rear'",
     WHEELBASE: "the car's wheelbase, mm",
@@ -44,6 +45,7 @@ POWERS = {
     "mm": 1,
     "rad/mm": -1,
     "mm/mm": 0,
+    "rad/rad": 0,
     "rad/s": 0,
     "mm/s": 1,
     "%": 0,
@@ -63,9 +65,10 @@ class Effect:
         needs: what the car must have, of `NEEDS`; with `PAIR` each of the two parts.
         evaluate: the number of a `Car`, or with `PAIR` of the left and the right one, in their kind of scalar
             and their lengths; not a finite ball where it is undefined.
-        along: None, or `TRAVEL`, `RACK` or `TIME`: the numbers of the car are duals, whose slopes are by the
-            one driven input that is not the travel of a slide, in any unit, or by the one that is, in the
-            car's own lengths, while the other inputs and the chassis rest; or by time, as all of them move.
+        along: None, or `TRAVEL`, `RACK`, `ROLL` or `TIME`: the numbers of the car are duals, whose slopes are
+            by the one driven input that is not the travel of a slide, in any unit, by the one that is, in the
+            car's own lengths, or by the one that rolls the chassis, rad, while the others rest; or by time,
+            as all of them move.
     """
 
     name: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from validate.reference.effects import axle, wheel
-from validate.reference.effects.effect import RACK, TIME, TRAVEL, Effect
+from validate.reference.effects.effect import RACK, ROLL, TIME, TRAVEL, Effect
 from validate.reference.errors import BadInputError
 
 EFFECTS: dict[str, Effect] = {
@@ -30,7 +30,7 @@ def named(names: Iterable[str]) -> dict[str, Effect]:
         effect = EFFECTS.get(name.rpartition(".")[2])
         if effect is None:
             others = ", ".join(one.name for one in (*wheel.OF_MOTION, *axle.NUMBERS))
-            ways = f"each of these also with _{TRAVEL}, _{RACK} or _{TIME}; {others}"
+            ways = f"each of these also with _{TRAVEL}, _{RACK}, _{ROLL} or _{TIME}; {others}"
             raise BadInputError("effect", name, f"one of {', '.join(OF_POSITIONS)}, {ways}")
         found[name] = effect
     return found

@@ -21,7 +21,7 @@ from validate.reference.car_data import (
 )
 from validate.reference.dual import angle, slope_of, value_of
 from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car, contact_of
-from validate.reference.effects.effect import RACK, TIME, TRAVEL, Effect
+from validate.reference.effects.effect import RACK, ROLL, TIME, TRAVEL, Effect
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
@@ -299,7 +299,7 @@ def _gradient(effect: Effect, along: str, evaluate: Callable[[Car], Scalar], *mo
     return replace(
         effect,
         name=f"{effect.name}_{along}",
-        unit=f"{effect.unit}/mm",
+        unit=f"{effect.unit}/{'rad' if along == ROLL else 'mm'}",
         needs=needs,
         evaluate=evaluate,
         along=along,
@@ -316,6 +316,11 @@ def _by_travel(effect: Effect) -> Effect:
 def _by_rack(effect: Effect) -> Effect:
     """N', q the one driven input that is the travel of a slide."""
     return _gradient(effect, RACK, lambda car: slope_of(effect.evaluate(car)))
+
+
+def _by_roll(effect: Effect) -> Effect:
+    """N', q the one driven input that rolls the chassis."""
+    return _gradient(effect, ROLL, lambda car: slope_of(effect.evaluate(car)))
 
 
 def _by_time(effect: Effect) -> Effect:
@@ -381,5 +386,5 @@ OF_MOTION = (
 )
 
 GRADIENTS = tuple(
-    gradient(effect) for effect in OF_POSITIONS for gradient in (_by_travel, _by_rack, _by_time)
+    gradient(effect) for effect in OF_POSITIONS for gradient in (_by_travel, _by_rack, _by_roll, _by_time)
 )
