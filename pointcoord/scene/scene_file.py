@@ -641,9 +641,9 @@ class Scene(Part):
             askew = askew_hinges(part.structure, part.points)
             exact = f"; if the hinges {', '.join(askew)} are meant to be parallel, draw them exactly so"
             allowed = f"one freedom or more, so leave a rod or a slide out{exact if askew else ''}"
-            raise TableFault(
-                ("mechanism",), f"the {part.name} is locked: it has no freedom as drawn", allowed
-            )
+            driven = f"{', '.join(told)} {'is' if len(told) == 1 else 'are'}" if told else "nothing is"
+            locked = f"the {part.name} is locked: it has no freedom as drawn, and {driven} driven"
+            raise TableFault(("mechanism",), locked, allowed)
         if count < len(told):
             allowed = f"{count} input{'' if count == 1 else 's'}, so leave {len(told) - count} out"
             raise TableFault(("inputs",), words, allowed)

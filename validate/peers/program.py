@@ -69,7 +69,8 @@ class Program(ABC):
         rows: that are solved.
         blocks: rows and columns of the diagonal blocks of J_u. drawn: signs of their determinants as drawn.
         jacobian: J of the last Newton step.
-        way: direction of the way at the last pose. nearest: the largest condition number on it.
+        way: direction of the way at the last pose. begun: the condition number where it begins; nearest: the
+            largest one on it, if that is larger.
     """
 
     linkage: Linkage
@@ -82,6 +83,7 @@ class Program(ABC):
     drawn: Array
     jacobian: Array
     way: Array
+    begun: float = 1.0
     nearest: float = 1.0
 
     @property
@@ -241,9 +243,9 @@ class Program(ABC):
             The share of the way that is gone, and the last step.
         """
         done, share, last = 0.0, 1.0, 0.0
-        way, _ = self._way(start, goal - start)
+        way, condition = self._way(start, goal - start)
         if not way @ self.way > 0.0:  # it begins, or turns back the way that it came
-            self.nearest = 1.0
+            self.begun, self.nearest = condition, 1.0
         self.way = way
         while done < 1.0:
             kept, share = self.coordinates, min(share, 1.0 - done)
@@ -258,7 +260,9 @@ class Program(ABC):
                     break
             else:
                 done, last, share = done + share, step, 2.0 * share
-                self.way, self.nearest = way, max(condition, self.nearest)
+                self.way = way
+                if condition > self.begun:
+                    self.nearest = max(condition, self.nearest)
         return done, last
 
     def _turns_off(self, way: Array, condition: float) -> bool:
