@@ -110,6 +110,7 @@ def session(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Opene
 @pytest.fixture
 def report(session: Opened) -> Iterator[Opened]:
     """The page in a wide window, light, at its top; afterwards it has not complained."""
+    session.page.bring_to_front()
     session.page.set_viewport_size(WINDOW)
     session.page.emulate_media(media="screen", color_scheme="light", reduced_motion="no-preference")
     session.page.evaluate("scrollTo(0, 0); document.activeElement.blur()")
@@ -129,8 +130,12 @@ def settled(page: Page, folded: int = 1) -> None:
             for (const section of document.querySelectorAll("section"))
                 section.querySelectorAll("details").forEach((one, i) => { one.open = i < folded; });
             const start = performance.now();
-            const frame = () => new Promise((go, stop) => performance.now() - start < 60_000
-                ? requestAnimationFrame(go) : stop(new Error("a plot is not drawn")));
+            // A page that is behind another one has no frames: half a second must do there.
+            const frame = () => new Promise((go, stop) => {
+                if (performance.now() - start > 60_000) stop(new Error("a plot is not drawn"));
+                requestAnimationFrame(go);
+                setTimeout(go, 500);
+            });
             for (const one of document.querySelectorAll(".spatial > svg, [data-plot]")) {
                 if (!one.checkVisibility()) continue;
                 one.scrollIntoView();
