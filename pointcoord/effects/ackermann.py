@@ -12,12 +12,13 @@ cancels; arccot is between 0 and pi, as a wheel's angle is that rolls about a po
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from pointcoord.effects.arithmetic import angle, chosen, multiple, positive, ratio
-from pointcoord.effects.car_number import DIMENSION, CarNumbers, Number
+from pointcoord.effects.car_number import CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
 from pointcoord.effects.wheel_angles import STEER
@@ -74,22 +75,7 @@ def _track(left: Corner[Any], right: Corner[Any]) -> Any:
     return right.drawn.along(right.drawn.contact_place() - left.drawn.contact_place(), "outboard")
 
 
-def _number(
-    name: str,
-    words: str,
-    sign: str,
-    definition: str,
-    formula: Any,
-    quantity: Quantity,
-    power: int,
-    source: str = "",
-) -> Number:
-    data = ("wheelbase",)
-    return Number(
-        name, words, sign, definition, formula, quantity=quantity, data=data, power=power, source=source
-    )
-
-
+_number = partial(Number, data=("wheelbase",))
 ACKERMANN = CarNumbers.of(
     "ackermann",
     "turning radius, mm, Ackermann, %, and steer error, rad, of the axle",
@@ -99,9 +85,7 @@ ACKERMANN = CarNumbers.of(
         "",
         "R = L abs(cot d_l + cot d_r) / 2, d the steer angles of the left and the right wheel",
         turning_radius,
-        DIMENSION,
-        1,
-        "Lotus",
+        source="Lotus",
     ),
     _number(
         "ackermann",
@@ -110,9 +94,9 @@ ACKERMANN = CarNumbers.of(
         "100 (d_i - d_o) / (arccot((R - t/2) / L) - arccot((R + t/2) / L)), of the inner and the outer "
         "wheel's, t the track as drawn",
         ackermann,
-        ACKERMANN_SHARE,
-        0,
-        "within 0.04 points of Lotus",
+        quantity=ACKERMANN_SHARE,
+        power=0,
+        source="within 0.04 points of Lotus",
     ),
     _number(
         "ackermann_error",
@@ -120,8 +104,8 @@ ACKERMANN = CarNumbers.of(
         "where it is steered more than it would have to be",
         "d_o - arccot(cot d_i + t / L)",
         ackermann_error,
-        STEER_ERROR,
-        0,
+        quantity=STEER_ERROR,
+        power=0,
     ),
     nowhere="the wheels are not steered to the same side",
     of_axle=True,

@@ -10,6 +10,7 @@ The last is the part that a constant motion ratio has; F dr/dz comes to it where
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root
@@ -57,21 +58,7 @@ def wheel_rate(corner: Corner[Dual[Any]]) -> Any:
     return corner.car["spring_rate"].value * per_wheel * per_wheel
 
 
-def _number(
-    name: str,
-    words: str,
-    sign: str,
-    definition: str,
-    formula: Any,
-    quantity: Quantity,
-    power: int = 0,
-    data: tuple[str, ...] = (),
-    source: str = "",
-) -> Number:
-    roles = ("damper", "wheel_axis")
-    return Number(
-        name, words, sign, definition, formula, roles, False, quantity, data, BY_TRAVEL, power, source
-    )
+_number = partial(Number, roles=("damper", "wheel_axis"), needs_radius=False, way=BY_TRAVEL)
 
 
 DAMPER = CarNumbers.of(
@@ -97,7 +84,8 @@ MOTION_RATIO = CarNumbers.of(
         _SHORTENED,
         "what the damper is shortened by per mm of `travel`",
         damper_per_wheel,
-        QUANTITIES["mm"],
+        quantity=QUANTITIES["mm"],
+        power=0,
         source="Simscape",
     ),
     _number(
@@ -106,7 +94,8 @@ MOTION_RATIO = CarNumbers.of(
         _SHORTENED,
         "1 / `damper_per_wheel`",
         wheel_per_damper,
-        QUANTITIES["mm"],
+        quantity=QUANTITIES["mm"],
+        power=0,
         source="Lotus, OptimumK",
     ),
     nowhere="the damper's length does not change",
@@ -121,9 +110,8 @@ SPRING = CarNumbers.of(
         "where it pushes",
         "`spring_rate` (`spring_free_length` - `damper_length`)",
         spring_force,
-        FORCE,
-        1,
-        _DATA,
+        quantity=FORCE,
+        data=_DATA,
     ),
     _number(
         "wheel_force",
@@ -131,10 +119,9 @@ SPRING = CarNumbers.of(
         "downward",
         "`spring_force` `damper_per_wheel`",
         wheel_force,
-        FORCE,
-        1,
-        _DATA,
-        "virtual work",
+        quantity=FORCE,
+        data=_DATA,
+        source="virtual work",
     ),
     _number(
         "wheel_rate",
@@ -142,8 +129,8 @@ SPRING = CarNumbers.of(
         "",
         "`spring_rate` `damper_per_wheel`^2: the part of a constant ratio",
         wheel_rate,
-        RATE,
-        0,
-        _DATA,
+        quantity=RATE,
+        power=0,
+        data=_DATA,
     ),
 )

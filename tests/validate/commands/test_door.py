@@ -229,24 +229,23 @@ def test_solving_needs_no_extra(words: str, program: str, tmp_path: Path) -> Non
     assert (done.returncode, complaints(done.stderr)) == (0, [])
 
 
-def test_without_pinocchio_another_program_is_the_second_model_and_that_is_said(tmp_path: Path) -> None:
-    (tmp_path / "pinocchio.py").write_text("raise ModuleNotFoundError(name='pinocchio')\n")
-    done = with_fake(tmp_path, "validate", "steer")
-    assert done.returncode == 0, done.stderr
-    assert "pointcoord and mujoco; pointcoord-newton and mujoco: 1 scene" in done.stdout
-    assert "absolute is missing, mujoco stands in for it: the absolute model needs Pinocchio" in done.stderr
-    asked = with_fake(tmp_path, "validate", "steer", "--second", "absolute")
-    assert asked.returncode == 2
-    assert "the absolute model needs Pinocchio" in asked.stderr
-
-
-def test_without_any_other_program_the_reference_is_the_second_model(tmp_path: Path) -> None:
-    for name in ("pinocchio", "mujoco", "exudyn"):
+@pytest.mark.parametrize(
+    ("hidden", "second"),
+    [(("pinocchio",), "mujoco"), (("pinocchio", "mujoco", "exudyn"), "reference")],
+)
+def test_without_pinocchio_what_is_there_is_the_second_model_and_that_is_said(
+    hidden: tuple[str, ...], second: str, tmp_path: Path
+) -> None:
+    for name in hidden:
         (tmp_path / f"{name}.py").write_text(f"raise ModuleNotFoundError(name={name!r})\n")
     done = with_fake(tmp_path, "validate", "steer", "five-link")
     assert done.returncode == 0, done.stderr
+    assert f"pointcoord and {second}; pointcoord-newton and {second}: 2 scenes" in done.stdout
     assert "2 of 2 scenes agree" in done.stdout
-    assert "absolute is missing, reference stands in for it: the absolute model needs" in done.stderr
+    assert f"absolute is missing, {second} stands in for it: the absolute model needs" in done.stderr
+    asked = with_fake(tmp_path, "validate", "steer", "--second", "absolute")
+    assert asked.returncode == 2
+    assert "the absolute model needs Pinocchio" in asked.stderr
 
 
 def test_without_pinocchio_hard_cases_are_tried_by_what_is_there(tmp_path: Path) -> None:
