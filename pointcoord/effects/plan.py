@@ -34,6 +34,11 @@ class Plan:
         """Effects that are not computed."""
         return tuple(name for name in EFFECTS if name not in self.effects)
 
+    def lacking(self, quantity: str, topology: Topology) -> dict[str, tuple[str, ...] | None]:
+        """What more of a quantity each of these would give; None for every point or every body."""
+        gives = {name: EFFECTS[name].gives_numbers(topology) for name in self.left_out}
+        return {name: each[quantity] for name, each in gives.items() if quantity in each}
+
     @property
     def derivative(self) -> int:
         """Highest time derivative that is solved for, of any point."""

@@ -20,7 +20,7 @@ of it no computed pose tells the branches apart: a motion may end there, and doe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -121,8 +121,7 @@ def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.b
     scaled = series * (s ** np.arange(order + 1.0))[:, None]
     for parts in PARTS:
         local = _about_middles(order, parts) @ scaled[..., None, :, :]
-        starts, rest = local[..., 0, :], local[..., 1:, :]
-        good = _proven(system, starts, np.abs(rest).sum(axis=-2), rest.__getitem__).all(axis=-1)
+        good = _regular(system, local[..., 0, :], system.entries(local[..., 1:, :]), False).all(axis=-1)
         if good.all():
             break
     return np.asarray(good)
@@ -131,6 +130,8 @@ def regular_along(system: QuadraticMap, series: Array, s: float) -> NDArray[np.b
 def regular_on(system: QuadraticMap, y: Array, series: Array, moving: Sequence[int]) -> NDArray[np.bool_]:
     """Whether no block of C_u is singular where |s_i| <= 1 in a series, shape (N,); see the formula above.
 
+    By |X| |D_k| first, which takes the sum of all powers alone, and where that proves nothing by |X D_k|.
+
     Args:
         y: where it starts, (N, size).
         series: of the coordinates that move, by power of one or several variables from the first one on,
@@ -138,28 +139,12 @@ def regular_on(system: QuadraticMap, y: Array, series: Array, moving: Sequence[i
     """
     sums = np.zeros_like(y)
     sums[:, moving] = np.abs(series).sum(axis=0)
-
-    def whole(left: NDArray[np.bool_]) -> Array:
-        found = np.zeros((np.count_nonzero(left), len(series), y.shape[-1]))
-        found[..., moving] = series[:, left].swapaxes(0, 1)
-        return found
-
-    return _proven(system, y, sums, whole)
-
-
-def _proven(
-    system: QuadraticMap, y: Array, sums: Array, series: Callable[[NDArray[np.bool_]], Array]
-) -> NDArray[np.bool_]:
-    """Whether no block is singular about poses, (..., size): by |X| |D_k|, or by |X D_k|, which proves more.
-
-    Args:
-        sums: of the magnitudes of all coefficients after the first, (..., size).
-        series: these coefficients of some of the poses, (left, powers - 1, size).
-    """
-    good = _regular(system, y, system.spread_entries(sums)[..., None, :], True)
+    good = _regular(system, y, system.spread_entries(sums)[:, None], True)
     left = ~good
     if left.any():
-        good[left] = _regular(system, y[left], system.entries(series(left)), False)
+        whole = np.zeros((np.count_nonzero(left), len(series), y.shape[-1]))
+        whole[..., moving] = series[:, left].swapaxes(0, 1)
+        good[left] = _regular(system, y[left], system.entries(whole), False)
     return good
 
 

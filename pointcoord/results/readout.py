@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Poses
 from pointcoord.effects.plan import Plan
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
+from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
@@ -107,26 +107,12 @@ class Readout:
 
     def named(self, times: Array, rows: Array) -> Samples:
         """The numbers of a whole table, by name."""
-        found = self.table.numbers(rows)
+        found, topology = self.table.numbers(rows), self.mechanism.topology
         numbers = {
-            name: Channel(quantity, found.get(name, {}), *self._missing[name])
+            name: Channel(quantity, found.get(name, {}), self.plan, topology)
             for name, quantity in QUANTITIES.items()
         }
         return Samples(times.copy(), numbers)
-
-    @cached_property
-    def _missing(self) -> dict[str, tuple[dict[str, tuple[str, ...] | None], tuple[str, ...]]]:
-        """By quantity the effects that would give more of it, and points that are not reported."""
-        plan, topology = self.plan, self.mechanism.topology
-        others = [(EFFECTS[name], EFFECTS[name].gives_numbers(topology)) for name in plan.left_out]
-        reported = {q.name for e in plan.computed if e.reports_states for q in e.quantities}
-        return {
-            name: (
-                {e.name: gives[name] for e, gives in others if name in gives},
-                plan.unreported if name in reported else (),
-            )
-            for name in QUANTITIES
-        }
 
     def complete(self, laws: Laws, states: States, rows: Array, y: Array | None = None) -> None:
         """Compute the numbers that are made of states, and add to those what reporting adds.

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.effect import Quantity
+from pointcoord.effects.plan import Plan
 from pointcoord.errors import NotComputed, UnknownName
+from pointcoord.linkage.topology import Topology
 from pointcoord.results.read_only import ReadOnly
 
 Array = NDArray[np.float64]
@@ -18,26 +20,14 @@ Array = NDArray[np.float64]
 class Channel(Mapping[str, Array]):
     """The numbers of one quantity by name, read-only.
 
-    It knows which effects give what is missing, because the scene did not ask for them.
+    It can tell which effects give what is missing, because the scene did not ask for them.
     """
 
     def __init__(
-        self,
-        quantity: Quantity,
-        arrays: Mapping[str, Array],
-        left_out: Mapping[str, tuple[str, ...] | None],
-        unreported: tuple[str, ...] = (),
+        self, quantity: Quantity, arrays: Mapping[str, Array], plan: Plan, topology: Topology
     ) -> None:
-        """The numbers that were computed.
-
-        Args:
-            left_out: by name, the effects that were not computed and what of this quantity each would give;
-                None for every point or body.
-            unreported: names of which the scene asks for nothing of this quantity.
-        """
-        self.quantity = quantity
-        self.left_out = dict(left_out)
-        self.unreported = unreported
+        """The numbers that were computed, by what was planned of which mechanism."""
+        self.quantity, self.plan, self.topology = quantity, plan, topology
         self._arrays = dict(arrays)
         for array in self._arrays.values():
             array.setflags(write=False)
@@ -49,17 +39,19 @@ class Channel(Mapping[str, Array]):
 
     def with_arrays(self, arrays: Mapping[str, Array]) -> Channel:
         """The same quantity with other numbers."""
-        return Channel(self.quantity, arrays, self.left_out, self.unreported)
+        return Channel(self.quantity, arrays, self.plan, self.topology)
 
     def __getitem__(self, name: str) -> Array:
         if name in self._arrays:
             return self._arrays[name]
-        if name in self.unreported:
+        reported = {q for effect in self.plan.computed if effect.reports_states for q in effect.quantities}
+        if self.quantity in reported and name in self.plan.unreported:
             raise NotComputed(f"{self.quantity.words} of {name}", "", f"add {name!r} to the scene's points")
-        for effect, names in self.left_out.items():
+        left_out = self.plan.lacking(self.quantity.name, self.topology)
+        for effect, names in left_out.items():
             if names is None or name in names:
                 raise NotComputed(f"{self.quantity.words} of {name}", effect)
-        others = (name for names in self.left_out.values() for name in names or ())
+        others = (name for names in left_out.values() for name in names or ())
         raise UnknownName(self.quantity.words, name, (*self._arrays, *others))
 
     def __contains__(self, name: object) -> bool:
@@ -76,7 +68,7 @@ class Channel(Mapping[str, Array]):
 
     def __reduce__(self) -> tuple[type[Channel], tuple[object, ...]]:
         # Arrays come back from a pickle as arrays that can be written.
-        return type(self), (self.quantity, self._arrays, self.left_out, self.unreported)
+        return type(self), (self.quantity, self._arrays, self.plan, self.topology)
 
 
 class Named(ReadOnly):

@@ -73,7 +73,7 @@ def follow(
     Returns:
         Poses at the ends of their paths, or where these stop.
     """
-    n, order = system.unknowns, ORDER if len(system.rows) < LARGE else OF_LARGE
+    n, highest = system.unknowns, ORDER if len(system.rows) < LARGE else OF_LARGE
     batch = y.shape[:-1] if callable(target) else np.broadcast_shapes(y.shape[:-1], target.shape[:-1])
     y = np.broadcast_to(y, (*batch, y.shape[-1])).reshape(-1, y.shape[-1]).copy()
     if callable(target):
@@ -90,9 +90,11 @@ def follow(
     factors = factors.reshaped((len(y),))
     side = orientation(system, factors)
     active = np.flatnonzero(~factors.singular & (still | ~hidden(system, y, factors)))
-    for _ in range(int(steps / min(longest, 1.0))):
+    for tried in range(int(steps / min(longest, 1.0))):
         if not active.size:
             break
+        # What only has to be put together is so, as a rule, by one step of Newton's method.
+        order = 1 if tried == 0 and still.all() else highest
         begun, local = done[active], factors.taken(active)
         left = 1.0 - begun
         with np.errstate(all="ignore"):
@@ -146,11 +148,11 @@ def _series(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> A
     Args:
         known: series of the known coordinates, (m, order + 1, size - unknowns).
     """
-    begun = np.zeros((len(y), 2, system.size))
+    order, begun = known.shape[-2] - 1, np.zeros((len(y), 2, system.size))
     begun[:, 0], begun[:, 1, system.unknowns :] = y, known[:, 1]
     lacking = system.residual(y) + 2.0 * system.polar(y, begun[:, 1])
     begun[:, 1, : system.unknowns] = -factors.solve(lacking)
-    return expand(system, factors, y, known, begun)
+    return begun if order == 1 else expand(system, factors, y, known, begun)
 
 
 def _straight(start: Array, goals: Array) -> Law:

@@ -26,7 +26,7 @@ def assert_same_numbers(one: Samples, other: Samples) -> None:
     assert np.array_equal(one.times, other.times)
     assert list(one.numbers) == list(other.numbers)
     for channel, again in zip(one.numbers.values(), other.numbers.values(), strict=True):
-        assert (channel.quantity, channel.left_out) == (again.quantity, again.left_out)
+        assert (channel.quantity, channel.topology) == (again.quantity, again.topology)
         assert channel.keys() == again.keys()
         assert all(np.array_equal(channel[name], again[name]) for name in channel)
 
