@@ -42,26 +42,25 @@ def expand(
     factors: Factors,
     y: Array,
     known: Array,
-    begun: Array | None = None,
+    lacking: Array | None = None,
     inputs: int = 1,
 ) -> Array:
-    """Series of all coordinates about assembled poses.
+    """Series of all coordinates about assembled poses, or along which what poses lack is taken back.
 
     Args:
         factors: factorisation of C_u at y.
-        y: assembled coordinates, shape (..., size).
+        y: coordinates, shape (..., size).
         known: series of the known coordinates, shape (..., powers, size - unknowns).
-        begun: the first powers, of whole degrees, if they are at hand, shape (..., some powers, size).
+        lacking: C(y) where y is not assembled, shape (..., rows); then C(y(s)) = (1 - s) C(y), and p is 1.
         inputs: p, how many parameters.
     Returns:
         Coefficients by power, shape (..., powers, size).
     """
     n = system.unknowns
     places = np.flatnonzero(known[..., 1:, :].reshape(-1, known.shape[-1]).any(axis=0))
-    first = None if begun is None else powers_first(begun[..., :n])
     moving = np.empty((*y.shape[:-1], known.shape[-2], len(places)))
     moving[...] = known[..., places]
-    found = expand_moving(system, factors, y, powers_first(moving), (places + n).tolist(), first, inputs)
+    found = expand_moving(system, factors, y, powers_first(moving), (places + n).tolist(), inputs, lacking)
     series = np.empty((*y.shape[:-1], known.shape[-2], y.shape[-1]))
     series[..., n:] = known
     powers_first(series)[..., :n] = found[..., :n]
@@ -75,20 +74,20 @@ def expand_moving(
     y: Array,
     known: Array,
     driven: Sequence[int],
-    begun: Array | None = None,
-    inputs: int = 1,
+    inputs: int,
+    lacking: Array | None = None,
 ) -> Array:
     """Series of all that moves, powers first: what is done to all of a power lies side by side in memory.
 
     Args:
         known: series of the known coordinates that move, shape (powers, ..., moving).
         driven: which coordinates these are.
-        begun: the first powers of the unknown ones, shape (some powers, ..., unknowns).
+        lacking: as of `expand`.
     Returns:
         Coefficients of the unknown ones and then of these, shape (powers, ..., unknowns + moving).
     """
     if inputs == 1:
-        return _recursion(system, factors, y, known, driven, begun, inputs)
+        return _recursion(system, factors, y, known, driven, inputs, lacking)
     n, every = system.unknowns, powers_counted(inputs, len(known))
     # By members side by side in memory, which is four times as quick.
     members_last = np.ascontiguousarray(known.reshape(every.count, -1, len(driven)).swapaxes(1, 2))
@@ -101,16 +100,12 @@ def expand_moving(
     for stage in stages(system, moved):
         part, powers = stage.part, every.within(stage.inputs)
         own = series if len(powers) == len(series) else series[powers]
-        first = None
-        if begun is not None:
-            first = begun[powers[powers < len(begun)]].take(part.unknowns, axis=-1)
         found = _recursion(
             part.system,
             factors.part(part.rows, part.unknowns),
             part.taken(y),
             own.take([place.get(number, number) for number in stage.reads], axis=-1),
             part.order.argsort()[list(stage.reads)].tolist(),
-            first,
             len(stage.inputs),
         )
         for i, unknown in enumerate(part.unknowns.tolist()):
@@ -124,8 +119,8 @@ def _recursion(
     y: Array,
     known: Array,
     driven: Sequence[int],
-    begun: Array | None,
     inputs: int,
+    lacking: Array | None = None,
 ) -> Array:
     """The same of one stage, all of whose blocks hang on all inputs (see `partial_map`)."""
     n, every = system.unknowns, powers_counted(inputs, len(known))
@@ -134,14 +129,11 @@ def _recursion(
     # What moves, and a last 0 for all that stands still; the constant term takes no part in a product.
     own = np.zeros((every.count, *y.shape[:-1], n + len(moving) + 1))
     own[1:, ..., n:-1] = known[1:]
-    first = 1
-    if begun is not None:
-        own[1 : len(begun), ..., :n] = begun[1:]
-        first = edges.index(len(begun))
     # What the known ones alone make of each power; sums of products follow degree after degree.
     by_known = factors.solve_many(powers_first(system.derivative_by(y, moving).swapaxes(-1, -2)))
-    low = edges[first]
-    own[low:, ..., :n] = -_combined(own[low:, ..., n:-1], by_known)
+    own[1:, ..., :n] = -_combined(own[1:, ..., n:-1], by_known)
+    if lacking is not None:
+        own[1, ..., :n] -= factors.solve(lacking)
     solved, advanced = _solved_sums(factors, terms)
     # The factors of each power by its exponents, without the sums that are still to come.
     table = np.zeros([*[every.order + 1] * inputs, *y.shape[:-1], terms.ends.shape[-1]])
@@ -149,15 +141,15 @@ def _recursion(
     table = table.reshape(-1, *table.shape[inputs:])
     table[every.places(1, every.count)] = terms.factors(own[1:])
     subscripts = f"{'abc'[:inputs]}...,{'abc'[:inputs]}...->..."
-    sums = np.zeros((every.count - low, *left.shape[inputs:]))
-    for start, stop in pairwise(edges[max(first, 2) :]):
-        each = sums[start - low : stop - low]
+    sums = np.zeros((every.count - 1, *left.shape[inputs:]))
+    for start, stop in pairwise(edges[2:]):
+        each = sums[start - 1 : stop - 1]
         for place in range(start, stop):
             up, down = every.pairs[place]
             # A power still to come is multiplied by the constant term's 0.
             np.einsum(subscripts, left[up], right[down], out=each[place - start])
         table[every.places(start, stop)] -= advanced(each)
-    own[low:, ..., :n] -= solved(sums)
+    own[1:, ..., :n] -= solved(sums)
     own[0, ..., :n] = y[..., :n]
     own[0, ..., n:-1] = known[0]
     return own[..., :-1]

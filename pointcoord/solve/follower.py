@@ -101,7 +101,7 @@ def follow(
             # In shares of what is left of the path.
             known = law(active, begun, order) * left[:, None, None] ** np.arange(order + 1.0)[:, None]
             lacking = left[:, None] * offset[active]
-            series = _series(system, local, y[active], known)
+            series = expand(system, local, y[active], known, system.residual(y[active]))
             proof = prove(system, local.preconditioner, series, np.stack([lacking, -lacking]), LENGTHS)
             length = np.minimum(proof.length, most[active] / left)
         # A step that completes a path may be as short as it likes.
@@ -140,19 +140,6 @@ def follow(
         y[stopped], rest[stopped] = ends.y[good], 0.0
         factors = factors.replaced(stopped, there.taken(np.flatnonzero(good)))
     return Path(y, factors, rest, work, iterations, done).reshaped(batch)
-
-
-def _series(system: QuadraticMap, factors: Factors, y: Array, known: Array) -> Array:
-    """The series of paths from poses to where C is 0, all that they lack taken back, (m, order + 1, size).
-
-    Args:
-        known: series of the known coordinates, (m, order + 1, size - unknowns).
-    """
-    order, begun = known.shape[-2] - 1, np.zeros((len(y), 2, system.size))
-    begun[:, 0], begun[:, 1, system.unknowns :] = y, known[:, 1]
-    lacking = system.residual(y) + 2.0 * system.polar(y, begun[:, 1])
-    begun[:, 1, : system.unknowns] = -factors.solve(lacking)
-    return begun if order == 1 else expand(system, factors, y, known, begun)
 
 
 def _straight(start: Array, goals: Array) -> Law:

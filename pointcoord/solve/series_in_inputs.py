@@ -68,10 +68,10 @@ NARROWEST = 2.0**-20
 SMALLEST = 1e-200
 # Designs that need more degrees than this multiple of what the middle one does are followed in time.
 STANDS_OUT = 1.25
-# Degrees that a series is begun with, and how often it is carried on.
-FEWEST, CARRIED_ON = 8, 3
-# Early degrees fall faster than later ones: so many times as many are added as they tell, so that a
-# series is carried on once.
+# Degree of the first series, which so many designs have, and how many are made of all until one is enough.
+FEWEST, ASKED, TRIED = 8, 16, 2
+# Early degrees fall faster than later ones: so many times as many are added as they tell, so that the first
+# series of all is enough.
 SLOWER = 1.2
 # What a box costs beside its powers, in powers, and segments that a chain takes for a way over the range.
 BOX, SEGMENTS = 100.0, 2.0
@@ -273,18 +273,19 @@ class _Boxed:
         None where a chain is less work.
         """
         most = min(self.ranges.passes * SEGMENTS * (MOST + SEGMENT) - BOX, POWERS)
-        system, series, order, (columns, driven) = self.part.system, None, FEWEST, self.driven()
-        for _ in range(CARRIED_ON):
+        system, order, (columns, driven) = self.part.system, FEWEST, self.driven()
+        everyone = np.arange(len(y))
+        # Some tell the degree as a rule.
+        for some in (everyone[:: max(len(y) // ASKED, 1)], *[everyone] * TRIED):
             if comb(order + self.inputs, order) > most:
                 return None
-            known = self.known_series(order, columns)
+            known = self.known_series(order, columns)[:, some]
             with np.errstate(all="ignore"):
-                begun = None if series is None else series[..., : system.unknowns]
-                series = expand_moving(system, factors, y, known, driven, begun, self.inputs)
+                series = expand_moving(system, factors.taken(some), y[some], known, driven, self.inputs)
                 lacking = self.lacking(series[..., : system.unknowns], order)
             # The few that need many more degrees than the others are followed in time.
             further = lacking[order + lacking <= STANDS_OUT * (order + np.median(lacking))].max(initial=0.0)
-            if not further > 0.0:
+            if not further > 0.0 and len(some) == len(y):
                 return series, order, lacking <= 0.0
             if further > MOST:
                 break

@@ -12,8 +12,8 @@ from sample_cars import SAMPLES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import newton_refine
+from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import Product, quadratic_map
-from pointcoord.solve import follower
 from pointcoord.solve.assembly import Pose, assemble, close_drawing
 from pointcoord.solve.follower import follow
 from pointcoord.solve.proven_step import ROOM, Proof, prove
@@ -42,8 +42,8 @@ def proven(mechanism: Mechanism, pose: Pose, target: Array) -> tuple[Array, Proo
     known = np.zeros((1, 9, system.size - n))
     known[:, 0], known[:, 1] = y[:, n:], target - y[:, n:]
     factors = factorise(system.jacobian(y))
-    series = follower._series(system, factors, y, known)
     lacking = system.residual(y)
+    series = expand(system, factors, y, known, lacking)
     wanted = np.stack([lacking, -lacking])
     return series[0], prove(system, factors.preconditioner, series, wanted, 0.9 ** np.arange(60.0))
 
@@ -100,7 +100,7 @@ def test_no_step_is_proven_up_to_a_fold(w: float) -> None:
     factors = factorise(PARABOLA.jacobian(AT_ONE[None]))
     known = np.zeros((1, 9, 3))
     known[0, 0], known[0, 1, 0] = AT_ONE[1:], w - 1.0
-    series = follower._series(PARABOLA, factors, AT_ONE[None], known)
+    series = expand(PARABOLA, factors, AT_ONE[None], known)
     lengths = 0.98 ** np.arange(200.0)
     length = float(prove(PARABOLA, factors.preconditioner, series, 0.0, lengths).length[0])
     assert 0.3 / (1.0 - w) < length < 1.0 / (1.0 - w)
