@@ -209,10 +209,12 @@ class _Joint(Place):
     """An assembled pose from which a segment starts.
 
     Attributes:
+        known: series of the mechanism's known coordinates about it, (..., order + 1, known).
         scale: a unit of time for the segment, s, as long as the one before it.
     """
 
     instant: float
+    known: Array
     scale: float
 
     @property
@@ -222,7 +224,8 @@ class _Joint(Place):
 
     def taken(self, members: Numbers) -> _Joint:
         """Some of them."""
-        return replace(self, y=self.y[members], factors=self.factors.taken(members), left=self.left[members])
+        factors, left = self.factors.taken(members), self.left[members]
+        return replace(self, y=self.y[members], factors=factors, left=left, known=self.known[members])
 
 
 @dataclass(frozen=True)
@@ -260,7 +263,8 @@ class _Course:
         """
         course, start, stop, tolerance = self, self.start, self.stop, self.settings.tolerance
         here = starting_place(self.part, pose)
-        joint = _Joint(here.y, here.factors, here.left, here.work, start, power_of_two(stop - start))
+        scale = power_of_two(stop - start)
+        joint = _Joint(here.y, here.factors, here.left, here.work, start, self.known(start), scale)
         segments: list[Segment] = []
         work = here.work
         kept = np.arange(joint.members)
@@ -329,8 +333,26 @@ class _Course:
         """Instants at which a derivative of a law jumps."""
         return tuple(b for function in self.functions.values() for b in function.breaks)
 
-    def known(self, instant: float, order: int) -> Array:
-        """Series of the mechanism's known coordinates about an instant, shape (..., order + 1, known)."""
+    @cached_property
+    def order(self) -> int:
+        """Of the series."""
+        least = max(self.settings.derivative, 1)
+        return least if self.start == self.stop else order_for(self.settings.tolerance)
+
+    def known(self, instant: float) -> Array:
+        """Series of the mechanism's known coordinates about an instant, shape (..., order + 1, known).
+
+        Its order is SAFE where a law has no rates of so many orders.
+        """
+        if self.order > SAFE:
+            try:
+                return self.known_to(instant, self.order)
+            except InputOutOfRange:
+                pass
+        return self.known_to(instant, min(self.order, SAFE))
+
+    def known_to(self, instant: float, order: int) -> Array:
+        """The same of a given order."""
         laws = {name: function.series(instant, order) for name, function in self.functions.items()}
         return self.mechanism.known_series(laws)
 
@@ -340,13 +362,11 @@ class _Course:
 
     def segment_from(self, joint: _Joint) -> tuple[Segment, Array]:
         """The series about a joint, not yet cut, and the lengths that its members allow, s, (members,)."""
-        derivative = self.settings.derivative
-        order = max(derivative, 1) if self.start == self.stop else order_for(self.settings.tolerance)
-        segment = self.series_about(joint, order)
+        segment = self.series_about(joint)
         if not (np.abs(segment.coefficients) < LARGEST).all():
-            shortest = float(self.lengths(self.series_about(joint, min(order, FEW))).min())
-            shorter = replace(joint, scale=power_of_two(min(shortest, joint.scale)))
-            segment = self.series_about(shorter, order)
+            few = replace(joint, known=joint.known[..., : FEW + 1, :])
+            shortest = float(self.lengths(self.series_about(few)).min())
+            segment = self.series_about(replace(joint, scale=power_of_two(min(shortest, joint.scale))))
         return segment, self.lengths(segment)
 
     def lengths(self, segment: Segment) -> Array:
@@ -354,8 +374,8 @@ class _Course:
         logs = _log_sizes(segment.coefficients[..., : self.part.system.unknowns])
         return lengths_by_sizes(logs, self.settings) * segment.scale
 
-    def series_about(self, joint: _Joint, order: int) -> Segment:
-        """The series of an order about a joint, or of SAFE where a law has no rates of so many orders.
+    def series_about(self, joint: _Joint) -> Segment:
+        """The series about a joint, of the order of what is known there.
 
         Its unit of time is at most the joint's, or SHORTEST_UNIT, and small enough for no known coefficient
         to exceed the mechanism's size, so that no product of two series overflows however fast the inputs
@@ -363,16 +383,9 @@ class _Course:
         """
         scale = max(joint.scale, SHORTEST_UNIT)
         # The rates of very slow or fast inputs, per second to a power, are numbers up to some order only.
-        order = min(order, max(SAFE, int(SMALLEST / max(abs(np.log2(scale)), 1.0))))
-        try:
-            known = self.known(joint.instant, order)
-        except InputOutOfRange:
-            if order <= SAFE:
-                raise
-            order = SAFE
-            known = self.known(joint.instant, order)
+        order = min(joint.known.shape[-2] - 1, max(SAFE, int(SMALLEST / max(abs(np.log2(scale)), 1.0))))
+        known, orders = joint.known[..., : order + 1, :], np.arange(order + 1.0)
         size = np.abs(known[..., 1:, self.driven]).max(axis=(*range(known.ndim - 2), -1))
-        orders = np.arange(order + 1.0)
         with np.errstate(over="ignore", divide="ignore"):
             fastest = float((size ** (-1.0 / orders[1:])).min())
         if fastest < scale:
@@ -399,7 +412,8 @@ class _Course:
         good, work = np.zeros(joint.y.shape[:-1], dtype=bool), Work()
         while length >= self.shortest or joint.instant + length >= limit:
             end = limit if joint.instant + length >= limit else joint.instant + length
-            reached = self.solved_end(segment, end)
+            known = self.known(end) if end < self.stop else self.known_to(end, 0)
+            reached = self.solved_end(segment, end, known[..., 0, :])
             work += reached.work
             s, series = (end - segment.start) / segment.scale, segment.coefficients
             noise = partial(self.law_noise, reached, end)
@@ -412,17 +426,21 @@ class _Course:
                 good = good & ~hidden(system, reached.y, ahead)
             if good.all() and ahead is not None:
                 scale = power_of_two(length if np.isfinite(length) else end - joint.instant)
-                return _Joint(reached.y, ahead, reached.left, work, end, scale), good, work
+                return _Joint(reached.y, ahead, reached.left, work, end, known, scale), good, work
             if leaving and good.any():
                 break
             length = 0.5 * (end - joint.instant)
         return None, good, work
 
-    def solved_end(self, segment: Segment, end: float) -> Converged:
-        """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs."""
+    def solved_end(self, segment: Segment, end: float, known: Array) -> Converged:
+        """The end of a segment, by the series and then by Newton, as exactly as the tolerance needs.
+
+        Args:
+            known: coordinates there.
+        """
         s, series = (end - segment.start) / segment.scale, segment.coefficients
         guess = s ** np.arange(series.shape[-2]) @ series
-        guess[..., self.mechanism.map.unknowns :] = self.known(end, 0)[..., 0, :]
+        guess[..., self.mechanism.map.unknowns :] = known
         return newton_refine(self.part.system, guess, tolerance=SOLVED * self.settings.tolerance)
 
     def law_noise(self, reached: Converged, end: float) -> Array:
@@ -442,10 +460,10 @@ class _Course:
             coarsest: whether no larger tolerance is left to try.
         """
         instant = joint.instant
-        goal = self.known(min(self.stop, instant + 1e-6 * (self.stop - instant)), 0)[..., 0, :]
+        goal = self.known_to(min(self.stop, instant + 1e-6 * (self.stop - instant)), 0)[..., 0, :]
         # What is left of the way to that goal may be nothing but rounding; what the laws say is not: the
         # first of their rates that is not zero.
-        laws = self.known(instant, 4)
+        laws = self.known_to(instant, 4)
         moving = [laws[..., k, :] for k in range(1, 5) if laws[..., k, :].any()]
         change = moving[0] if moving else np.zeros_like(laws[..., 0, :])
         problem = "the motion cannot pass a singular pose"
