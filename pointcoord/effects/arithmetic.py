@@ -1,13 +1,15 @@
 """Numbers that a formula of an effect is written in once: floats, enclosures, and either with a slope.
 
 Of floats a formula gives its value, of enclosures where the value exactly is, and of duals besides how it
-changes along one direction of motion: (a + a' d)(b + b' d) = a b + (a b' + a' b) d.
+changes along one direction of motion: (a + a' d)(b + b' d) = a b + (a b' + a' b) d. Both parts of a dual may
+be duals, with slopes along another direction.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +18,7 @@ from pointcoord.numerics import enclosure, vectors
 from pointcoord.numerics.enclosure import Enclosed
 
 Array = NDArray[np.float64]
-P = TypeVar("P", Array, Enclosed)
+P = TypeVar("P", Array, Enclosed, "Dual[Any]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +72,29 @@ def times(factor: S, vector: S) -> S:
     return np.asarray(factor[..., None] * vector)
 
 
+def linear(function: Callable[[Any], Any], x: S) -> S:
+    """A linear function of a number, written for what has no slope."""
+    if isinstance(x, Dual):
+        return Dual(linear(function, x.value), linear(function, x.slope))
+    return cast("S", function(x))
+
+
+def still(x: S) -> S:
+    """Zero in the arithmetic of a number, which is the slope of what has no derivative."""
+    if isinstance(x, Dual):
+        return Dual(still(x.value), still(x.slope))
+    return Enclosed.of(np.zeros_like(x.middle)) if isinstance(x, Enclosed) else np.zeros_like(x)
+
+
+def plain(x: Any) -> Array:
+    """The floats of a number that may have slopes."""
+    return plain(x.value) if isinstance(x, Dual) else np.asarray(x)
+
+
 def multiple(factor: float, x: P) -> P:
     """A constant times a number."""
+    if isinstance(x, Dual):
+        return Dual(multiple(factor, x.value), multiple(factor, x.slope))
     return Enclosed.of(factor) * x if isinstance(x, Enclosed) else np.asarray(factor * x)
 
 
@@ -97,23 +120,32 @@ def ratio(x: S, y: S) -> S:
 
 
 def reciprocal(x: P) -> P:
-    """1 / x."""
+    """1 / x; (1 / x)' = -x' / x^2."""
+    if isinstance(x, Dual):
+        value = reciprocal(x.value)
+        return Dual(value, -(value * value * x.slope))
     return enclosure.quotient(Enclosed.of(1.0), x) if isinstance(x, Enclosed) else np.asarray(1.0 / x)
 
 
 def positive(x: P) -> NDArray[np.bool_]:
     """Where a number is above 0."""
+    if isinstance(x, Dual):
+        return positive(x.value)
     return np.asarray((x.middle if isinstance(x, Enclosed) else x) > 0.0)
 
 
 def sign_of(x: P) -> P:
     """1 where a number is above 0, -1 elsewhere."""
+    if isinstance(x, Dual):
+        return Dual(sign_of(x.value), still(x.slope))
     signs = np.where(positive(x), 1.0, -1.0)
     return Enclosed.of(signs) if isinstance(x, Enclosed) else signs
 
 
 def chosen(where: NDArray[np.bool_], one: P, other: P) -> P:
     """One number where something holds, and another elsewhere."""
+    if isinstance(one, Dual):
+        return Dual(chosen(where, one.value, other.value), chosen(where, one.slope, other.slope))
     if not isinstance(one, Enclosed):
         return np.asarray(np.where(where, one, other))
     parts = zip(*(part.parts for part in (one.alone, other.alone)), strict=True)

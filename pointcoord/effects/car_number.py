@@ -11,15 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.angle import Angle
+from pointcoord.effects.arithmetic import linear
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
-from pointcoord.linkage.car_axes import CarAxes
+from pointcoord.linkage.car_axes import CarAxes, Direction
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -190,9 +192,7 @@ class CarNumbers(Effect):
         """Each number, (..., N)."""
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [
-                self._moving(corner_of(poses, wheel), poses, poses.states, np.zeros_like) for wheel in wheels
-            ]
+            corners = [self._moving(corner_of(poses, wheel), poses, poses.states) for wheel in wheels]
             for number in self.numbers:
                 found[number.quantity.name][prefix + number.name] = number.formula(*corners)
         return found
@@ -202,9 +202,7 @@ class CarNumbers(Effect):
         unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [
-                self._moving(enclosed_corner(poses, wheel), poses, poses.points, still) for wheel in wheels
-            ]
+            corners = [self._moving(enclosed_corner(poses, wheel), poses, poses.points) for wheel in wheels]
             for number in self.numbers:
                 quantity, name = number.quantity.name, prefix + number.name
                 # The unit of time is a power of two: neither product rounds.
@@ -212,16 +210,12 @@ class CarNumbers(Effect):
         return found
 
     def _moving(
-        self,
-        corner: Corner[Any],
-        poses: Poses | EnclosedPoses,
-        states: Sequence[Mapping[str, Any]],
-        zero: Callable[[Any], Any],
+        self, corner: Corner[Any], poses: Poses | EnclosedPoses, states: Sequence[Mapping[str, Any]]
     ) -> Corner[Any]:
         """A corner with the derivatives by time or along its wheel's way, if the numbers take any."""
         if self.derivative:
-            return corner.moving((states[1], poses.in_chassis[1]), zero)
-        return corner.moving(poses.slopes[corner.seen.of.way(self.way)], zero) if self.way else corner
+            return corner.moving((states[1], poses.in_chassis[1]))
+        return corner.moving(poses.slopes[corner.seen.of.way(self.way)]) if self.way else corner
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
@@ -263,25 +257,21 @@ class CarNumbers(Effect):
         return ""
 
 
-def corner_of(poses: Poses, wheel: Wheel) -> Corner[Array]:
+def corner_of(poses: Poses, wheel: Wheel) -> Corner[Any]:
     """A wheel of poses, mm."""
-    axes, mechanism = poses.axes.on(wheel.side), poses.mechanism
-    radius = np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius)
-    shape = next(iter(poses.states[0].values())).ndim
+    axes, constant = poses.axes.on(wheel.side), poses.constant
+    radius = constant(np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius))
+    up, outboard = constant(axes.up), constant(axes.outboard)
 
-    def view(points: Mapping[str, Array]) -> View[Array]:
-        return View(wheel, points, axes.component, axes.up, axes.outboard, radius)
+    def along(vector: Any, direction: Direction) -> Any:
+        return linear(partial(axes.component, direction=direction), vector)
 
-    drawn = {name: _beside(place, shape) for name, place in mechanism.drawn_places.items()}
-    car = {name: np.array(number) for name, number in axes.car.items()}
-    origin = _beside(mechanism.origin, shape)
-    return Corner(view(poses.states[0]), view(poses.in_chassis[0]), view(drawn), origin, car)
+    def view(points: Mapping[str, Any]) -> View[Any]:
+        return View(wheel, points, along, up, outboard, radius)
 
-
-def _beside(place: Array, dimensions: int) -> Array:
-    """Drawn places of a batch, (..., 3), in a shape that broadcasts with those at its instants."""
-    more = dimensions - place.ndim if place.ndim > 1 else 0
-    return place.reshape(*place.shape[:-1], *(1,) * more, 3)
+    car = {name: constant(np.array(number)) for name, number in axes.car.items()}
+    origin = constant(poses.beside(poses.mechanism.origin))
+    return Corner(view(poses.states[0]), view(poses.in_chassis[0]), view(poses.drawn), origin, car)
 
 
 def enclosed_corner(poses: EnclosedPoses, wheel: Wheel) -> Corner[Enclosed]:
@@ -299,8 +289,3 @@ def enclosed_corner(poses: EnclosedPoses, wheel: Wheel) -> Corner[Enclosed]:
     origin = Enclosed.of(mechanism.origin / unit)
     car = {n: Enclosed.of(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
     return Corner(view(poses.points[0]), view(poses.in_chassis[0]), view(drawn), origin, car)
-
-
-def still(part: Enclosed) -> Enclosed:
-    """The slope of what has no derivative."""
-    return Enclosed.of(np.zeros_like(part.middle))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic
 
-from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root, times
+from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root, still, times
 from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.slopes import ByInput
 from pointcoord.linkage.topology import Topology
@@ -138,32 +138,30 @@ class Corner(Generic[S]):
         """How far the wheel centre has gone up in the chassis' frame."""
         return self.chassis.along(_moved(self.chassis, self.drawn), "up")
 
-    def moving(
-        self, slopes: tuple[Mapping[str, Any], Mapping[str, Any]], zero: Callable[[Any], Any]
-    ) -> Corner[Dual[Any]]:
+    def moving(self, slopes: tuple[Mapping[str, Any], Mapping[str, Any]]) -> Corner[Dual[Any]]:
         """The same with derivatives of its points; directions, the drawing and the radius have none.
 
         Args:
-            slopes: of the points seen and in the chassis' frame. zero: what has no derivative, as its slope.
+            slopes: of the points seen and in the chassis' frame.
         """
 
-        def still(part: Any) -> Dual[Any]:
-            return Dual(part, zero(part))
+        def held(part: Any) -> Dual[Any]:
+            return Dual(part, still(part))
 
         def dual(view: View[Any], points: Mapping[str, Dual[Any]]) -> View[Dual[Any]]:
             def along(vector: Dual[Any], direction: Direction) -> Dual[Any]:
                 return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
 
-            up, outboard, radius = (still(part) for part in (view.up, view.outboard, view.radius))
+            up, outboard, radius = (held(part) for part in (view.up, view.outboard, view.radius))
             return View(view.of, points, along, up, outboard, radius)
 
         def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
             return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})
 
-        drawn = dual(self.drawn, {name: still(place) for name, place in self.drawn.points.items()})
-        car = {name: still(number) for name, number in self.car.items()}
+        drawn = dual(self.drawn, {name: held(place) for name, place in self.drawn.points.items()})
+        car = {name: held(number) for name, number in self.car.items()}
         seen, chassis = moved(self.seen, slopes[0]), moved(self.chassis, slopes[1])
-        return Corner(seen, chassis, drawn, still(self.origin), car)
+        return Corner(seen, chassis, drawn, held(self.origin), car)
 
 
 def _moved(view: View[S], drawn: View[S]) -> S:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,14 +73,30 @@ class Poses:
             does, (..., N, 3), mm per s^d; None where that is zero.
         slopes: by way, the derivatives of positions along it, after the turns of the chassis and before,
             (N, 3), mm per rad, mm or unit; of the ways that effects take.
+
+    All numbers are floats here; a kind of its own may have them in another arithmetic (see `arithmetic`).
     """
 
     mechanism: Mechanism
     axes: CarAxes
-    states: Sequence[Mapping[str, Array]]
-    in_chassis: Sequence[Mapping[str, Array]]
-    added: Sequence[Array | None]
-    slopes: Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]] = field(default_factory=dict)
+    states: Sequence[Mapping[str, Any]]
+    in_chassis: Sequence[Mapping[str, Any]]
+    added: Sequence[Any]
+    slopes: Mapping[Way, tuple[Mapping[str, Any], Mapping[str, Any]]] = field(default_factory=dict)
+
+    def constant(self, number: Array) -> Any:
+        """What is the same of every car, in the arithmetic of the numbers."""
+        return number
+
+    @cached_property
+    def drawn(self) -> Mapping[str, Any]:
+        """Where every point is drawn, mm from the mechanism's origin."""
+        return {name: self.beside(place) for name, place in self.mechanism.drawn_places.items()}
+
+    def beside(self, place: Array) -> Array:
+        """Places of a batch of cars, (..., 3), in a shape that broadcasts with those at their instants."""
+        more = next(iter(self.states[0].values())).ndim - place.ndim if place.ndim > 1 else 0
+        return place.reshape(*place.shape[:-1], *(1,) * more, 3)
 
 
 @dataclass(frozen=True, eq=False)

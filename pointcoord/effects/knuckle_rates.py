@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.arithmetic import P, cross
+from pointcoord.effects.arithmetic import P, cross, multiple, plain, still
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.effects.knuckle import turn_of_edges
 from pointcoord.errors import SingularConfiguration
@@ -78,10 +78,10 @@ class ByEdges:
         """
         (p, q), (v, w), (a, b) = (_edges(states, states) for states in (position, velocity, acceleration))
         # By a power of two near the body's size, so that no product of lengths over- or underflows.
-        size = max(float(np.abs(edge).max(initial=0.0)) for edge in (p, q))
-        scale = np.ldexp(1.0, -np.frexp(size or 1.0)[1])
-        p, q, v, w, a, b = (part * scale for part in (p, q, v, w, a, b))
-        _require_apart(p, q)
+        size = max(float(np.abs(plain(edge)).max(initial=0.0)) for edge in (p, q))
+        scale = float(np.ldexp(1.0, -np.frexp(size or 1.0)[1]))
+        p, q, v, w, a, b = (multiple(scale, part) for part in (p, q, v, w, a, b))
+        _require_apart(plain(p), plain(q))
         omega = _refined(p, q, v, w)
         a, b = (part - cross(omega, cross(omega, edge)) for part, edge in ((a, p), (b, q)))
         return omega, _refined(p, q, a, b)
@@ -103,9 +103,9 @@ def _edges(points: Mapping[str, P], names: Iterable[str]) -> tuple[P, P]:
     return second - first, third - first
 
 
-def _refined(p: Array, q: Array, v: Array, w: Array) -> Array:
+def _refined(p: P, q: P, v: P, w: P) -> P:
     """The turn of edges p and q whose rates are v and w."""
-    turn = np.zeros_like(p)
+    turn = still(p)
     for _ in range(1 + REFINEMENTS):
         turn = turn + turn_of_edges(p, q, v - cross(turn, p), w - cross(turn, q))
     return turn

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import dot, ratio, root, times
-from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of, enclosed_corner, still
+from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of, enclosed_corner
 from pointcoord.effects.corner import Corner, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.effects.knuckle import contact_place, turning_of, velocity_at
@@ -128,12 +128,12 @@ class Loads(Effect):
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         """Tensions, (N,), and forces, (N, 3)."""
-        return _forces(poses, partial(corner_of, poses), np.zeros_like, 1.0, np.asarray)
+        return _forces(poses, partial(corner_of, poses), 1.0, poses.constant)
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         """From where each exactly is."""
         unit = float(poses.mechanism.unit)
-        exact = _forces(poses, partial(enclosed_corner, poses), still, 1.0 / unit, Enclosed.of)
+        exact = _forces(poses, partial(enclosed_corner, poses), 1.0 / unit, Enclosed.of)
         return {q: {n: each.errors(numbers[q][n]) for n, each in of.items()} for q, of in exact.items()}
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
@@ -183,15 +183,13 @@ def _held(topology: Topology) -> tuple[Wheel, ...]:
 def _forces(
     poses: Poses | EnclosedPoses,
     corner: Callable[[Wheel], Corner[Any]],
-    zero: Callable[[Any], Any],
     unit: float,
     constant: Callable[[Array], Any],
 ) -> dict[str, dict[str, Any]]:
     """Tensions and forces in whichever arithmetic the corners are.
 
     Args:
-        zero: what has no derivative, as its slope. unit: mm in the unit of the corners. constant: plain
-            numbers in their arithmetic.
+        unit: mm in the unit of the corners. constant: plain numbers in their arithmetic.
     """
     topology, slopes = poses.mechanism.topology, cast("Mapping[Way, Any]", poses.slopes)
     loaded = [(corner(Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
@@ -200,7 +198,7 @@ def _forces(
     def along(way: Way) -> _Along:
         works = []
         for one, (force, moment) in loaded:
-            moving = one.moving(slopes[way], zero)
+            moving = one.moving(slopes[way])
             works.append(dot(constant(force), velocity_at(moving, contact_place(moving))))
             for i in np.flatnonzero(moment).tolist():
                 # How the knuckle turns about an axis: as the next axis goes along the one after it.
@@ -209,7 +207,7 @@ def _forces(
         work = works[0]
         for more in works[1:]:
             work = work + more
-        return _Along(work, tuple(_length(one.moving(slopes[way], zero), HOLDING) for _, one in damped))
+        return _Along(work, tuple(_length(one.moving(slopes[way]), HOLDING) for _, one in damped))
 
     free = [along(wheel.way(BY_TRAVEL)) for wheel, _ in damped]
     for i in range(len(free)):
@@ -223,7 +221,7 @@ def _forces(
     rods = {}
     for rod, ends in topology.rods.items():
         way = ByLength(rod)
-        moving = loaded[0][0].moving(slopes[way], zero).seen.line(*ends)
+        moving = loaded[0][0].moving(slopes[way]).seen.line(*ends)
         rods[rod] = ratio(held(along(way)).work, root(dot(moving, moving)).slope)
     for i, (wheel, _) in enumerate(damped):
         rods[f"{wheel.prefix}{HOLDING}"] = ratio(free[i].work, free[i].dampers[i])

@@ -58,7 +58,7 @@ class Drawing:
         length = self.distance(tail, head)
         if not (length > 0.0).all():
             raise no_length(tail, head)
-        return np.ldexp(1.0, -np.frexp(length)[1])
+        return np.ldexp(1.0, -np.frexp(length.real)[1])
 
     def distance(self, start: str, end: str) -> Array:
         """Drawn distance between two points, shape (...,)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from pointcoord.linkage.drawing import Drawing
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.double_double import PAIRS
+from pointcoord.numerics.infinitesimal import with_slope
 from pointcoord.numerics.linear import null_directions
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
@@ -84,11 +86,40 @@ def drawn_mechanism(
         drawn=drawn,
         drawn_lacks=lacks,
         drawn_doubt=doubt,
-        carrier_weights={
-            name: carrier_weights(drawing, name, Normal("", *carriers))[0]
-            for name, carriers in topology.carried.items()
-        },
+        carrier_weights=_carrier_weights(topology, drawing),
     )
+
+
+def hardpoints_moved(mechanism: Mechanism, moves: Mapping[str, Array]) -> Mechanism:
+    """A mechanism with the derivatives of all that is read off its drawing (see `infinitesimal`).
+
+    A drawing that is not closed gives them as it is drawn: closing it only moves its points to where these
+    known coordinates want them.
+
+    Args:
+        mechanism: of one car.
+        moves: by hardpoint, what its place changes by with each of K parameters, (K, 3), mm; of all.
+    Returns:
+        Numbers with slopes, with the batch dimensions (K, 1).
+    """
+    drawing, topology = mechanism.drawing, mechanism.topology
+    vectors = dict(drawing.vectors)
+    for name, move in moves.items():
+        vectors[name] = with_slope(vectors[name], move[:, None] / mechanism.unit)
+    for name, (start, end) in topology.directions.items():
+        if start:
+            vectors[name] = Drawing(vectors, drawing.unit).axis(start, end)[0]
+    moved = Drawing(vectors, drawing.unit, drawing.lacks)
+    drawn = _drawn(topology, moved)[0]
+    return replace(mechanism, drawing=moved, drawn=drawn, carrier_weights=_carrier_weights(topology, moved))
+
+
+def _carrier_weights(topology: Topology, drawing: Drawing) -> dict[str, Array]:
+    """Of every carried point."""
+    return {
+        name: carrier_weights(drawing, name, Normal("", *carriers))[0]
+        for name, carriers in topology.carried.items()
+    }
 
 
 def _check_names(given: Iterable[str], names: Sequence[str], kind: str) -> None:
@@ -115,7 +146,8 @@ def _drawn(topology: Topology, drawing: Drawing) -> tuple[Array, Array, Array]:
     """The coordinates y at which the drawing stands, assembled or not, what they lack and their doubt."""
     layout = topology.layout
     batch = np.broadcast_shapes(*(v.shape[:-1] for v in drawing.vectors.values()))
-    y, lacks, doubt = (np.zeros((*batch, layout.size)) for _ in range(3))
+    kind = np.result_type(*drawing.vectors.values())
+    y, lacks, doubt = (np.zeros((*batch, layout.size), kind) for _ in range(3))
     y[..., layout.one] = 1.0
     for name in (*layout.moving, *layout.chassis, *layout.directions):
         y[..., layout.span(name)] = drawing.vectors[name]

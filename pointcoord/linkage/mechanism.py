@@ -153,7 +153,7 @@ class Mechanism:
         shapes = {s.shape[:-1] for s in inputs.values()} | {self.drawn.shape[:-1]}
         batch = () if shapes == {()} else np.broadcast_shapes(*shapes)
         orders = inputs[required[0]].shape[-1]
-        known = np.zeros((*batch, orders, layout.size - layout.unknowns))
+        known = np.zeros((*batch, orders, layout.size - layout.unknowns), self.drawn.dtype)
         known[..., 0, :] = self.drawn[..., layout.unknowns :]
         for drive, place in zip(topology.drives, topology.driven, strict=True):
             known[..., place - layout.unknowns] = drive.series(inputs[drive.input], self.drawing)

@@ -8,7 +8,7 @@ are the rows of its line.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,30 +99,36 @@ def way_slopes(mechanism: Mechanism, y: Array, ways: Sequence[Way]) -> list[Arra
     if not ways:
         return []
     factors, found = factorise(mechanism.map.jacobian(y)), []
+    values = mechanism.input_values(y[:, mechanism.map.unknowns :])
     for way in ways:
-        known, (moved, rows) = _known_slopes(mechanism, y, way), shifted(mechanism.topology, way)
+        known, (moved, rows) = known_slopes(mechanism, values, way), shifted(mechanism.topology, way)
         opened = 2.0 * mechanism.map.polar(y, np.broadcast_to(moved, y.shape)) * rows
         found.append(implicit_rate(mechanism.map, factors, y, known, opened))
     return found
 
 
-def _known_slopes(mechanism: Mechanism, y: Array, way: Way) -> Array:
-    """The known coordinates' part of dy/dq, (N, known)."""
-    topology, unknowns = mechanism.topology, mechanism.map.unknowns
-    known = np.zeros_like(y[:, unknowns:])
+def known_slopes(mechanism: Mechanism, inputs: Mapping[str, Array], way: Way) -> Array:
+    """The known coordinates' part of dy/dq, (..., N, known).
+
+    Args:
+        inputs: their values, each (N,), rad or mm.
+    """
+    topology, unknowns, drawn = mechanism.topology, mechanism.map.unknowns, mechanism.drawn
+    shape = np.broadcast_shapes(drawn.shape[:-1], *(value.shape for value in inputs.values()))
+    known = np.zeros((*shape, drawn.shape[-1] - unknowns), drawn.dtype)
     if isinstance(way, ByInput):
         if way.input not in topology.required_inputs:
             return known
-        value = mechanism.input_values(y[:, unknowns:])[way.input]
+        value = inputs[way.input]
         series = np.stack([value, np.ones_like(value)], axis=-1)
         for drive, place in zip(topology.drives, topology.driven, strict=True):
             if drive.input == way.input:
-                known[:, place - unknowns] = drive.travel.series(series, mechanism.drawing)[:, 1]
+                known[..., place - unknowns] = drive.travel.series(series, mechanism.drawing)[..., 1]
         return known
     if isinstance(way, ByLength):
-        known[:, length_coordinate(topology, way.rod) - unknowns] = 1.0
+        known[..., length_coordinate(topology, way.rod) - unknowns] = 1.0
     elif way.point in topology.chassis and way.point not in topology.sliding:
-        known[:, topology.layout.vector(way.point)[way.axis] - unknowns] = 1.0
+        known[..., topology.layout.vector(way.point)[way.axis] - unknowns] = 1.0
     return known
 
 

@@ -15,7 +15,9 @@ LU with partial pivoting (see `linear`). A step ends the iteration
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import comb
 from types import EllipsisType
 
 import numpy as np
@@ -193,8 +195,35 @@ def what_is_left(system: QuadraticMap, factors: Factors, step: Array, size: Arra
 def implicit_rate(
     system: QuadraticMap, factors: Factors, y: Array, driven: Array, quadratic: Array | float
 ) -> Array:
-    """Solve C_u u^(d) = -(C_w w^(d) + quadratic term) for a derivative of poses y, (N, size)."""
-    rate = np.zeros_like(y)
-    rate[:, system.unknowns :] = driven
-    rate[:, : system.unknowns] = -factors.solve(2.0 * system.polar(y, rate) + quadratic)
+    """Solve C_u u^(d) = -(C_w w^(d) + quadratic term) for a derivative of poses y, (N, size).
+
+    Args:
+        driven: w^(d), (..., N, known coordinates).
+    """
+    rate = np.zeros((*driven.shape[:-1], system.size))
+    rate[..., system.unknowns :] = driven
+    rate[..., : system.unknowns] = -factors.solve(2.0 * system.polar(y, rate) + quadratic)
     return rate
+
+
+def implicit_slopes(
+    system: QuadraticMap, factors: Factors, states: Sequence[Array], driven: Sequence[Array]
+) -> list[Array]:
+    r"""What poses and their time derivatives change by with a parameter x of the known coordinates.
+
+    Of C(y(t, x)) = B(y, y) = 0 the terms of order d in t and 1 in x are
+
+        C_u u_x^(d) = -( C_w w_x^(d) + sum_{0 < i <= d} binomial(d, i) 2 B(y^(i), y_x^(d-i)) ).
+
+    Args:
+        factors: of C_u at the poses.
+        states: y^(d), poses and their time derivatives, each (N, size).
+        driven: w_x^(d), each (..., N, known coordinates).
+    Returns:
+        y_x^(d), each (..., N, size).
+    """
+    found: list[Array] = []
+    for d, own in enumerate(driven):
+        mixed = (2 * comb(d, i) * system.polar(states[i], found[d - i]) for i in range(1, d + 1))
+        found.append(implicit_rate(system, factors, states[0], own, sum(mixed, 0.0)))
+    return found

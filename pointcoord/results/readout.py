@@ -165,7 +165,7 @@ class Readout:
         ways = self.plan.ways(self.mechanism.topology)
         places, every = moved_along(self.mechanism, y, ways)
         return {
-            way: (self.chassis.turned_by(_alone(laws, way), [places, slopes])[1], slopes)
+            way: (self.chassis.turned_by(alone(laws, way), [places, slopes])[1], slopes)
             for way, slopes in zip(ways, every, strict=True)
         }
 
@@ -180,7 +180,7 @@ class Readout:
         return found
 
 
-def _alone(laws: Laws, way: Way) -> dict[str, list[Array]]:
+def alone(laws: Laws, way: Way) -> dict[str, list[Array]]:
     """Laws by which one input goes at unit rate and the others are held."""
     driven = way.input if isinstance(way, ByInput) else ""
     return {name: [law[0], np.full_like(law[0], float(name == driven))] for name, law in laws.items()}

@@ -1,12 +1,7 @@
-r"""How much every number of the car changes by each coordinate of each hardpoint.
+r"""How much every number of the car changes by each coordinate of each hardpoint: exact derivatives.
 
-The car is drawn with the coordinate x moved to both sides, solved as any design is, and
-
-    df/dx = sum_k c_k f(x + k h) / h,      c = 3/4, -3/20, 1/60 for k = 1, 2, 3 and minus that for -k
-
-is exact for polynomials up to degree 6 (Fornberg, *Generation of finite difference formulas on arbitrarily
-spaced grids*, Mathematics of Computation 51, 1988). What is drawn is what is solved, so that the links of a
-moved point have other lengths, and the inputs keep their values.
+What is drawn is what is solved, so that the links of a moved point have other lengths, and the inputs keep
+their values. No car is solved but the one that is drawn (see `hardpoint_slopes`).
 """
 
 from __future__ import annotations
@@ -22,16 +17,21 @@ from pointcoord.results.read_only import ReadOnly
 from pointcoord.results.samples import Channel
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
-from pointcoord.sweeping.designs import Designs, coordinates_named
+from pointcoord.sweeping.designs import AXES, Designs, coordinates_named, designs_of
+from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
 from pointcoord.sweeping.sweep import sweep
 
 Array = NDArray[np.float64]
 
-# Of the car's size: what is left out goes with its sixth power, and rounding of 1e-15 makes 1e-12.
-STEP = 1e-3
-PLACES = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
-SIXTH = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60.0
-FOURTH = np.array([0.0, 1.0, -8.0, 8.0, -1.0, 0.0]) / 12.0
+# Numbers that the coordinates of poses, their derivatives and all slopes of these have at a time: 30 MB.
+ROOM = 4e6
+# Of what an equation between coordinates below 1 changes by where a hardpoint moves by the mechanism's size:
+# one that goes on to follow from others by rounding, 5e-16 in bricard, and another by 0.1 and more.
+HELD = 1e-9
+LOCKS = (
+    "as drawn, the equation {} follows from the others, and where this coordinate moves it does not: the "
+    "mechanism locks"
+)
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,12 @@ class Sensitivity(ReadOnly):
         times: (N,), s.
         derivatives: by number, (coordinates, N), its unit per mm; NaN where a design cannot be solved or has
             no such number.
-        doubts: what the formula of degree 4 differs by from the same designs, likewise.
         failures: by coordinate, why there is no derivative.
     """
 
     coordinates: tuple[str, ...]
     times: Array
     derivatives: Mapping[str, Array]
-    doubts: Mapping[str, Array]
     failures: Mapping[str, str]
 
     def largest(self, number: str) -> Array:
@@ -91,21 +89,62 @@ def sensitivity(scene: Scene, numbers: Sequence[str] = (), coordinates: Sequence
         # A rack that goes along with the tie rod's end has no coordinates of its own.
         following = Designs(scene, 1, {}).following
         named = tuple(name for name in named if name.rpartition(".")[0] not in following)
-    places = np.array(list(scene.mechanism.points.values()))
-    step = STEP * float(np.ptp(places, axis=0).max())
-    # Designs of one coordinate after those of another.
-    moved = np.kron(np.eye(len(named)), step * PLACES[:, None])
-    found = sweep(scene, offsets={name: moved[:, i] for i, name in enumerate(named)})
-    every = numbers_named(found.numbers, numbers)
+    drawn = sweep(scene)
+    every = numbers_named(drawn.numbers, numbers)
     if not every:
         raise SweepError("the scene's effects", "give no number of the car", "an effect such as wheel_angles")
-    derivatives, doubts = {}, {}
-    for name, array in every.items():
-        values = array.reshape(len(named), len(PLACES), -1)
-        sixth, fourth = (np.einsum("k,ckn->cn", weights, values) / step for weights in (SIXTH, FOURTH))
-        derivatives[name], doubts[name] = sixth, np.abs(sixth - fourth)
-    failures = {named[number // len(PLACES)]: str(one.error) for number, one in found.failures.items()}
-    return Sensitivity(named, found.times, derivatives, doubts, failures)
+    if drawn.failures:
+        nothing = {name: np.full((len(named), len(drawn.times)), np.nan) for name in every}
+        failures = dict.fromkeys(named, str(drawn.failures[0].error))
+        return Sensitivity(named, drawn.times, nothing, failures)
+    motion = drawn.motion(0)
+    slopes, failures = _slopes(ByHardpoints(motion.solved, _moves(scene, named)), motion.times, named)
+    lost = np.array([name in failures for name in named])
+    channels = {}
+    for quantity, channel in drawn.numbers.items():
+        # Where a number is none its formula may still have a slope.
+        arrays = {
+            n: np.where(np.isfinite(values), slopes[quantity][n], np.nan) for n, values in channel.items()
+        }
+        for array in arrays.values():
+            array[lost] = np.nan
+        channels[quantity] = channel.with_arrays(arrays)
+    return Sensitivity(named, drawn.times, numbers_named(channels, numbers), failures)
+
+
+def _slopes(
+    by_hardpoints: ByHardpoints, times: Array, coordinates: Sequence[str]
+) -> tuple[dict[str, dict[str, Array]], dict[str, str]]:
+    """What every number changes by, (K, N) or (K, N, 3), and why some coordinates have no derivative."""
+    plan, topology = by_hardpoints.solved.readout.plan, by_hardpoints.mechanism.topology
+    each = len(coordinates) * topology.layout.size * (plan.derivative + 1 + 2 * len(plan.ways(topology)))
+    together = max(int(ROOM // each), 1)
+    parts, violated = [], np.zeros((len(coordinates), len(topology.left_out)))
+    for low in range(0, len(times), together):
+        poses = by_hardpoints.poses(times[low : low + together])
+        parts.append(by_hardpoints.numbers(poses))
+        violated = np.maximum(violated, np.abs(poses.violated).max(axis=1))
+    found = {
+        quantity: {name: np.concatenate([part[quantity][name] for part in parts], axis=1) for name in of}
+        for quantity, of in parts[0].items()
+    }
+    worst = {
+        name: int(np.argmax(rows))
+        for name, rows in zip(coordinates, violated, strict=True)
+        if (rows > HELD).any()
+    }
+    return found, {name: LOCKS.format(topology.left_labels[row]) for name, row in worst.items()}
+
+
+def _moves(scene: Scene, coordinates: Sequence[str]) -> dict[str, Array]:
+    """By hardpoint, what its place changes by with each coordinate, (K, 3)."""
+    points = scene.mechanism.points
+    found = {name: np.zeros((len(coordinates), 3)) for name in points}
+    for i, coordinate in enumerate(coordinates):
+        point, _, axis = coordinate.rpartition(".")
+        found[point][i, AXES.index(axis)] = 1.0
+    following = designs_of(scene, offsets=dict.fromkeys(coordinates, 0.0)).following
+    return found | {name: found[other] for name, other in following.items()}
 
 
 def numbers_named(channels: Mapping[str, Channel], names: Sequence[str]) -> dict[str, Array]:
