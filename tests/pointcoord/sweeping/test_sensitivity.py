@@ -41,11 +41,11 @@ def car(name: str, *effects: str) -> Scene:
 
 
 def one_of_each() -> Iterator[str]:
-    """Built-in scenes, one for each mechanism, closure and set of inputs."""
+    """Built-in scenes, one for each mechanism, closure and set of inputs, the last as it steers."""
     kinds: dict[object, str] = {}
     for name in built_in_scenes():
         scene = Scene.load(name)
-        kinds.setdefault((scene.mechanism.type, scene.mechanism.closure, *sorted(scene.inputs)), name)
+        kinds[scene.mechanism.type, scene.mechanism.closure, *sorted(scene.inputs)] = name
     yield from kinds.values()
 
 
