@@ -7,6 +7,8 @@ a part of the way leads nearer to it.
 
 import math
 from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import combinations
 
 import numpy as np
 
@@ -25,8 +27,8 @@ from absolute.newton import (
 from absolute.solution import Array
 from absolute.vectors import EPS, cross
 
-# Inputs (..., inputs) and their rates -> (3, ..., rows): targets of the rows, and first and second rates.
-Targets = Callable[[Array, Array], Array]
+# Inputs (..., inputs) and rates of them -> (1 + rates, ..., rows): targets of the rows, and their rates.
+Targets = Callable[..., Array]
 
 # All bodies together turn and move by half (2-norm, rad and units of size) in one step at most:
 # over that distance the second-order prediction holds for any linkage that is not near a fold.
@@ -41,7 +43,7 @@ SHORTEST_STEP = math.sqrt(EPS)
 # Thousands of the longest steps to one instant would be many turns around. A guard against endless work.
 MOST_STEPS = 2000
 # Instants of one step: enough to share the cost of a call, few enough to stay in fast memory.
-FEW_INSTANTS, MOST_INSTANTS = 16, 64
+MOST_INSTANTS = 64
 
 
 class BlockedError(Exception):
@@ -68,20 +70,20 @@ def follow(
     Raises:
         BlockedError: steps have become too short to go on: the mechanism locks there.
     """
-    pose, longest, done, ahead, steps, spent = start, LONGEST_STEP, 0, MOST_INSTANTS, 0, 0
+    pose, longest, done, steps, spent = start, LONGEST_STEP, 0, 0, 0
     while done < len(goals):
-        ends = goals[done : done + ahead]
+        ends = goals[done : done + MOST_INSTANTS]
         ways = ends - at
         # Of ways of length one, since squares of long ones overflow.
         whole = np.abs(ways).max(axis=1, initial=0.0)
         units = ways / np.where(whole > 0.0, whole, 1.0)[:, None]
-        straight, curve, furthest = _predicted(mechanism, pose, targets(at, units), longest)
+        straight, curve, furthest = _predicted(mechanism, pose, partial(targets, at), units, longest)
         count = leading(whole <= furthest)
         share = 1.0
         if not count:
             share = float(furthest[0] / whole[0])
             count, ends = 1, (at + share * ways[0])[None]
-        length = share * whole[:count, None]
+        length = share * whole[:count, None, None, None]
         straight, curve = length * straight[:count], length**2 * curve[:count]
         size, floor = lengths(straight), float(rounding_of(pose.condition[0]))
         # A way of no length may end where it begins; another one must lead on.
@@ -90,7 +92,7 @@ def follow(
             mechanism,
             pose,
             mechanism.moved(np.repeat(pose.q, count, axis=0), pose.rotation, straight + curve),
-            targets(ends[:count], np.zeros_like(ends[:count]))[0],
+            targets(ends[:count])[0],
             LARGEST_CORRECTION * size + floor,
         )
         same = (there.signs == start.signs).all(axis=1) & mechanism.stack.kept(there.placed)
@@ -99,28 +101,38 @@ def follow(
         if short or steps > MOST_STEPS or not (count or size[0] > SHORTEST_STEP):
             raise BlockedError(at, pose, spent)
         if not count:
-            longest, ahead = 0.5 * float(size[0]), 1
+            longest = 0.5 * float(size[0])
             continue
         there = there.part(slice(count))
         pose, at, longest = there.part(slice(-1, None)), ends[count - 1], LONGEST_STEP
         if share < 1.0:
-            spent, ahead = spent + int(there.corrections[0]), 1
+            spent += int(there.corrections[0])
             continue
         there.corrections[0] += spent
-        done, ahead = done + count, min(max(FEW_INSTANTS, 2 * count), MOST_INSTANTS)
-        steps = spent = 0
+        done, steps, spent = done + count, 0, 0
         yield there
 
 
 def _predicted(
-    mechanism: Mechanism, pose: Configurations, targets: Array, longest: float
+    mechanism: Mechanism, pose: Configurations, targets: Targets, units: Array, longest: float
 ) -> tuple[Array, Array, Array]:
-    """Ways of N directions by their targets, (3, N, rows): straight s and curve c, (N, 6 * moving bodies), of
-    the step l s + l^2 c along each, and the largest l that is no longer and bends no more than a step may."""
-    straight, second = map(mechanism.spread, rates(mechanism, pose, *targets[1:]))
+    """Along units (N, inputs) the straight part s and the curve c, (N, bodies, 2, 3), of the step
+    l s + l^2 c, and the largest l that is no longer and bends no more than a step may.
+
+    s is linear in the unit and c a quadratic form, which follow from each input alone and each two together.
+    """
+    scale = np.abs(units).max(axis=0)
+    moving = np.flatnonzero(scale)
+    many, alone, shares = len(moving), np.diag(scale)[moving], units[:, moving] / scale[moving]
+    one, other = np.array([*combinations(range(many), 2)], dtype=np.intp).reshape(-1, 2).T
+    pushes = np.concatenate((alone, alone[one] + alone[other]))
+    straight, second = rates(mechanism, pose, *targets(pushes, 0.0 * pushes)[1:])
     # A step turns with the body, so its curve is o'' - w x o'.
-    twist, curve = straight.reshape(len(straight), -1, 2, 3), 0.5 * second
-    curve.reshape(twist.shape)[..., 0, :] -= 0.5 * cross(twist[..., 1, :], twist[..., 0, :])
+    second[:, :, 0] -= cross(straight[:, :, 1], straight[:, :, 0])
+    curve = 0.5 * second
+    curve[many:] -= curve[one] + curve[other]
+    products = np.concatenate((shares * shares, shares[:, one] * shares[:, other]), axis=1)
+    straight, curve = np.tensordot(shares, straight[:many], 1), np.tensordot(products, curve, 1)
     size, bent = lengths(straight), lengths(curve)
     # l^2 bent = LARGEST_CURVE l size + what rounding explains
     half = 0.5 * LARGEST_CURVE * size

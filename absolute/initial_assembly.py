@@ -34,9 +34,9 @@ def assemble(mechanism: Mechanism) -> Configurations:
         return drawn
     gap = mechanism.stack.gap(drawn.placed, target)[0]
 
-    def closing(share: Array, rate: Array) -> Array:
-        values, rates = np.broadcast_arrays(drawn.placed.values[0] + share * gap, rate * gap)
-        return np.array([values, rates, np.zeros_like(rates)])
+    def closing(share: Array, *rates: Array) -> Array:
+        values = drawn.placed.values[0] + share * gap
+        return np.array(np.broadcast_arrays(values, *(rate * gap for rate in rates)))
 
     _require_clear(mechanism, drawn, gap)
     try:

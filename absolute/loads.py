@@ -49,11 +49,12 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
     _require_determined(mechanism)
     stack, bodies = mechanism.stack, mechanism.drawing.bodies
     placed = stack.place(motion.instants.rotation, motion.instants.origin)
+    along, _, second_arm = (placed.vectors[:, kind] for kind in range(3))
     jacobian, owners = stack.jacobian(placed), list(stack.owners)
     for part, damper in model.dampers.items():
         moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
         row = mechanism.joint_rows + [drive.value for drive in model.inputs].index(moving)
-        held = RowStack([damper], mechanism.columns)
+        held = RowStack([damper], len(bodies), mechanism.columns)
         jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]
         owners[row] = damper.owner
     work = np.zeros((len(jacobian), len(bodies), 2, 3))
@@ -62,7 +63,7 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
             work[:, bodies[model.corners[part].carrier]] += _on_knuckle(replace(motion, part=part))
         except DescriptionError as error:
             raise DescriptionError(f"the load of the wheel {error}", error.name) from None
-    acting = work[:, 1:].reshape(len(work), 6 * (len(bodies) - 1)).take(mechanism.columns, 1)[..., None]
+    acting = work.reshape(len(work), 6 * len(bodies)).take(mechanism.columns, 1)[..., None]
     with np.errstate(all="ignore"):
         found = solved(jacobian.swapaxes(1, 2), acting)[..., 0]
         found[~(np.linalg.cond(jacobian, 1) * SMALLEST_RCOND <= 1.0)] = np.nan
@@ -74,14 +75,14 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
             rows += [row for row in stack.of_one_point(rows[0]) if row in travels]
         second = stack.second[rows[0]]
         pushed = found[:, rows, None] * (-1.0 if second == bodies[body] else 1.0)
-        force = (pushed[:, :3] * placed.a[:, rows[:3]]).sum(axis=1)
+        force = (pushed[:, :3] * along[:, rows[:3]]).sum(axis=1)
         if len(points) == 1:
             joints[points[0]] = motion.turned(force)
             continue
         start, end = (motion.place(point)[0] for point in points)
         line = (end - start) / np.sqrt(np.vecdot(end - start, end - start))[:, None]
-        meeting = placed.origin[:, second] + placed.arms[:, 1, rows[0]]
-        moment = (pushed[:, 3:] * cross(placed.arms[:, 1, rows[3:]], placed.a[:, rows[3:]])).sum(axis=1)
+        meeting = placed.origin[:, second] + second_arm[:, rows[0]]
+        moment = (pushed[:, 3:] * cross(second_arm[:, rows[3:]], along[:, rows[3:]])).sum(axis=1)
         moment += cross(meeting - start, force)
         at_end = cross(moment, line) / np.vecdot(line, end - start)[:, None]
         thrusts[points[0]] = np.vecdot(line, force)

@@ -25,7 +25,7 @@ class Mechanism:
         model, drawing, stack: what was described, its lengths, its rows.
         redundant: rows that depend on others in the drawing, so that they are left out and only held to;
             None where there are no such.
-        columns: of [o', w] of all moving bodies, which are unknown: points do not turn.
+        columns: of [o', w] of all bodies, which are unknown: the chassis stands, and points do not turn.
         groups: bodies that their rows fix one after the other.
         joint_rows: number of rows before the rows of the inputs.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
@@ -37,15 +37,14 @@ class Mechanism:
         self.model, self.drawing = model, model.drawing
         bodies, inputs = len(model.bodies), len(model.inputs)
         sizes = np.array([0, *(3 if body in model.unturned else 6 for body in model.moving)])
-        freedoms = np.arange(6) < sizes[1:, None]
-        self.columns = np.flatnonzero(freedoms)
+        self.columns = np.flatnonzero(np.arange(6) < sizes[:, None])
         rows, senses = [*model.joints, *(drive.row for drive in model.inputs)], model.senses
-        self.stack, self.redundant = RowStack(rows, self.columns, senses), None
+        self.stack, self.redundant = RowStack(rows, bodies, self.columns, senses), None
         still = np.broadcast_to(np.eye(3), (bodies, 3, 3)), self.drawing.origins
         if left_out := _left_out(self.stack, inputs, *still):
             kept = [row for number, row in enumerate(rows) if number not in left_out]
-            self.stack = RowStack(kept, self.columns, senses)
-            self.redundant = RowStack([rows[number] for number in sorted(left_out)], self.columns)
+            self.stack = RowStack(kept, bodies, self.columns, senses)
+            self.redundant = RowStack([rows[number] for number in sorted(left_out)], bodies, self.columns)
         self.groups = groups_of(self.stack.first, self.stack.second, sizes)
         self.joint_rows = self.stack.count - inputs
         self.pin_model = pin.Model()
@@ -56,7 +55,7 @@ class Mechanism:
         self.drawn = pin.neutral(self.pin_model)
         self.drawn.reshape(-1, 7)[:, :3] = self.drawing.origins[1:]
         # Of all bodies, the universe first; they change with the data.
-        self._placements = list(self.pin_data.oMi)
+        self._rotations = [placement.rotation for placement in self.pin_data.oMi]
         self._factors = np.array([drive.factor for drive in model.inputs])
         self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
         self.drawn_inputs = np.array([drive.drawn for drive in model.inputs])
@@ -69,29 +68,26 @@ class Mechanism:
     def poses(self, q: Array) -> tuple[Array, Array]:
         """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the chassis first, at configurations
         (..., 7 * moving bodies)."""
-        lead, bodies = q.shape[:-1], len(self._placements)
-        rotation, origin = np.empty((*lead, bodies, 3, 3)), np.empty((*lead, bodies, 3))
-        each = (
-            q.reshape(-1, self.pin_model.nq),
-            rotation.reshape(-1, bodies, 3, 3),
-            origin.reshape(-1, bodies, 3),
-        )
-        for one, turned, moved in zip(*each, strict=True):
+        lead, bodies = q.shape[:-1], len(self._rotations)
+        rotation, origin = np.empty((*lead, bodies, 3, 3)), np.zeros((*lead, bodies, 3))
+        # All bodies fly freely on the universe.
+        origin[..., 1:, :] = q.reshape(*lead, bodies - 1, 7)[..., :3]
+        each = q.reshape(-1, self.pin_model.nq), rotation.reshape(-1, bodies, 3, 3)
+        for one, turned in zip(*each, strict=True):
             pin.forwardKinematics(self.pin_model, self.pin_data, one)
-            turned[...] = [placement.rotation for placement in self._placements]
-            moved[...] = [placement.translation for placement in self._placements]
+            turned[...] = self._rotations
         return rotation, origin
 
     def spread(self, step: Array) -> Array:
-        """(..., 6 * moving bodies) of unknowns (...): what is known is zero."""
-        every = np.zeros((*step.shape[:-1], 6 * len(self.model.moving)))
+        """(..., bodies, 2, 3) [o', w] of unknowns: what is known is zero."""
+        every = np.zeros((*step.shape[:-1], 6 * len(self._rotations)))
         every[..., self.columns] = step
-        return every
+        return every.reshape(*step.shape[:-1], len(self._rotations), 2, 3)
 
     def moved(self, q: Array, rotation: Array, step: Array) -> Array:
-        """Configurations (..., 7 * moving bodies) after steps [o', w] per body in world axes, all of
-        them, of bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
-        local = step.reshape(*step.shape[:-1], rotation.shape[-3] - 1, 2, 3) @ rotation[..., 1:, :, :]
+        """Configurations (..., 7 * moving bodies) after steps [o', w], (..., bodies, 2, 3), in world axes, of
+        bodies with rotations (..., bodies, 3, 3); Pinocchio takes body axes."""
+        local = step[..., 1:, :, :] @ rotation[..., 1:, :, :]
         moved, model = np.empty_like(q), self.pin_model
         each = (q.reshape(-1, model.nq), local.reshape(-1, model.nv), moved.reshape(-1, model.nq))
         for one, way, there in zip(*each, strict=True):
@@ -106,26 +102,20 @@ class Mechanism:
         return named
 
     def targets(self, values: Array, *rates: Array) -> Array:
-        """(orders, ..., rows): what the rows shall equal and its rates, for inputs (..., inputs).
+        """(1 + rates, ..., rows): what the rows shall equal and its rates, for inputs (..., inputs).
 
         Args:
-            rates: (..., inputs) derivatives of the inputs; the first two are zero where they are not given.
+            rates: (..., inputs) derivatives of the inputs, the first, the second and so on.
         """
-        nothing = np.zeros_like(values)
-        series = [values, *rates, *[nothing] * (2 - len(rates))]
-        targets = np.zeros((len(series), *np.broadcast_shapes(*map(np.shape, series))[:-1], self.stack.count))
+        series = [values, *rates]
+        # Of an angle x it is the real part of z = exp(i x), with z' = i x' z, and so on by the product rule.
+        turned = [np.exp(1j * values)]
+        for n in range(1, len(series)):
+            turned.append(1j * sum(comb(n - 1, i) * series[n - i] * turned[i] for i in range(n)))
+        targets = np.zeros((len(series), *turned[-1].shape[:-1], self.stack.count))
         targets[0] = self.stack.drawn
-        driven = series
-        if self._cosines.any():
-            # Of an angle x: cos' = -x' sin, sin' = x' cos, and their derivatives by the product rule.
-            cosine, sine = [np.cos(values)], [np.sin(values)]
-            for n in range(1, len(series)):
-                turned = [[comb(n - 1, i) * of[i] * series[n - i] for i in range(n)] for of in (sine, cosine)]
-                cosine.append(-np.asarray(sum(turned[0])))
-                sine.append(np.asarray(sum(turned[1])))
-            driven = [np.where(self._cosines, *of) for of in zip(cosine, series, strict=True)]
-        for target, part in zip(targets, driven, strict=True):
-            target[..., self.joint_rows :] = self._factors * part
+        for target, angle, value in zip(targets, turned, series, strict=True):
+            target[..., self.joint_rows :] = self._factors * np.where(self._cosines, angle.real, value)
         return targets
 
 

@@ -72,8 +72,7 @@ def configurations_at(
     placed = stack.place(rotation, origin)
     jacobian = stack.jacobian(placed)
     inverse = solved(jacobian, np.broadcast_to(np.eye(stack.count), jacobian.shape))
-    with np.errstate(over="ignore", invalid="ignore"):
-        condition = np.abs(jacobian).sum(axis=1).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1)
+    condition = np.abs(jacobian).sum(axis=1).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1)
     condition[np.isnan(condition)] = np.inf
     gap = stack.gap(placed, target)
     small = lengths(np.matvec(inverse, gap)) <= rounding_of(condition)
@@ -117,8 +116,9 @@ def newton(
         q: (N, nq). target: (N, rows). largest: (N,) the largest first correction that is allowed.
     """
     stack, condition = mechanism.stack, near.condition[0]
-    q, previous = q.copy(), np.full(len(q), np.inf)
-    more, few, corrections = np.arange(len(q)), 0, np.zeros(len(q), dtype=np.int64)
+    q, corrections = q.copy(), np.zeros(len(q), dtype=np.int64)
+    more, few = np.arange(len(q)), 0
+    previous: Array | float = np.inf
     for count in range(MOST_CORRECTIONS):
         rotation, origin = mechanism.poses(q[more])
         placed = stack.place(rotation, origin)
@@ -126,19 +126,16 @@ def newton(
         size = lengths(step)
         if count == 0:
             few = leading(size <= largest)
+            if not few:
+                return near.part(slice(0))
             more, rotation, step, size = more[:few], rotation[:few], step[:few], size[:few]
-        if not more.size:
-            break
         q[more] = mechanism.moved(q[more], rotation, mechanism.spread(step))
         corrections[more] += 1
         # What is not a number is not corrected any more.
-        again = (size * size * condition > EPS) & (size <= 0.5 * previous[more])
-        previous[more] = size
-        more = more[again]
+        again = (size * size * condition > EPS) & (size <= 0.5 * previous)
+        more, previous = more[again], size[again]
         if not more.size:
             break
-    if not few:
-        return near.part(slice(0))
     return configurations_at(mechanism, q[:few], target[:few], corrections[:few])
 
 
@@ -148,8 +145,9 @@ def leading(right: NDArray[np.bool_]) -> int:
 
 
 def lengths(steps: Array) -> Array:
-    """(N,) of N steps."""
-    return np.asarray(np.sqrt(np.vecdot(steps, steps)))
+    """(N,) of N steps, all their numbers together."""
+    flat = steps.reshape(len(steps), -1)
+    return np.asarray(np.sqrt(np.vecdot(flat, flat)))
 
 
 def solved(matrices: Array, right_hand: Array) -> Array:
@@ -164,19 +162,16 @@ def solved(matrices: Array, right_hand: Array) -> Array:
 
 
 def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array]:
-    """Velocities, accelerations and so on (N, rows), unknowns of [o', w], [o'', w'] of the moving bodies.
+    """Velocities [o', w], accelerations [o'', w'] and so on of the bodies, (N, bodies, 2, 3) each.
 
     J v = first,  J a = second - drift(v),  and so on:  one matrix serves all.
 
     Args:
         at: N configurations, or one. sides: (N, rows) rates of the rows, the first, the second and so on.
     """
-    found, moving = [velocities(at, sides[0])], list[Array]()
+    found = [mechanism.spread(velocities(at, sides[0]))]
     for side in sides[1:]:
-        bodies = np.zeros((len(side), at.origin.shape[1], 2, 3))
-        bodies[:, 1:] = mechanism.spread(found[-1]).reshape(len(side), -1, 2, 3)
-        moving.append(bodies)
-        found.append(velocities(at, side - mechanism.stack.drift(at.placed, moving)))
+        found.append(mechanism.spread(velocities(at, side - mechanism.stack.drift(at.placed, found))))
     return found
 
 
@@ -193,5 +188,4 @@ def more_than_rounding(inverse: Array) -> Array:
     Such a configuration is off by the norm of the inverse times the rounding of its rows, and a row changes
     by no more than a few times that.
     """
-    flat = inverse.reshape(len(inverse), -1)
-    return np.asarray(1.0 + np.sqrt(inverse.shape[-1]) * lengths(flat))
+    return np.asarray(1.0 + np.sqrt(inverse.shape[-1]) * lengths(inverse))

@@ -42,15 +42,14 @@ class Placed(NamedTuple):
 
     Attributes:
         rotation, origin: (..., bodies, 3, 3) and (..., bodies, 3) of the bodies.
-        a, e: (..., rows, 3) these vectors of every row. arms: (..., 2, rows, 3) r1 + e and r2.
+        vectors: (..., 3, rows, 3) a, r1 and r2 of every row. e: (..., rows, 3).
         values: (..., rows) a . e, and turns between -pi and pi.
     """
 
     rotation: Array
     origin: Array
-    a: Array
+    vectors: Array
     e: Array
-    arms: Array
     values: Array
 
 
@@ -61,19 +60,22 @@ class RowStack:
         owners: names of their joints and inputs. first, second: their bodies.
         drawn: what joints hold them to. count, unknowns: rows and columns of the Jacobian.
 
-    Columns of the Jacobian are those of [o', w] of all moving bodies that are unknown.
+    Columns of the Jacobian are those of [o', w] of all bodies that are unknown.
     """
 
-    def __init__(self, rows: Sequence[Row], columns: NDArray[np.intp], senses: Sequence[Row] = ()) -> None:
+    def __init__(
+        self, rows: Sequence[Row], bodies: int, columns: NDArray[np.intp], senses: Sequence[Row] = ()
+    ) -> None:
         def indices(numbers: Iterable[int]) -> NDArray[np.intp]:
             return np.array([*numbers], dtype=np.intp)
 
-        self.count, self.unknowns, self._columns = len(rows), len(columns), columns
+        self.count, self.unknowns = len(rows), len(columns)
         self.owners = tuple(row.owner for row in rows)
         self.first, self.second = indices(r.first for r in rows), indices(r.second for r in rows)
         self.drawn = np.array([row.drawn for row in rows])
         # a, r1 and r2 of all rows, (3, rows, 3), and whose they are.
         self._local = np.array([(row.along, row.first_arm, row.second_arm) for row in rows]).swapaxes(0, 1)
+        self._components = np.repeat(self._local[..., None], 3, axis=-1).transpose(2, 0, 1, 3).copy()
         self._holders = np.array((self.first, self.first, self.second))
         self._distances, self._turns = (
             indices(number for number, row in enumerate(rows) if row.kind == kind)
@@ -89,14 +91,21 @@ class RowStack:
             indices(of.second for of in senses),
             np.array([of.second_arm for of in senses]).reshape(-1, 3),
         )
-        self._numbers = np.arange(self.count)
+        # Where the Jacobian's entries are among the four vectors of a row's rate, row by row, and a zero.
+        entries = np.arange(12 * self.count).reshape(4, self.count, 3)
+        source = np.full((self.count, bodies, 2, 3), entries.size)
+        for number, row in enumerate(rows):
+            source[number, row.first] = entries[:2, number]
+            source[number, row.second] = entries[2:, number]
+        self._source = source.reshape(self.count, -1)[:, columns]
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
-        turned = np.matvec(rotation.take(self._holders, -3), self._local)
-        a, arms = turned[..., 0, :, :], turned[..., 1:, :, :]
-        apart = origin.take(self.second, -2) - origin.take(self.first, -2)
-        e = self._offset[:, None] * apart + (arms[..., 1, :, :] - arms[..., 0, :, :])
+        # The product of matrix and vector by its columns: many small products would take longer.
+        x, y, z = (rotation[..., k].take(self._holders, -2) * self._components[k] for k in range(3))
+        vectors = x + y + z
+        a, r1, r2 = (vectors[..., kind, :, :] for kind in range(3))
+        e = self._offset[:, None] * (origin.take(self.second, -2) - origin.take(self.first, -2)) + (r2 - r1)
         if self._distances.size:
             along = e[..., self._distances, :]
             a[..., self._distances, :] = along / np.sqrt(np.vecdot(along, along))[..., None]
@@ -109,8 +118,7 @@ class RowStack:
         values = np.vecdot(a, e)
         if self._turns.size:
             values[..., self._turns] = np.arctan2(sine, cosine)
-        arms[..., 0, :, :] += e
-        return Placed(rotation, origin, a, e, arms, values)
+        return Placed(rotation, origin, vectors, e, values)
 
     def gap(self, placed: Placed, target: Array) -> Array:
         """(..., rows) target less value, of turns to the nearest of all that look alike."""
@@ -145,20 +153,18 @@ class RowStack:
         # Rows of one joint that say where the same point, or direction, is.
         same = np.equal.outer(owner, owner) & np.equal.outer(self._offset, self._offset)
         mates = (same & (partner[:, None] == partner).all(-1)).astype(float)
-        missed = mates @ (-gap[..., None] * placed.a)
-        return placed._replace(arms=placed.arms - missed[..., None, :, :])
+        vectors = placed.vectors.copy()
+        vectors[..., 1:, :, :] += (mates @ (gap[..., None] * vectors[..., 0, :, :]))[..., None, :, :]
+        return placed._replace(vectors=vectors)
 
     def jacobian(self, placed: Placed) -> Array:
-        """(..., rows, unknowns), of the columns [o', w] of each moving body."""
-        lead, bodies = placed.values.shape[:-1], placed.origin.shape[-2]
-        matrix = np.zeros((*lead, self.count, bodies, 2, 3))
-        push = self._offset[:, None] * placed.a
-        turning = cross(placed.a[..., None, :, :], placed.arms)
-        matrix[..., self._numbers, self.first, 0, :] = -push
-        matrix[..., self._numbers, self.first, 1, :] = turning[..., 0, :, :]
-        matrix[..., self._numbers, self.second, 0, :] = push
-        matrix[..., self._numbers, self.second, 1, :] = -turning[..., 1, :, :]
-        return matrix[..., 1:, :, :].reshape(*lead, self.count, 6 * (bodies - 1)).take(self._columns, -1)
+        """(..., rows, unknowns)."""
+        a, r1, r2 = (placed.vectors[..., kind, :, :] for kind in range(3))
+        push = self._offset[:, None] * a
+        none = np.zeros((*a.shape[:-2], 1, 3))
+        entries = np.concatenate((-push, cross(a, r1 + placed.e), push, cross(r2, a), none), -2)
+        matrix: Array = entries.reshape(*a.shape[:-2], 12 * self.count + 3).take(self._source, -1)
+        return matrix
 
     def rounding(self, placed: Placed) -> Array:
         """(..., rows) what rounding alone may make of a row: ROUNDINGS times the lengths of the vectors that
@@ -179,9 +185,7 @@ class RowStack:
         """
         order = len(rates) + 1
         held = [rate.take(self._holders, -3) for rate in rates]
-        vectors = np.matvec(placed.rotation.take(self._holders, -3), self._local)
-        vectors[..., 0, :, :] = placed.a
-        turned = carried(vectors, [each[..., 1, :] for each in held], order + 1)
+        turned = carried(placed.vectors, [each[..., 1, :] for each in held], order + 1)
         along = [each[..., 0, :, :] for each in turned]
         apart = [placed.e, *(each[..., 2, :, :] - each[..., 1, :, :] for each in turned[1:])]
         for n, each in enumerate(held, 1):

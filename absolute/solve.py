@@ -149,17 +149,22 @@ class Assembled:
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
         runs = [Instants.none(orders - 1, len(mechanism.drawing.bodies), len(by))]
 
-        def solution(count: int | None = None) -> Solution:
+        def motion(count: int | None = None) -> Motion:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
             there = len(found.residual)
             turned = tuple(Turning(turn.about, turn.axis, angle[:there], turn.rolls) for turn, angle in turns)
-            motion = Motion(mechanism, found, carried[:there], turned, tuple(by))
-            carried_by = forces(motion) if loads else {}
-            return motion.solution(rates, conditions, effects=numbers_of(asked, motion), **carried_by)
+            return Motion(mechanism, found, carried[:there], turned, tuple(by))
+
+        def numbers(of: Motion) -> dict[str, Mapping[str, Array]]:
+            return {"effects": numbers_of(asked, of), **(forces(of) if loads else {})}
+
+        def solution(count: int | None = None) -> Solution:
+            found = motion(count)
+            return found.solution(rates, conditions, **numbers(found))
 
         with np.errstate(over="ignore", invalid="ignore"):
             # What effects and loads lack is missing from no instants as well.
-            solution()
+            numbers(motion())
             try:
                 for run in self._followed(series, rated, tuple(by.values())):
                     runs.append(run)
@@ -194,17 +199,23 @@ class Assembled:
             slopes, held = np.zeros((count, len(by), bodies, 2, 3)), np.ones(count, dtype=np.bool_)
             for number, unit in enumerate(units):
                 velocity = velocities(found, unit[done : done + count])
-                slopes[:, number, 1:] = mechanism.spread(velocity).reshape(count, -1, 2, 3)
+                slopes[:, number] = mechanism.spread(velocity)
                 held &= _of_rates(mechanism, found, velocity)[1]
             if rated:
-                every = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
-                moving[:, :, 1:] = mechanism.spread(every).reshape(count, every.shape[1], -1, 2, 3)
-                residual, followed = _of_rates(mechanism, found, every[:, 0])
+                moving = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
+                velocity = moving[:, 0].reshape(count, -1)[:, mechanism.columns]
+                residual, followed = _of_rates(mechanism, found, velocity)
                 held &= followed
             good = leading(held)
             if good:
-                few, fewer = found.part(slice(good)), (moving[:good], slopes[:good], residual[:good])
-                yield Instants(few.rotation, few.origin, *fewer, few.corrections)
+                yield Instants(
+                    found.rotation[:good],
+                    found.origin[:good],
+                    moving[:good],
+                    slopes[:good],
+                    residual[:good],
+                    found.corrections[:good],
+                )
             done += good
             if good < count:
                 raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())

@@ -31,6 +31,6 @@ def carried(vector: Array, spins: Sequence[Array], orders: int) -> list[Array]:
     """
     found = [vector]
     for n in range(orders - 1):
-        terms = (comb(n, i) * cross(spins[i], found[n - i]) for i in range(min(n + 1, len(spins))))
-        found.append(np.asarray(sum(terms)))
+        first, *others = (comb(n, i) * cross(spins[i], found[n - i]) for i in range(min(n + 1, len(spins))))
+        found.append(np.asarray(sum(others, first)))
     return found
