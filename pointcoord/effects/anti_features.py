@@ -16,7 +16,7 @@ from pointcoord.effects.arithmetic import Dual, multiple, ratio
 from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.effect import Quantity
-from pointcoord.effects.knuckle import component, contact_place, told_from_none, velocity_at
+from pointcoord.effects.knuckle import contact_place, told_from_none, velocity_at
 
 SHARE = Quantity("load_share", "share of the load", "%", "car")
 PERCENT = 100.0
@@ -37,8 +37,8 @@ def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
     car = {name: number.value for name, number in corner.car.items()}
     travel = corner.chassis.along(corner.moved_in_chassis(), "up").value
     height = car["centre_of_gravity_height"] - travel
-    up = told_from_none(component(corner.seen, velocity, "up"), velocity)
-    slope = ratio(component(corner.seen, velocity, "rearward"), up)
+    up = told_from_none(corner.seen.along(velocity, "up"), velocity)
+    slope = ratio(corner.seen.along(velocity, "rearward"), up)
     part = multiple(PERCENT, car[share] * car["axle"])
     return part * slope * ratio(car["wheelbase"], height)
 

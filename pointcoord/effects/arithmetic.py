@@ -72,11 +72,11 @@ def times(factor: S, vector: S) -> S:
     return np.asarray(factor[..., None] * vector)
 
 
-def linear(function: Callable[[Any], Any], x: S) -> S:
-    """A linear function of a number, written for what has no slope."""
+def linear(function: Callable[..., Any], x: S, *more: Any) -> S:
+    """A linear function of a number, written for what has no slope; more: its other arguments."""
     if isinstance(x, Dual):
-        return Dual(linear(function, x.value), linear(function, x.slope))
-    return cast("S", function(x))
+        return Dual(linear(function, x.value, *more), linear(function, x.slope, *more))
+    return cast("S", function(x, *more))
 
 
 def still(x: S) -> S:

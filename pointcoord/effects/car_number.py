@@ -11,17 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.angle import Angle
-from pointcoord.effects.arithmetic import linear
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
-from pointcoord.linkage.car_axes import CarAxes, Direction
+from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.linkage.slopes import Way
 from pointcoord.linkage.topology import Topology
 from pointcoord.numerics.enclosure import Enclosed
@@ -263,11 +261,8 @@ def corner_of(poses: Poses, wheel: Wheel) -> Corner[Any]:
     radius = constant(np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius))
     up, outboard = constant(axes.up), constant(axes.outboard)
 
-    def along(vector: Any, direction: Direction) -> Any:
-        return linear(partial(axes.component, direction=direction), vector)
-
     def view(points: Mapping[str, Any]) -> View[Any]:
-        return View(wheel, points, along, up, outboard, radius)
+        return View(wheel, points, axes.component, up, outboard, radius)
 
     car = {name: constant(np.array(number)) for name, number in axes.car.items()}
     origin = constant(poses.beside(poses.mechanism.origin))

@@ -47,7 +47,6 @@ from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.knuckle import (
     angular_velocity,
-    component,
     contact_place,
     told_from_none,
     turning_of,
@@ -72,9 +71,9 @@ def roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
 def middle_plane_height(corner: Corner[Dual[Any]], velocity: Any, *of: Any) -> Any:
     """The same of any velocity of the contact point, or a vector along it; of: as `told_from_none`."""
     view = corner.seen
-    far = component(view, corner.origin.value + contact_place(corner), "outboard")
-    up = told_from_none(component(view, velocity, "up"), velocity, *of)
-    return far * ratio(component(view, velocity, "outboard"), up)
+    far = view.along(corner.origin.value + contact_place(corner), "outboard")
+    up = told_from_none(view.along(velocity, "up"), velocity, *of)
+    return far * ratio(view.along(velocity, "outboard"), up)
 
 
 def arm_roll_centre_height(corner: Corner[Dual[Any]]) -> Any:
@@ -106,8 +105,8 @@ def _seen_from(side: Direction, corner: Corner[Dual[Any]]) -> tuple[Any, Any, An
     """v . up, v . h and up' . h; no number where that turns about a centre beyond all lengths."""
     view = corner.seen
     velocity = velocity_at(corner, contact_place(corner))
-    up, along = component(view, velocity, "up"), component(view, velocity, side)
-    turn = component(view, turning_of(corner, view.up.value), side)
+    up, along = view.along(velocity, "up"), view.along(velocity, side)
+    turn = view.along(turning_of(corner, view.up.value), side)
     if isinstance(turn, np.ndarray):
         turn = np.where(np.abs(up) <= FARTHEST * view.radius.value * np.abs(turn), turn, np.nan)
     return up, along, turn
@@ -115,20 +114,20 @@ def _seen_from(side: Direction, corner: Corner[Dual[Any]]) -> tuple[Any, Any, An
 
 def track(left: Corner[Dual[Any]], right: Corner[Dual[Any]]) -> Any:
     """(c_right - c_left) . right."""
-    return component(right.seen, contact_place(right) - contact_place(left), "outboard")
+    return right.seen.along(contact_place(right) - contact_place(left), "outboard")
 
 
 def axle_roll_centre_offset(left: Corner[Dual[Any]], right: Corner[Dual[Any]]) -> Any:
     """Of P from the car's middle plane, through the user's origin, along right."""
     across, _ = _meeting(left, right)
-    return component(right.seen, left.origin.value + contact_place(left), "outboard") + across
+    return right.seen.along(left.origin.value + contact_place(left), "outboard") + across
 
 
 def axle_roll_centre_height(left: Corner[Dual[Any]], right: Corner[Dual[Any]]) -> Any:
     """Of P above the line through both contact points, along up."""
     across, up = _meeting(left, right)
     apart = contact_place(right) - contact_place(left)
-    slope = ratio(component(right.seen, apart, "up"), component(right.seen, apart, "outboard"))
+    slope = ratio(right.seen.along(apart, "up"), right.seen.along(apart, "outboard"))
     return up - slope * across
 
 
@@ -136,7 +135,7 @@ def _meeting(left: Corner[Dual[Any]], right: Corner[Dual[Any]]) -> tuple[Any, An
     """From the left contact point to P, along right and up."""
     view, places = right.seen, (contact_place(left), contact_place(right))
     (v_h, v_u), (w_h, w_u), (r_h, r_u) = (
-        (component(view, vector, "outboard"), component(view, vector, "up"))
+        (view.along(vector, "outboard"), view.along(vector, "up"))
         for vector in (velocity_at(left, places[0]), velocity_at(right, places[1]), places[1] - places[0])
     )
     across = v_h * w_u - v_u * w_h

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic
 
-from pointcoord.effects.arithmetic import Dual, S, dot, ratio, root, still, times
+from pointcoord.effects.arithmetic import Dual, P, S, dot, linear, ratio, root, still, times
 from pointcoord.linkage.car_axes import Direction
 from pointcoord.linkage.slopes import ByInput
 from pointcoord.linkage.topology import Topology
@@ -69,17 +69,21 @@ class View(Generic[S]):
     Attributes:
         of: the wheel, whose roles name the points.
         points: places, as vectors.
-        along: the component of a vector along a direction.
+        component: of a vector without slopes, along a direction.
         up, outboard: these directions, as vectors.
         radius: of the wheel.
     """
 
     of: Wheel
     points: Mapping[str, S]
-    along: Callable[[S, Direction], S]
+    component: Callable[..., Any]
     up: S
     outboard: S
     radius: S
+
+    def along(self, vector: P, direction: Direction) -> P:
+        """The component of a vector along a direction, of a dual with its slope."""
+        return linear(self.component, vector, direction)
 
     def role(self, name: str) -> S:
         """The vector from the first point of a role to its second."""
@@ -149,11 +153,8 @@ class Corner(Generic[S]):
             return Dual(part, still(part))
 
         def dual(view: View[Any], points: Mapping[str, Dual[Any]]) -> View[Dual[Any]]:
-            def along(vector: Dual[Any], direction: Direction) -> Dual[Any]:
-                return Dual(view.along(vector.value, direction), view.along(vector.slope, direction))
-
             up, outboard, radius = (held(part) for part in (view.up, view.outboard, view.radius))
-            return View(view.of, points, along, up, outboard, radius)
+            return View(view.of, points, view.component, up, outboard, radius)
 
         def moved(view: View[Any], slope: Mapping[str, Any]) -> View[Dual[Any]]:
             return dual(view, {n: Dual(p, slope[n]) for n, p in view.points.items() if n in slope})

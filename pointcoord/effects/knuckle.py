@@ -9,14 +9,12 @@ the angular velocity w it is w x the vector, so that
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from pointcoord.effects.arithmetic import Dual, P, cross, dot, ratio, reciprocal, times
 from pointcoord.effects.corner import Corner, View
-from pointcoord.linkage.car_axes import Direction
 
 # Of a velocity: rates of solved points are off by some 1e-14 of themselves, and by far more near a singular
 # pose, so that a part as small as this may be none.
@@ -87,11 +85,4 @@ def _frame(corner: Corner[Dual[Any]]) -> tuple[Dual[Any], Dual[Any], Dual[Any]]:
 def at_rest(view: View[Dual[Any]]) -> View[Any]:
     """What is seen, without derivatives."""
     points = {name: place.value for name, place in view.points.items()}
-    return View(
-        view.of, points, partial(component, view), view.up.value, view.outboard.value, view.radius.value
-    )
-
-
-def component(view: View[Dual[Any]], vector: Any, direction: Direction) -> Any:
-    """The component of a vector that has no derivative."""
-    return view.along(Dual(vector, vector), direction).value
+    return View(view.of, points, view.component, view.up.value, view.outboard.value, view.radius.value)

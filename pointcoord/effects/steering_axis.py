@@ -40,7 +40,7 @@ from pointcoord.effects.arithmetic import (
 from pointcoord.effects.car_number import BY_RACK, DIMENSION, CarNumbers, Number
 from pointcoord.effects.corner import Corner, View
 from pointcoord.effects.effect import Quantity
-from pointcoord.effects.knuckle import angular_velocity, at_rest, component
+from pointcoord.effects.knuckle import angular_velocity, at_rest
 from pointcoord.effects.wheel_angles import KINGPIN, LEAN_REARWARD
 
 PITCH = Quantity("screw_pitch", "pitch of the screw axis", "mm/rad", "car")
@@ -215,7 +215,7 @@ def _twist(corner: Corner[Dual[Any]]) -> tuple[Any, Any]:
     """Turn and displacement; no number where the knuckle does not turn, or about no line that leads up."""
     turn, moved = angular_velocity(corner), corner.seen.points[corner.seen.of.centre].slope
     if isinstance(turn, np.ndarray):
-        rise = component(corner.seen, turn, "up")
+        rise = corner.seen.along(turn, "up")
         turn = np.where((np.abs(rise) * corner.seen.radius.value > LEAST)[..., None], turn, np.nan)
     return turn, moved
 
