@@ -18,6 +18,7 @@ from absolute.mechanism import Mechanism
 from absolute.newton import (
     SMALLEST_RCOND,
     Configurations,
+    configurations_at,
     leading,
     lengths,
     newton,
@@ -63,14 +64,14 @@ def follow(
 
     A pose is taken that is near, to which the way bends little, that needs a small first correction, closes,
     keeps rows that were left out and the sense of all joints, and has the signs of the start's determinants:
-    assemblies meet where one is zero.
+    assemblies meet where one is zero. Where other rows should be left out, these are chosen anew.
 
     Args:
         start: one pose, at inputs `at`, (inputs,). goals: (N, inputs). targets: of the rows by the inputs.
     Raises:
         BlockedError: steps have become too short to go on: the mechanism locks there.
     """
-    pose, longest, done, steps, spent = start, LONGEST_STEP, 0, 0, 0
+    pose, signs, longest, done, steps, spent = start, start.signs, LONGEST_STEP, 0, 0, 0
     while done < len(goals):
         ends = goals[done : done + MOST_INSTANTS]
         ways = ends - at
@@ -91,11 +92,11 @@ def follow(
         there = newton(
             mechanism,
             pose,
-            mechanism.moved(np.repeat(pose.q, count, axis=0), pose.rotation, straight + curve),
+            mechanism.moved(np.repeat(pose.q, count, axis=0), pose.placed.rotation, straight + curve),
             targets(ends[:count])[0],
             LARGEST_CORRECTION * size + floor,
         )
-        same = (there.signs == start.signs).all(axis=1) & mechanism.stack.kept(there.placed)
+        same = (there.signs == signs).all(axis=1) & mechanism.stack.kept(there.placed)
         count, steps = leading(there.closed & there.held & same), steps + 1
         spent += int(there.corrections[count:].sum())
         if short or steps > MOST_STEPS or not (count or size[0] > SHORTEST_STEP):
@@ -105,6 +106,10 @@ def follow(
             continue
         there = there.part(slice(count))
         pose, at, longest = there.part(slice(-1, None)), ends[count - 1], LONGEST_STEP
+        choice = mechanism.choice_at(pose.placed, pose.choice)
+        if choice is not pose.choice:
+            pose = configurations_at(mechanism, choice, pose.q, targets(at)[:1])
+            signs = pose.signs
         if share < 1.0:
             spent += int(there.corrections[0])
             continue
@@ -194,14 +199,13 @@ def _refusal(
     condition = float(blocked.pose.condition[0])
     asked = ", ".join(f"{name} = {value:.12g}" for name, value in wanted.items())
     where = ", ".join(f"{name} = {value:.12g}" for name, value in reached.items())
-    jacobian = blocked.pose.jacobian[0]
-    limits = limits_at(mechanism, jacobian)
-    if not limits and mechanism.redundant is not None:
+    limits = limits_at(mechanism, blocked.pose)
+    if not limits:
         # Far from singular: the way leads on, but only without the rows that were left out.
-        limits = tuple(dict.fromkeys(mechanism.redundant.owners))
+        limits = mechanism.stack.owners_of(blocked.pose.choice.left_out)
     # What the targets change along the straight way, at its end.
     change = mechanism.targets(blocked.reached, goal - start)[1]
-    limit = limiting_input(mechanism, jacobian, change[mechanism.joint_rows :])
+    limit = limiting_input(mechanism, blocked.pose, change[mechanism.joint_rows :])
     facts = instant, wanted, reached, residual, condition, limits, limit
     if np.allclose(blocked.reached, goal, rtol=SMALLEST_RCOND, atol=0):
         return SingularError(

@@ -6,7 +6,7 @@ from absolute.errors import AssemblyError, SingularError
 from absolute.follow import BlockedError, follow
 from absolute.limits import limited_by, limits_at
 from absolute.mechanism import Mechanism, too_many_rows
-from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at
+from absolute.newton import SMALLEST_RCOND, Configurations, configurations_at, signs_of
 from absolute.solution import Array
 
 # Two assemblies are about as far from each other as a mechanism is large. Of 300 struts with every point up
@@ -51,7 +51,7 @@ def assemble(mechanism: Mechanism) -> Configurations:
 def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
     drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
-    there = pose.origin[0, body] + np.matvec(pose.rotation[0, body], arms)
+    there = pose.placed.origin[0, body] + np.matvec(pose.placed.rotation[0, body], arms)
     distances = np.linalg.norm(there - drawing.origins[body] - arms, axis=1)
     moved = float(distances.max())
     if moved > FURTHEST:
@@ -77,7 +77,7 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
 
     def other_side(gaps: Array) -> bool:
         read = stack.jacobian(stack.read_at_foot(drawn.placed, gaps))
-        return bool((mechanism.signs(read) != drawn.signs).any())
+        return bool((signs_of(drawn.choice, read) != drawn.signs).any())
 
     if not other_side(gap):
         return
@@ -100,7 +100,7 @@ def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> Assembly
     size, largest = mechanism.drawing.size, float(np.abs(gap).max())
     left = largest * float(1.0 - reached.reached[0]) * size
     owner = mechanism.stack.owners[int(np.abs(gap).argmax())]
-    limits = limits_at(mechanism, reached.pose.jacobian[0])
+    limits = limits_at(mechanism, reached.pose)
     return AssemblyError(
         f"the drawing cannot be assembled: rows are violated by up to {largest * size:.3g} mm "
         f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
@@ -115,14 +115,12 @@ def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> Assembly
 
 def _require_redundant(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse rows that are too many and say something else than the others."""
-    left_out = mechanism.redundant
-    if left_out is None:
+    left_out = pose.choice.left_out
+    if not len(left_out):
         return
-    again = left_out.jacobian(left_out.place(pose.rotation, pose.origin))
-    joints = np.vstack((pose.jacobian[0, : mechanism.joint_rows], again[0]))
-    strengths = np.linalg.svd(joints, compute_uv=False)
-    if strengths[mechanism.joint_rows] > SMALLEST_RCOND * strengths[0]:
-        raise too_many_rows(left_out.owners, mechanism.stack.count)
+    strengths = np.linalg.svd(pose.jacobian[0, : mechanism.joint_rows], compute_uv=False)
+    if strengths[mechanism.joint_rows - len(left_out)] > SMALLEST_RCOND * strengths[0]:
+        raise too_many_rows(mechanism.stack, left_out)
     if not pose.held.all():
         raise locked(mechanism, None, pose, mechanism.drawn_inputs.tolist())
 
@@ -131,10 +129,9 @@ def locked(
     mechanism: Mechanism, instant: int | None, pose: Configurations, inputs: list[float]
 ) -> AssemblyError:
     """The refusal of a pose that rows which were left out do not hold."""
-    left_out = mechanism.redundant
-    assert left_out is not None
-    off = np.abs(left_out.gap(left_out.place(pose.rotation, pose.origin), left_out.drawn))[0]
-    names = tuple(dict.fromkeys(left_out.owners[row] for row in np.argsort(-off)))
+    stack, left_out = mechanism.stack, pose.choice.left_out
+    off = np.abs(stack.gap(pose.placed, stack.drawn))[0, left_out]
+    names = stack.owners_of(left_out[np.argsort(-off)])
     where = "the closed drawing" if instant is None else f"instant {instant}"
     return AssemblyError(
         f"{where}: {', '.join(names)} cannot hold together with the other joints, by "
@@ -148,9 +145,9 @@ def locked(
 
 
 def _drawn_pose(mechanism: Mechanism, target: Array) -> Configurations:
-    drawn = configurations_at(mechanism, mechanism.drawn[None], target)
+    drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
     if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
-        limits = limits_at(mechanism, drawn.jacobian[0])
+        limits = limits_at(mechanism, drawn)
         raise SingularError(
             f"the drawing is singular: condition number about {float(drawn.condition[0]):.3g}, "
             f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "

@@ -3,6 +3,7 @@
 import numpy as np
 
 from absolute.mechanism import Mechanism
+from absolute.newton import Configurations
 from absolute.solution import Array
 
 # A motion is followed until a fold is about sqrt(eps) away, and the smallest singular value there is of that
@@ -12,13 +13,15 @@ LARGEST_SHARE = 1e-4
 SMALLEST_FORCE = 0.1
 
 
-def limits_at(mechanism: Mechanism, jacobian: Array) -> tuple[str, ...]:
+def limits_at(mechanism: Mechanism, pose: Configurations) -> tuple[str, ...]:
     """Joints that hold each other near a singular pose, the strongest first; empty where none is near.
 
     There some forces y in the rows are in equilibrium, y J = 0 nearly, without any load: in the group of
     bodies whose block is nearest to singular.
     """
-    blocks = [(rows, np.linalg.svd(jacobian[rows[:, None], columns])) for rows, columns in mechanism.groups]
+    numbers, jacobian = np.arange(mechanism.stack.count)[pose.choice.kept], pose.kept[0]
+    groups = pose.choice.groups
+    blocks = [(numbers[rows], np.linalg.svd(jacobian[rows[:, None], columns])) for rows, columns in groups]
     rows, (left, strengths, _) = min(blocks, key=lambda found: float(found[1][1][-1] / found[1][1][0]))
     if not strengths[-1] <= LARGEST_SHARE * strengths[0]:
         return ()
@@ -33,14 +36,15 @@ def limits_at(mechanism: Mechanism, jacobian: Array) -> tuple[str, ...]:
     )
 
 
-def limiting_input(mechanism: Mechanism, jacobian: Array, change: Array) -> str:
+def limiting_input(mechanism: Mechanism, pose: Configurations, change: Array) -> str:
     """The input whose change, (inputs,) in units of its row, the bodies cannot follow near a singular pose.
 
     There some y has y J = 0 nearly, so that rows may only change at right angles to y: the input with
     the largest product of its change and its part in y is named.
     """
-    left = np.linalg.svd(jacobian)[0]
-    blocked = np.abs(left[mechanism.joint_rows :, -1] * change)
+    left = np.linalg.svd(pose.kept[0])[0]
+    # The rows of the inputs come last and are all kept.
+    blocked = np.abs(left[-len(change) :, -1] * change)
     return mechanism.model.inputs[int(np.argmax(blocked))].value
 
 

@@ -99,8 +99,7 @@ def _require_determined(mechanism: Mechanism) -> None:
             "do not ask for loads",
             "loads",
         )
-    if mechanism.redundant is not None:
-        names = tuple(dict.fromkeys(mechanism.redundant.owners))
+    if names := mechanism.stack.owners_of(mechanism.choice.left_out):
         raise DescriptionError(
             f"loads need joints that hold each body once; {', '.join(names)} follow from the others, so "
             "that forces are not determined: free a joint, or do not ask for loads",

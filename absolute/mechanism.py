@@ -2,18 +2,36 @@
 
 from collections.abc import Sequence
 from math import comb
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from absolute.backend import pin
 from absolute.errors import DescriptionError
-from absolute.groups import groups_of
+from absolute.groups import Group, groups_of
 from absolute.model import Model
-from absolute.rows import RowStack
+from absolute.rows import Placed, RowStack
 from absolute.solution import Array
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
+# What rows say together is the volume that they span. Those kept span less and less of it where another one
+# should be left out instead, and nothing where that does not follow from the others.
+LEAST_SAID = 0.5
+
+
+class Choice(NamedTuple):
+    """Rows that say as much as all, as many as there are unknowns.
+
+    Attributes:
+        kept: their numbers. left_out: those of the others, which are only held to.
+        groups: bodies that the rows kept fix one after the other.
+    """
+
+    kept: slice | NDArray[np.intp]
+    left_out: NDArray[np.intp]
+    groups: Sequence[Group]
 
 
 class Mechanism:
@@ -23,11 +41,9 @@ class Mechanism:
 
     Attributes:
         model, drawing, stack: what was described, its lengths, its rows.
-        redundant: rows that depend on others in the drawing, so that they are left out and only held to;
-            None where there are no such.
         columns: of [o', w] of all bodies, which are unknown: the chassis stands, and points do not turn.
-        groups: bodies that their rows fix one after the other.
         joint_rows: number of rows before the rows of the inputs.
+        choice: of the rows, in the drawing.
         pin_model, pin_data: the Pinocchio model of the moving bodies.
         drawn: configuration of the drawing, (7 * moving bodies,).
         drawn_inputs: (inputs,) values of the inputs in the drawing, rad or mm.
@@ -35,18 +51,11 @@ class Mechanism:
 
     def __init__(self, model: Model) -> None:
         self.model, self.drawing = model, model.drawing
-        bodies, inputs = len(model.bodies), len(model.inputs)
-        sizes = np.array([0, *(3 if body in model.unturned else 6 for body in model.moving)])
-        self.columns = np.flatnonzero(np.arange(6) < sizes[:, None])
-        rows, senses = [*model.joints, *(drive.row for drive in model.inputs)], model.senses
-        self.stack, self.redundant = RowStack(rows, bodies, self.columns, senses), None
-        still = np.broadcast_to(np.eye(3), (bodies, 3, 3)), self.drawing.origins
-        if left_out := _left_out(self.stack, inputs, *still):
-            kept = [row for number, row in enumerate(rows) if number not in left_out]
-            self.stack = RowStack(kept, bodies, self.columns, senses)
-            self.redundant = RowStack([rows[number] for number in sorted(left_out)], bodies, self.columns)
-        self.groups = groups_of(self.stack.first, self.stack.second, sizes)
-        self.joint_rows = self.stack.count - inputs
+        bodies = len(model.bodies)
+        self._sizes = np.array([0, *(3 if body in model.unturned else 6 for body in model.moving)])
+        self.columns = np.flatnonzero(np.arange(6) < self._sizes[:, None])
+        rows = [*model.joints, *(drive.row for drive in model.inputs)]
+        self.stack, self.joint_rows = RowStack(rows, bodies, self.columns, model.senses), len(model.joints)
         self.pin_model = pin.Model()
         for body in model.moving:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)
@@ -59,11 +68,42 @@ class Mechanism:
         self._factors = np.array([drive.factor for drive in model.inputs])
         self._cosines = np.array([drive.cosine for drive in model.inputs], dtype=np.bool_)
         self.drawn_inputs = np.array([drive.drawn for drive in model.inputs])
+        self.choice = self._chosen()
 
-    def signs(self, jacobian: Array) -> Array:
-        """(..., groups) signs of the determinants of Jacobians (..., rows, rows), group by group."""
-        blocks = (jacobian[..., rows[:, None], columns] for rows, columns in self.groups)
-        return np.stack([np.sign(np.linalg.det(block)) for block in blocks], axis=-1)
+    def _chosen(self) -> Choice:
+        """The rows to keep in the drawing; it is seen when that is closed whether the others follow.
+
+        Raises:
+            DescriptionError: they do not follow there, not even nearly.
+        """
+        many = self.stack.count - self.stack.unknowns
+        if many <= 0:
+            return self._leaving_out(np.arange(0))
+        vanishing, strengths = self._vanishing(self.stack.place(*self.poses(self.drawn)))
+        left_out = _largest(vanishing)
+        if strengths[self.joint_rows - many] > LARGEST_DEPENDENT * strengths[0]:
+            raise too_many_rows(self.stack, left_out)
+        return self._leaving_out(left_out)
+
+    def choice_at(self, placed: Placed, before: Choice) -> Choice:
+        """That of a pose, (1,), or the one before, where the rows that it keeps say nearly as much."""
+        if not len(before.left_out):
+            return before
+        vanishing = self._vanishing(Placed(*(of[0] for of in placed)))[0]
+        left_out = _largest(vanishing)
+        said, most = (abs(np.linalg.det(vanishing[rows])) for rows in (before.left_out, left_out))
+        return before if said >= LEAST_SAID * most else self._leaving_out(left_out)
+
+    def _vanishing(self, placed: Placed) -> tuple[Array, Array]:
+        """(joint rows, too many) linear combinations of rows of joints that vanish, and singular values."""
+        combined, strengths, _ = np.linalg.svd(self.stack.jacobian(placed)[: self.joint_rows])
+        return combined[:, self.stack.unknowns - self.stack.count :], strengths
+
+    def _leaving_out(self, rows: NDArray[np.intp]) -> Choice:
+        kept = np.setdiff1d(np.arange(self.stack.count), rows)
+        groups = groups_of(self.stack.first[kept], self.stack.second[kept], self._sizes)
+        # All rows are read where they are.
+        return Choice(kept if len(rows) else slice(None), rows, groups)
 
     def poses(self, q: Array) -> tuple[Array, Array]:
         """Rotations (..., bodies, 3, 3) and origins (..., bodies, 3), the chassis first, at configurations
@@ -119,34 +159,24 @@ class Mechanism:
         return targets
 
 
-def _left_out(stack: RowStack, inputs: int, rotation: Array, origin: Array) -> set[int]:
-    """Numbers of the rows of joints that are too many, chosen so that the others say as much as all.
-
-    Those rows whose parts in the linear combinations of rows that vanish in the drawing are largest. Whether
-    they do follow from the others is seen when the drawing is closed.
-    """
-    many = stack.count - stack.unknowns
-    if many <= 0:
-        return set()
-    joints = stack.jacobian(stack.place(rotation, origin))[: stack.count - inputs]
-    combined, strengths, _ = np.linalg.svd(joints)
-    vanishing, chosen = combined[:, len(joints) - many :], set[int]()
-    for _ in range(many):
+def _largest(vanishing: Array) -> NDArray[np.intp]:
+    """Numbers of as many rows as there are combinations, (rows, combinations), with the largest parts."""
+    chosen = set[int]()
+    for _ in range(vanishing.shape[1]):
         row = int(np.argmax(np.vecdot(vanishing, vanishing)))
         chosen.add(row)
         way = vanishing[row] / np.linalg.norm(vanishing[row])
         vanishing = vanishing - np.outer(vanishing @ way, way)
-    if strengths[len(joints) - many] > LARGEST_DEPENDENT * strengths[0]:
-        raise too_many_rows(tuple(stack.owners[row] for row in sorted(chosen)), stack.count - many)
-    return chosen
+    return np.array(sorted(chosen), dtype=np.intp)
 
 
-def too_many_rows(owners: tuple[str, ...], unknowns: int) -> DescriptionError:
-    """The refusal of rows that say something else than the others, by the owners of those too many."""
+def too_many_rows(stack: RowStack, left_out: NDArray[np.intp]) -> DescriptionError:
+    """The refusal of rows that say something else than the others, by those too many."""
+    owners = stack.owners_of(left_out)
     return DescriptionError(
-        f"joints and inputs give {unknowns + len(owners)} rows for {unknowns} unknown velocities, and "
-        f"{len(owners)} of them ({', '.join(dict.fromkeys(owners))}) do not follow from the others in the "
+        f"joints and inputs give {stack.count} rows for {stack.unknowns} unknown velocities, and "
+        f"{len(left_out)} of them ({', '.join(owners)}) do not follow from the others in the "
         "drawing: the mechanism is held more than once: remove an input, or free a joint",
         owners[0],
-        unknowns + len(owners),
+        stack.count,
     )

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from absolute.mechanism import Mechanism
+from absolute.mechanism import Choice, Mechanism
 from absolute.rows import Placed
 from absolute.solution import Array, Counts
 from absolute.vectors import EPS
@@ -22,22 +22,22 @@ class Configurations(NamedTuple):
     """N configurations of the bodies, and what their rows are there.
 
     Attributes:
+        choice: of the rows that are solved for.
+        placed: all rows there.
         q: (N, configuration of Pinocchio).
-        rotation, origin: (N, bodies, 3, 3) and (N, bodies, 3), units of size.
-        placed: rows there.
-        jacobian, inverse: (N, rows, rows); the inverse is not a number where there is none.
-        condition: (N,) condition numbers (1-norm).
+        jacobian: (N, rows, unknowns). inverse: (N, unknowns, unknowns) of the rows kept; not a number where
+            there is none.
+        condition: (N,) condition numbers of the rows kept (1-norm).
         signs: (N, groups) of the determinants of groups; they change only through a singular pose.
         residual: (N,) largest violation of a row.
-        closed: (N,) whether the next correction and the rows are as small as rounding explains.
+        closed: (N,) whether the next correction and the rows kept are as small as rounding explains.
         held: (N,) whether rows that were left out hold.
         corrections: (N,) Newton corrections that led there.
     """
 
-    q: Array
-    rotation: Array
-    origin: Array
+    choice: Choice
     placed: Placed
+    q: Array
     jacobian: Array
     inverse: Array
     condition: Array
@@ -50,8 +50,13 @@ class Configurations(NamedTuple):
     def part(self, of: slice) -> "Configurations":
         """Some of them."""
         placed = Placed(*(array[of] for array in self.placed))
-        part = {name: array[of] for name, array in self._asdict().items() if name != "placed"}
-        return Configurations(placed=placed, **part)
+        part = {name: array[of] for name, array in self._asdict().items() if name not in ("choice", "placed")}
+        return Configurations(choice=self.choice, placed=placed, **part)
+
+    @property
+    def kept(self) -> Array:
+        """(N, unknowns, unknowns) Jacobians of the rows kept."""
+        return self.jacobian[:, self.choice.kept]
 
 
 def rounding_of(condition: Array) -> Array:
@@ -64,40 +69,40 @@ def rounding_of(condition: Array) -> Array:
 
 
 def configurations_at(
-    mechanism: Mechanism, q: Array, target: Array, corrections: Counts | None = None
+    mechanism: Mechanism, choice: Choice, q: Array, target: Array, corrections: Counts | None = None
 ) -> Configurations:
     """Configurations (N, nq) with their rows, against targets (N, rows)."""
-    stack = mechanism.stack
-    rotation, origin = mechanism.poses(q)
-    placed = stack.place(rotation, origin)
+    stack, kept, left_out = mechanism.stack, choice.kept, choice.left_out
+    placed = stack.place(*mechanism.poses(q))
     jacobian = stack.jacobian(placed)
-    inverse = solved(jacobian, np.broadcast_to(np.eye(stack.count), jacobian.shape))
-    condition = np.abs(jacobian).sum(axis=1).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1)
+    square = jacobian[:, kept]
+    inverse = solved(square, np.broadcast_to(np.eye(stack.unknowns), square.shape))
+    condition = np.abs(square).sum(axis=1).max(axis=1) * np.abs(inverse).sum(axis=1).max(axis=1)
     condition[np.isnan(condition)] = np.inf
     gap = stack.gap(placed, target)
-    small = lengths(np.matvec(inverse, gap)) <= rounding_of(condition)
-    residual, held = np.abs(gap).max(axis=1), np.ones(len(q), dtype=np.bool_)
-    left_out = mechanism.redundant
-    if left_out is not None:
-        again = left_out.place(rotation, origin)
-        off = np.abs(left_out.gap(again, left_out.drawn))
-        allowed = left_out.rounding(again) * more_than_rounding(inverse)[:, None]
-        held = np.asarray((off <= allowed).all(axis=1))
-        residual = np.maximum(residual, off.max(axis=1))
+    small = lengths(np.matvec(inverse, gap[:, kept])) <= rounding_of(condition)
+    off, rounding = np.abs(gap), stack.rounding(placed)
+    allowed = rounding[:, left_out] * more_than_rounding(inverse)[:, None]
     return Configurations(
-        q,
-        rotation,
-        origin,
+        choice,
         placed,
+        q,
         jacobian,
         inverse,
         condition,
-        mechanism.signs(jacobian),
-        residual,
-        small & stack.closed(placed, target),
-        held,
+        signs_of(choice, jacobian),
+        off.max(axis=1),
+        small & (off[:, kept] <= rounding[:, kept]).all(axis=1),
+        np.asarray((off[:, left_out] <= allowed).all(axis=1)),
         np.zeros(len(q), dtype=np.int64) if corrections is None else corrections,
     )
+
+
+def signs_of(choice: Choice, jacobian: Array) -> Array:
+    """(..., groups) signs of the determinants of Jacobians (..., rows, unknowns), group by group."""
+    square = jacobian[..., choice.kept, :]
+    blocks = (square[..., rows[:, None], columns] for rows, columns in choice.groups)
+    return np.stack([np.sign(np.linalg.det(block)) for block in blocks], axis=-1)
 
 
 def newton(
@@ -112,17 +117,18 @@ def newton(
     there is no pose, it is as small.
 
     Args:
-        near: one configuration nearby, for its condition number.
+        near: one configuration nearby, for its condition number and its choice of rows.
         q: (N, nq). target: (N, rows). largest: (N,) the largest first correction that is allowed.
     """
-    stack, condition = mechanism.stack, near.condition[0]
+    stack, kept, condition = mechanism.stack, near.choice.kept, near.condition[0]
     q, corrections = q.copy(), np.zeros(len(q), dtype=np.int64)
     more, few = np.arange(len(q)), 0
     previous: Array | float = np.inf
     for count in range(MOST_CORRECTIONS):
         rotation, origin = mechanism.poses(q[more])
         placed = stack.place(rotation, origin)
-        step = solved(stack.jacobian(placed), stack.gap(placed, target[more])[..., None])[..., 0]
+        gap = stack.gap(placed, target[more])[:, kept]
+        step = solved(stack.jacobian(placed)[:, kept], gap[..., None])[..., 0]
         size = lengths(step)
         if count == 0:
             few = leading(size <= largest)
@@ -136,7 +142,7 @@ def newton(
         more, previous = more[again], size[again]
         if not more.size:
             break
-    return configurations_at(mechanism, q[:few], target[:few], corrections[:few])
+    return configurations_at(mechanism, near.choice, q[:few], target[:few], corrections[:few])
 
 
 def leading(right: NDArray[np.bool_]) -> int:
@@ -176,10 +182,11 @@ def rates(mechanism: Mechanism, at: Configurations, *sides: Array) -> list[Array
 
 
 def velocities(at: Configurations, rates: Array) -> Array:
-    """v with  J v = rates,  (..., N, rows), corrected once by what is left of it: as good as by factors
+    """v with  J v = rates,  (N, rows), corrected once by what is left of it: as good as by factors
     (Higham, ch. 12)."""
+    rates = rates[:, at.choice.kept]
     found: Array = np.matvec(at.inverse, rates)
-    return np.asarray(found + np.matvec(at.inverse, rates - np.matvec(at.jacobian, found)))
+    return np.asarray(found + np.matvec(at.inverse, rates - np.matvec(at.kept, found)))
 
 
 def more_than_rounding(inverse: Array) -> Array:

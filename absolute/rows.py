@@ -127,6 +127,10 @@ class RowStack:
             gap[..., self._turns] -= WHOLE_TURN * np.round(gap[..., self._turns] / WHOLE_TURN)
         return gap
 
+    def owners_of(self, rows: Iterable[int]) -> tuple[str, ...]:
+        """Names of the joints and inputs of some rows, each once."""
+        return tuple(dict.fromkeys(self.owners[row] for row in rows))
+
     def of_one_point(self, row: int) -> list[int]:
         """The rows that say where the same point of a second body is from the same one of the first."""
         arms = self._local[1:]
@@ -172,10 +176,6 @@ class RowStack:
         far = np.sqrt(np.vecdot(placed.origin, placed.origin))
         between = far.take(self.first, -1) + far.take(self.second, -1)
         return np.asarray(ROUNDINGS * (self._spans + self._offset * between))
-
-    def closed(self, placed: Placed, target: Array) -> NDArray[np.bool_]:
-        """(...) whether no row misses its target by more than rounding."""
-        return np.asarray((np.abs(self.gap(placed, target)) <= self.rounding(placed)).all(-1))
 
     def drift(self, placed: Placed, rates: Sequence[Array]) -> Array:
         """Rate of the rows of the order after the last, when no body has a rate of that order.

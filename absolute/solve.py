@@ -194,23 +194,23 @@ class Assembled:
         unit_of = np.array([1.0 / drive.steers if drive.steers else 1.0 for drive in self.model.inputs])
         units = np.array([mechanism.targets(series[:, 0], unit_of * (named == value))[1] for value in by])
         for found in through(mechanism, self._drawn, series[:, 0]):
-            count, bodies = found.origin.shape[:2]
+            count, bodies = found.placed.origin.shape[:2]
             moving, residual = np.zeros((count, len(targets) - 1, bodies, 2, 3)), found.residual
             slopes, held = np.zeros((count, len(by), bodies, 2, 3)), np.ones(count, dtype=np.bool_)
             for number, unit in enumerate(units):
                 velocity = velocities(found, unit[done : done + count])
                 slopes[:, number] = mechanism.spread(velocity)
-                held &= _of_rates(mechanism, found, velocity)[1]
+                held &= _of_rates(found, velocity)[1]
             if rated:
                 moving = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
                 velocity = moving[:, 0].reshape(count, -1)[:, mechanism.columns]
-                residual, followed = _of_rates(mechanism, found, velocity)
+                residual, followed = _of_rates(found, velocity)
                 held &= followed
             good = leading(held)
             if good:
                 yield Instants(
-                    found.rotation[:good],
-                    found.origin[:good],
+                    found.placed.rotation[:good],
+                    found.placed.origin[:good],
                     moving[:good],
                     slopes[:good],
                     residual[:good],
@@ -221,16 +221,11 @@ class Assembled:
                 raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
 
 
-def _of_rates(
-    mechanism: Mechanism, found: Configurations, velocity: Array
-) -> tuple[Array, NDArray[np.bool_]]:
+def _of_rates(found: Configurations, velocity: Array) -> tuple[Array, NDArray[np.bool_]]:
     """(N,) residuals with the rates of rows that were left out at unit speed, and whether these hold."""
-    left_out = mechanism.redundant
-    if left_out is None:
-        return found.residual, np.ones(len(found.q), dtype=np.bool_)
+    left_out = found.jacobian[:, found.choice.left_out]
     # A row that follows from the others has no rate, but for what the pose is off.
-    placed = left_out.place(found.rotation, found.origin)
-    rate = np.abs(np.matvec(left_out.jacobian(placed), velocity)).max(axis=1)
+    rate = np.abs(np.matvec(left_out, velocity)).max(axis=1, initial=0.0)
     speed = lengths(velocity)
     missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
     allowed = LEFT_OUT * more_than_rounding(found.inverse) * speed

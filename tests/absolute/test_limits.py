@@ -8,7 +8,7 @@ from many_digits import DIGITS, vector
 from mechanism_closed_forms import NoPoseError, raised, turn
 from mechanism_files import mechanism_file, plain, plain_scene
 from mpmath import cos, mp, mpf, sqrt
-from shipped import EPS, Array, Motion, error, off, shipped
+from shipped import EPS, Array, Motion, error, exact, off, shipped
 from test_branch import STRUT
 
 import absolute
@@ -142,6 +142,21 @@ def test_bricards_six_hinges_are_not_led_beyond_their_fold(degrees: float) -> No
         Motion(plain_scene("bricard"), at(turn=np.radians(degrees))).solve()
     reached = np.degrees(caught.value.reached["turn"])
     assert reached == pytest.approx(-30.0, abs=1e-6) if degrees < 0 else reached < 210.0 + 1e-6
+
+
+def test_a_row_that_says_what_no_other_says_is_kept_though_it_followed_from_them_in_the_drawing() -> None:
+    # At 90 degrees no force in the first row of the first hinge is in equilibrium with those in the others:
+    # without it these say too little.
+    ways = np.radians([[30.0, 60.0, 90.0], [90.0, 150.0, 200.0]])
+    for turns in ways:
+        law = np.stack([turns, np.ones(3), np.zeros(3)], axis=-1)
+        motion = Motion(plain_scene("bricard"), {"turn": law})
+        solution = motion.solve(conditions=True)
+        assert solution.condition is not None
+        assert solution.condition[turns == np.pi / 2] < 10.0
+        for k, (points, *_) in enumerate(exact(motion)):
+            for name, place in solution.position.items():
+                assert error(place[k], points[name]) <= off(solution)[k], name
 
 
 @pytest.mark.parametrize(
