@@ -96,7 +96,8 @@ def follow(
             targets(ends[:count])[0],
             LARGEST_CORRECTION * size + floor,
         )
-        same = (there.signs == signs).all(axis=1) & mechanism.stack.kept(there.placed)
+        senses = mechanism.senses.place(there.placed.rotation, there.placed.origin).values
+        same = (there.signs == signs).all(axis=1) & (senses > 0.0).all(axis=1)
         count, steps = leading(there.closed & there.held & same), steps + 1
         spent += int(there.corrections[count:].sum())
         if short or steps > MOST_STEPS or not (count or size[0] > SHORTEST_STEP):

@@ -41,6 +41,7 @@ class Mechanism:
 
     Attributes:
         model, drawing, stack: what was described, its lengths, its rows.
+        senses: rows that stay positive while all joints have the sense in which they are drawn.
         columns: of [o', w] of all bodies, which are unknown: the chassis stands, and points do not turn.
         joint_rows: number of rows before the rows of the inputs.
         choice: of the rows, in the drawing.
@@ -55,7 +56,8 @@ class Mechanism:
         self._sizes = np.array([0, *(3 if body in model.unturned else 6 for body in model.moving)])
         self.columns = np.flatnonzero(np.arange(6) < self._sizes[:, None])
         rows = [*model.joints, *(drive.row for drive in model.inputs)]
-        self.stack, self.joint_rows = RowStack(rows, bodies, self.columns, model.senses), len(model.joints)
+        self.stack, self.joint_rows = RowStack(rows, bodies, self.columns), len(model.joints)
+        self.senses = RowStack(model.senses, bodies, self.columns)
         self.pin_model = pin.Model()
         for body in model.moving:
             self.pin_model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), body)

@@ -63,9 +63,7 @@ class RowStack:
     Columns of the Jacobian are those of [o', w] of all bodies that are unknown.
     """
 
-    def __init__(
-        self, rows: Sequence[Row], bodies: int, columns: NDArray[np.intp], senses: Sequence[Row] = ()
-    ) -> None:
+    def __init__(self, rows: Sequence[Row], bodies: int, columns: NDArray[np.intp]) -> None:
         def indices(numbers: Iterable[int]) -> NDArray[np.intp]:
             return np.array([*numbers], dtype=np.intp)
 
@@ -74,7 +72,8 @@ class RowStack:
         self.first, self.second = indices(r.first for r in rows), indices(r.second for r in rows)
         self.drawn = np.array([row.drawn for row in rows])
         # a, r1 and r2 of all rows, (3, rows, 3), and whose they are.
-        self._local = np.array([(row.along, row.first_arm, row.second_arm) for row in rows]).swapaxes(0, 1)
+        vectors = np.array([(row.along, row.first_arm, row.second_arm) for row in rows])
+        self._local = vectors.reshape(-1, 3, 3).swapaxes(0, 1)
         self._components = np.repeat(self._local[..., None], 3, axis=-1).transpose(2, 0, 1, 3).copy()
         self._holders = np.array((self.first, self.first, self.second))
         self._distances, self._turns = (
@@ -85,19 +84,13 @@ class RowStack:
         # What the terms of a row add up to at most, apart from the distances of the origins.
         arms = np.sqrt(np.vecdot(self._local[1:], self._local[1:])).sum(axis=0)
         self._spans = np.where(self._offset > 0.0, arms, 1.0)
-        self._senses = (
-            indices(of.first for of in senses),
-            np.array([of.along for of in senses]).reshape(-1, 3),
-            indices(of.second for of in senses),
-            np.array([of.second_arm for of in senses]).reshape(-1, 3),
-        )
         # Where the Jacobian's entries are among the four vectors of a row's rate, row by row, and a zero.
         entries = np.arange(12 * self.count).reshape(4, self.count, 3)
         source = np.full((self.count, bodies, 2, 3), entries.size)
         for number, row in enumerate(rows):
             source[number, row.first] = entries[:2, number]
             source[number, row.second] = entries[2:, number]
-        self._source = source.reshape(self.count, -1)[:, columns]
+        self._source = source.reshape(self.count, 6 * bodies)[:, columns]
 
     def place(self, rotation: Array, origin: Array) -> Placed:
         """Rows at poses: rotation (..., bodies, 3, 3), origin (..., bodies, 3), in units of size."""
@@ -137,13 +130,6 @@ class RowStack:
         same = (arms == arms[:, [row]]).all(axis=(0, 2)) & (self._offset > 0.0)
         same &= (self.first == self.first[row]) & (self.second == self.second[row])
         return [int(number) for number in np.flatnonzero(same)]
-
-    def kept(self, placed: Placed) -> NDArray[np.bool_]:
-        """(...) whether all joints have the sense in which they are drawn."""
-        first, along, second, partner = self._senses
-        one = np.matvec(placed.rotation.take(first, -3), along)
-        other = np.matvec(placed.rotation.take(second, -3), partner)
-        return np.asarray((np.vecdot(one, other) > 0.0).all(-1))
 
     def read_at_foot(self, placed: Placed, gap: Array) -> Placed:
         """Rows that are not closed, with their joints' forces where they belong on the first body.
