@@ -76,10 +76,12 @@ class _Compiler:
         order = sorted(bodies, key=lambda body: body != CHASSIS)
         self.named = {body: tuple(bodies[body]) for body in order}
         self.slides: Mapping[str, Mapping[str, Any]] = mechanism.get("slides", {})
+        self.guided = [point for slide in self.slides.values() for point in slide["points"]]
         self.joints: list[Row] = []
         self.senses: list[Row] = []
         self.inputs: list[Input] = []
         self.turns: dict[str, Turn] = {}
+        self.reported: dict[tuple[str, ...], tuple[str, str]] = {}
         self.directions = self._directions()
         self.radius = self._radius()
         self.corners = self._corners()
@@ -125,7 +127,7 @@ class _Compiler:
             self.corners,
             self._loads(),
             self._dampers(),
-            self._reported_joints(),
+            self.reported,
             frozenset(self.bodies).difference(self.named),
             frozenset(self.unturned),
             self.turns,
@@ -210,43 +212,15 @@ class _Compiler:
                 rows[part] = self._distance_row(f"rod {name}", *corner.ends("damper"))[0]
         return rows
 
-    def _reported_joints(self) -> dict[tuple[str, ...], tuple[str, str]]:
-        """The point of each ball joint or turning slide or both of each hinge whose force is determined: the
-        joint's rows and the body on which the force is given, the knuckle or the first that moves. It lists
-        the points. A point of no body has the force itself, if a rod pulls it that is not along its slide.
-        """
-        taken = [point for slide in self.slides.values() for point in slide["points"]]
-        turned = {given.get("angle") for given in self.of["inputs"].values()}
-        reported: dict[tuple[str, ...], tuple[str, str]] = {}
-        for name, slide in self.slides.items():
-            points = slide["points"]
-            across = [ends for ends in self.of.get("rods", {}).values() if not {*ends} <= {*points}]
-            pulled = {end for ends in across for end in ends}
-            for point in points if slide["turns"] else ():
-                label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
-                owners = [body for body, names in self.named.items() if point in names]
-                both = [body for body in self.named if body in (*owners, slide["body"])]
-                if taken.count(point) == 1 and len(owners) == 1:
-                    reported[point,] = label, self._felt_by(both)
-                elif taken.count(point) == 1 and not owners and point in pulled:
-                    reported[point,] = label, self._holders(point)[0]
-        for first, second in combinations(self.named, 2):
-            body = self._felt_by((first, second))
-            shared = tuple(p for p in self.named[body] if p in self.named[first] and p in self.named[second])
-            others = [names for one, names in self.named.items() if one not in (first, second)]
-            if not shared or {*taken}.intersection(shared) or any({*names} & {*shared} for names in others):
-                continue
-            if len(shared) == 1:
-                reported[shared] = f"ball joint {shared[0]}", body
-            elif not turned.intersection((first, second)):
-                reported[shared] = f"hinge of {second} on {first}", body
-        return reported
-
-    def _felt_by(self, bodies: Iterable[str]) -> str:
-        """Of two bodies the knuckle, or the first that moves."""
+    def _felt_by(self, *bodies: str) -> str:
+        """Of two bodies the knuckle, or the first that moves: the one on which a joint's force is given."""
         knuckles = {corner.knuckle for corner in self.corners.values()}
-        moving = [body for body in bodies if body != CHASSIS]
+        moving: list[str] = [body for body in self.named if body in bodies and body != CHASSIS]
         return next((body for body in moving if body in knuckles), moving[0])
+
+    def _are_shared(self, points: Iterable[str]) -> bool:
+        """Whether two bodies share points that are no one else's, so that the force there is determined."""
+        return all(point not in self.guided and len(self._holders(point)) == 2 for point in points)
 
     def _extent(self) -> tuple[Array, float]:
         """Middle and size of the drawing."""
@@ -367,6 +341,7 @@ class _Compiler:
     def _shared_points(self) -> None:
         """Hinges, and ball joints of what these do not hold together; n - 1 for n bodies."""
         hinges: dict[frozenset[str], list[str]] = {}
+        driven = {given.get("angle") for given in self.of.get("inputs", {}).values()}
         for first, second in combinations(self.named, 2):
             shared = [point for point in self.named[second] if point in self.named[first]]
             if len(shared) > 2:
@@ -380,7 +355,11 @@ class _Compiler:
                 members = hinges.setdefault(frozenset(shared), [first])
                 if second not in members:
                     members.append(second)
-                    self._hinge(f"hinge of {second} on {members[0]}", members[0], second, *shared)
+                    name = f"hinge of {second} on {members[0]}"
+                    self._hinge(name, members[0], second, *shared)
+                    if self._are_shared(shared) and not driven & {first, second}:
+                        body = self._felt_by(first, second)
+                        self.reported[tuple(p for p in self.named[body] if p in shared)] = name, body
         for point in self.points:
             apart = [[body] for body in self._holders(point)]
             for line, members in hinges.items():
@@ -393,6 +372,8 @@ class _Compiler:
             for number, group in enumerate(apart[1:], 1):
                 name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
                 self._meet(name, apart[0][0], point, group[0], point)
+                if self._are_shared((point,)):
+                    self.reported[point,] = name, self._felt_by(apart[0][0], group[0])
 
     def _line_of(self, slide: str) -> tuple[str, Array]:
         """A point of the line of a slide, and its direction."""
@@ -413,11 +394,14 @@ class _Compiler:
         frame = frame_about(along)
         for point in points:
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
-            free = f"free point {point}"
-            held = (
-                self._other_than(body, point, what) if self._holders(point) else self._add_point(free, point)
-            )
+            owners, free = self._holders(point), f"free point {point}"
+            held = self._other_than(body, point, what) if owners else self._add_point(free, point)
             self._meet(label, body, through, held, point, frame[:2])
+            # A point of no body has the force itself, if a rod pulls it that is not along the slide.
+            rods = [ends for ends in self.of.get("rods", {}).values() if point in ends]
+            felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
+            if felt and slide["turns"] and self.guided.count(point) == 1:
+                self.reported[point,] = label, self._felt_by(held, body) if owners else held
         if slide["turns"]:
             return
         for second, names in self.named.items():
