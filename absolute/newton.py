@@ -1,5 +1,6 @@
 """Newton on the manifold of body poses, to rounding, and the rates there: many configurations at once."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -50,8 +51,7 @@ class Configurations(NamedTuple):
     def part(self, of: slice) -> "Configurations":
         """Some of them."""
         placed = Placed(*(array[of] for array in self.placed))
-        part = {name: array[of] for name, array in self._asdict().items() if name not in ("choice", "placed")}
-        return Configurations(choice=self.choice, placed=placed, **part)
+        return Configurations._make((self.choice, placed, *(array[of] for array in self[2:])))
 
     @property
     def kept(self) -> Array:
@@ -152,7 +152,7 @@ def leading(right: NDArray[np.bool_]) -> int:
 
 def lengths(steps: Array) -> Array:
     """(N,) of N steps, all their numbers together."""
-    flat = steps.reshape(len(steps), -1)
+    flat = steps.reshape(len(steps), math.prod(steps.shape[1:]))
     return np.asarray(np.sqrt(np.vecdot(flat, flat)))
 
 

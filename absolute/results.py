@@ -36,18 +36,6 @@ class Instants(NamedTuple):
     residual: Array
     corrections: Counts
 
-    @classmethod
-    def none(cls, rates: int, bodies: int, slopes: int) -> "Instants":
-        """No instants."""
-        return cls(
-            np.zeros((0, bodies, 3, 3)),
-            np.zeros((0, bodies, 3)),
-            np.zeros((0, rates, bodies, 2, 3)),
-            np.zeros((0, slopes, bodies, 2, 3)),
-            np.zeros(0),
-            np.zeros(0, dtype=np.int64),
-        )
-
 
 @dataclass(frozen=True)
 class Motion:

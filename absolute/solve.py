@@ -14,7 +14,7 @@ from absolute.input_arrays import checked, input_series, orders_of
 from absolute.loads import forces
 from absolute.mechanism import Mechanism
 from absolute.model import Model
-from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates, velocities
+from absolute.newton import Configurations, leading, lengths, more_than_rounding, rates
 from absolute.results import Instants, Motion
 from absolute.solution import Array, Solution
 from absolute.turning import Turning
@@ -147,7 +147,7 @@ class Assembled:
         ]
         # Inputs that take the same value have a column each.
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]
-        runs = [Instants.none(orders - 1, len(mechanism.drawing.bodies), len(by))]
+        followed = self._followed(series, rated, tuple(by.values()))
 
         def motion(count: int | None = None) -> Motion:
             found = Instants(*(np.concatenate(parts)[:count] for parts in zip(*runs, strict=True)))
@@ -164,9 +164,10 @@ class Assembled:
 
         with np.errstate(over="ignore", invalid="ignore"):
             # What effects and loads lack is missing from no instants as well.
+            runs = [next(followed)]
             numbers(motion())
             try:
-                for run in self._followed(series, rated, tuple(by.values())):
+                for run in followed:
                     runs.append(run)
             except AbsoluteError as error:
                 error.partial = solution() if len(runs) > 1 else None
@@ -185,47 +186,51 @@ class Assembled:
             raise refused
 
     def _followed(self, series: Array, rated: bool, by: Sequence[str]) -> Iterator[Instants]:
-        """The instants of inputs (N, orders, inputs), one run of them after the other, and the velocities for
-        unit rates of some values."""
+        """The instants of inputs (N, orders, inputs), first none and then one run of them after the other,
+        with the velocities for unit rates of some values."""
         mechanism, done = self._mechanism, 0
         targets = mechanism.targets(*series.swapaxes(0, 1))
         named = np.array([drive.value for drive in self.model.inputs])
         # Of a slide by its travel, whatever the value that drives it.
         unit_of = np.array([1.0 / drive.steers if drive.steers else 1.0 for drive in self.model.inputs])
-        units = np.array([mechanism.targets(series[:, 0], unit_of * (named == value))[1] for value in by])
-        for found in through(mechanism, self._drawn, series[:, 0]):
-            count, bodies = found.placed.origin.shape[:2]
-            moving, residual = np.zeros((count, len(targets) - 1, bodies, 2, 3)), found.residual
-            slopes, held = np.zeros((count, len(by), bodies, 2, 3)), np.ones(count, dtype=np.bool_)
+        units = [mechanism.targets(series[:, 0], unit_of * (named == value))[1] for value in by]
+
+        def at(found: Configurations, rated: bool) -> tuple[Instants, NDArray[np.bool_]]:
+            """Also whether rows that were left out hold all velocities."""
+            placed, here = found.placed, slice(done, done + len(found.q))
+            shape = (*placed.origin.shape[:2], 2, 3)
+            slopes, moving = np.zeros((len(units), *shape)), np.zeros((len(targets) - 1, *shape))
+            held, residual = np.ones(len(found.q), dtype=np.bool_), found.residual
             for number, unit in enumerate(units):
-                velocity = velocities(found, unit[done : done + count])
-                slopes[:, number] = mechanism.spread(velocity)
-                held &= _of_rates(found, velocity)[1]
+                (slopes[number],) = rates(mechanism, found, unit[here])
+                held &= _of_rates(mechanism, found, slopes[number])[1]
             if rated:
-                moving = np.stack(rates(mechanism, found, *targets[1:, done : done + count]), axis=1)
-                velocity = moving[:, 0].reshape(count, -1)[:, mechanism.columns]
-                residual, followed = _of_rates(found, velocity)
+                moving[:] = rates(mechanism, found, *targets[1:, here])
+                residual, followed = _of_rates(mechanism, found, moving[0])
                 held &= followed
+            moving, slopes = moving.swapaxes(0, 1), slopes.swapaxes(0, 1)
+            return Instants(placed.rotation, placed.origin, moving, slopes, residual, found.corrections), held
+
+        yield at(self._drawn.part(slice(0)), rated=False)[0]
+        for found in through(mechanism, self._drawn, series[:, 0]):
+            instants, held = at(found, rated)
             good = leading(held)
             if good:
-                yield Instants(
-                    found.placed.rotation[:good],
-                    found.placed.origin[:good],
-                    moving[:good],
-                    slopes[:good],
-                    residual[:good],
-                    found.corrections[:good],
-                )
+                yield Instants._make(part[:good] for part in instants)
             done += good
-            if good < count:
+            if not held.all():
                 raise locked(mechanism, done, found.part(slice(good, good + 1)), series[done, 0].tolist())
 
 
-def _of_rates(found: Configurations, velocity: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _of_rates(
+    mechanism: Mechanism, found: Configurations, velocity: Array
+) -> tuple[Array, NDArray[np.bool_]]:
     """(N,) residuals with the rates of rows that were left out at unit speed, and whether these hold."""
-    left_out = found.jacobian[:, found.choice.left_out]
+    if not len(found.choice.left_out):
+        return found.residual, np.ones(len(velocity), dtype=np.bool_)
     # A row that follows from the others has no rate, but for what the pose is off.
-    rate = np.abs(np.matvec(left_out, velocity)).max(axis=1, initial=0.0)
+    unknown = velocity.reshape(len(velocity), 6 * velocity.shape[1]).take(mechanism.columns, 1)
+    rate = np.abs(np.matvec(found.jacobian[:, found.choice.left_out], unknown)).max(axis=1)
     speed = lengths(velocity)
     missed = np.divide(rate, speed, out=np.zeros_like(rate), where=speed > 0.0)
     allowed = LEFT_OUT * more_than_rounding(found.inverse) * speed
