@@ -214,11 +214,10 @@ def _turned(
         arm[0] = place - about
         parts = [axes(v) for v in arm]
         for d, total in enumerate(jet):
-            # The product rule: (u v)'' = u v'' + u' v' + u' v' + u'' v.
+            # The product rule: (u v)'' = u v'' + 2 u' v' + u'' v.
             for i in range(d + 1):
                 (sine, versine), (one, other) = slopes[i], parts[d - i]
-                for _ in range(comb(d, i)):
-                    total = total + one * sine + other * versine
+                total = total + _times(comb(d, i), one * sine + other * versine)
             found[d][point] = total
     return found
 
@@ -232,11 +231,14 @@ def _slopes(cosine: V, sine: V, versine: V, rates: Sequence[V]) -> list[tuple[V,
     for d in range(1, len(rates) + 1):
         along, across = cosine * rates[d - 1], sine * rates[d - 1]
         for i in range(1, d):
-            for _ in range(comb(d - 1, i)):
-                along = along - found[i][1] * rates[d - 1 - i]
-                across = across + found[i][0] * rates[d - 1 - i]
+            along = along - _times(comb(d - 1, i), found[i][1] * rates[d - 1 - i])
+            across = across + _times(comb(d - 1, i), found[i][0] * rates[d - 1 - i])
         found.append((along, across))
     return found
+
+
+def _times(count: int, product: V) -> V:
+    return product.times(count) if isinstance(product, Enclosed) else product * count
 
 
 def _about(k: Array, v: Array) -> tuple[Array, Array]:
