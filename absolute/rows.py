@@ -14,7 +14,8 @@ there, t held. Its value is known up to whole turns: `gap` takes the nearest.
 
 A row's rate of order n, when the bodies have none of that order, is the n-th derivative of a . e by the
 product rule: a, r1 and r2 are carried by their bodies, e = o2 + r2 - o1 - r1. That of a distance l follows
-from l l = e . e, and that of a turn from the sine of what it goes beyond where it is, which is a . e.
+from l l = e . e, and that of a turn from t' = z . (w2 - w1), z the common axis. (The angle is also the arcsine of
+what it goes beyond where it is; but rounding of that grows with the factorial of the order.)
 """
 
 from collections.abc import Iterable, Sequence
@@ -180,8 +181,11 @@ class RowStack:
         if self._distances.size:
             drift[..., self._distances] = _of_length([e[..., self._distances, :] for e in apart])
         if self._turns.size:
-            sines = [_product(along, apart, n)[..., self._turns] for n in range(1, order)]
-            drift[..., self._turns] = _of_turn([*sines, drift[..., self._turns]])
+            first, second = self.first[self._turns], self.second[self._turns]
+            axis = -cross(*(of[..., self._turns, :] for of in (placed.a, placed.e)))
+            axes = carried(axis, [rate.take(first, -3)[..., 1, :] for rate in rates], order)
+            spins = [(rate.take(second, -3) - rate.take(first, -3))[..., 1, :] for rate in rates]
+            drift[..., self._turns] = _product(axes, [*spins, 0.0 * axis], order - 1)
         return drift
 
 
@@ -198,13 +202,3 @@ def _of_length(vectors: Sequence[Array]) -> Array:
         inner = (comb(n, i) * lengths[i] * lengths[n - i] for i in range(1, n))
         lengths.append((_product(vectors, vectors, n) - sum(inner)) / (2.0 * lengths[0]))
     return np.asarray(lengths[-1])
-
-
-def _of_turn(sines: Sequence[Array]) -> Array:
-    """The last derivative of a turn u from nothing, from those of its sine, by order from the first:
-    (sin u)' = u' cos u, (cos u)' = -u' sin u."""
-    sine, cosine, turn = [0.0 * sines[0], *sines], [np.ones_like(sines[0])], [0.0 * sines[0]]
-    for n in range(1, len(sine)):
-        turn.append(sine[n] - sum(comb(n - 1, i) * cosine[i] * turn[n - i] for i in range(1, n)))
-        cosine.append(-np.asarray(sum(comb(n - 1, i) * sine[i] * turn[n - i] for i in range(n))))
-    return turn[-1]

@@ -1,5 +1,6 @@
 """Rows that follow from each other, and the digits of points that are drawn near each other."""
 
+from math import comb
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from many_digits import DIGITS, unit, vector
 from mechanism_files import plain_scene
 from mpmath import acos, mp
+from scipy.linalg import expm
 from shipped import EPS, Array, Motion, error, exact, off
 
 import absolute
@@ -51,6 +53,37 @@ def test_a_four_bar_whose_hinges_are_not_parallel_is_locked(
         Motion(bars, {"turn": at(turn, rate)}).solve(effects=effects)
     if tilt == 1e-10:
         assert Motion(bars, {"turn": at([0.0])}).solve(effects=["toe"]).effects
+
+
+def test_every_derivative_of_an_arm_that_turns_on_a_turning_arm_is_that_of_two_rotations() -> None:
+    """The hinge on the first arm is askew, so that its axis turns: up to order 20, over more than a turn."""
+    speeds, points = (1.7, -2.3), {"o": (0, 0, 0), "p": (0, 0, 9), "a": (40, 3, 5), "b": (46, 5, 14)}
+    points |= {"end": (70, -20, 9)}
+    arms = {"chassis": ["o", "p"], "upper": ["o", "p", "a", "b"], "fore": ["a", "b", "end"]}
+    inputs = {
+        "shoulder": {"angle": "upper", "from": "drawing", "on": "chassis"},
+        "elbow": {"angle": "fore", "from": "drawing", "on": "upper"},
+    }
+    times, orders = np.linspace(0.0, 4.0, 9), np.arange(21)
+    laws = {n: np.zeros((9, 21)) for n in inputs}
+    for law, speed in zip(laws.values(), speeds, strict=True):
+        law[:, 0], law[:, 1] = speed * times, speed
+    described = {"bodies": arms, "points": points, "inputs": inputs}
+    found = absolute.solve(absolute.compile(four_bar() | described), laws).derivatives
+
+    def spun(speed: float, axis: Array, t: float) -> Array:
+        """A rotation and its derivatives: each turns the one before by a right angle."""
+        k = speed * np.cross(axis / np.linalg.norm(axis), np.eye(3)).T
+        return np.stack([expm(k * t) @ np.linalg.matrix_power(k, n) for n in orders])
+
+    place = {name: np.array(point, float) for name, point in points.items()}
+    for i, t in enumerate(times):
+        first = spun(speeds[0], place["p"], t)
+        second = spun(speeds[1], place["b"] - place["a"], t) @ (place["end"] - place["a"])
+        second[0] += place["a"]
+        for n in orders:
+            meant = sum(comb(n, j) * first[j] @ second[n - j] for j in range(n + 1))
+            np.testing.assert_allclose(found[n]["end"][i], meant, rtol=0.0, atol=1e-12 * 100.0 * 4.0**n)
 
 
 # Pairs of one body of the paper's strut.
