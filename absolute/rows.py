@@ -14,8 +14,8 @@ there, t held. Its value is known up to whole turns: `gap` takes the nearest.
 
 A row's rate of order n, when the bodies have none of that order, is the n-th derivative of a . e by the
 product rule: a, r1 and r2 are carried by their bodies, e = o2 + r2 - o1 - r1. That of a distance l follows
-from l l = e . e, and that of a turn from t' = z . (w2 - w1), z the common axis. (The angle is also the arcsine of
-what it goes beyond where it is; but rounding of that grows with the factorial of the order.)
+from l l = e . e, and that of a turn from t' = z . (w2 - w1), z the common axis. (What t goes beyond where it
+is, is also an arcsine of a . e; but rounding of its derivatives grows with the factorial of the order.)
 """
 
 from collections.abc import Iterable, Sequence

@@ -147,7 +147,7 @@ class Effect(ABC):
 
     @property
     def base(self) -> str:
-        """The effect whose numbers' gradients it gives; empty if it gives none."""
+        """The effect whose numbers' derivatives it gives; empty if it has a definition of its own."""
         return ""
 
     @property

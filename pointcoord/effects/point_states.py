@@ -24,6 +24,11 @@ class PointStates(Effect):
     """The time derivative of every point's position, of the order `derivative`."""
 
     @property
+    def base(self) -> str:
+        """The position, of a derivative without a name of its own."""
+        return "" if self.derivative < len(NAMED) else NAMED[0]
+
+    @property
     def reports_states(self) -> bool:
         """The position of every point, or one derivative of it."""
         return True
@@ -52,18 +57,40 @@ class PointStates(Effect):
         return quantity.name
 
 
-def _states(derivative: int, name: str) -> PointStates:
+NAMED = ("position", "velocity", "acceleration", "jerk", "snap", "crackle", "pop")
+"""By order of the time derivative, those that have names."""
+_NUMBERED = "derivative_"
+HIGHEST = 20
+"""Bounds of doubles grow with each order. Five digits and more are proven of this one in the shipped scenes,
+but for Bricard's redundant rows; of the thirtieth there may be none."""
+
+
+def _states(derivative: int) -> PointStates:
+    named = derivative < len(NAMED)
+    name = NAMED[derivative] if named else f"{_NUMBERED}{derivative}"
+    words = name if named else f"{derivative}th derivative"
     unit = ("mm", "mm/s")[derivative] if derivative < 2 else f"mm/s^{derivative}"
     return PointStates(
         name=name,
-        gives=f"{name} of every point, {unit}",
+        gives=f"{words} of every point, {unit}",
         sign="components along the user's axes",
         derivative=derivative,
-        quantities=(Quantity(name, name, unit, "point"),),
+        quantities=(Quantity(name, words, unit, "point"),),
     )
 
 
-STATES = ("position", "velocity", "acceleration", "jerk", "snap", "crackle", "pop")
-"""By order of the time derivative, as far as such have names."""
+POSITION, *RATES = map(_states, range(HIGHEST + 1))
 
-POSITION, *RATES = (_states(order, name) for order, name in enumerate(STATES))
+STATES = tuple(effect.name for effect in (POSITION, *RATES))
+"""Their names, by order."""
+FIRST_NUMBERED = STATES[len(NAMED)]
+
+
+def no_such_derivative(name: str) -> str:
+    """Why there is no effect of a name that says an order, in words that follow it; empty of other names."""
+    order = name.removeprefix(_NUMBERED)
+    if order == name or not (order.isascii() and order.isdecimal()):
+        return ""
+    if len(order) > 4 or int(order) > HIGHEST:
+        return f" (the highest is {STATES[-1]}: beyond it doubles lose their digits)"
+    return f" ({STATES[int(order)]!r} is its name{'' if int(order) else ', and it always comes'})"

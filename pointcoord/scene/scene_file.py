@@ -18,6 +18,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from pointcoord.effects.conventions import ConventionName
 from pointcoord.effects.effect import Effect
+from pointcoord.effects.point_states import FIRST_NUMBERED, STATES, no_such_derivative
 from pointcoord.effects.registry import EFFECTS
 from pointcoord.errors import MechanismError, SceneError
 from pointcoord.linkage.car_axes import CarAxes
@@ -461,8 +462,13 @@ class MechanismPart(Part):
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """The names of the effects that this car has."""
-        return tuple(name for name, effect in EFFECTS.items() if not self.refusal(effect))
+        """The names of the effects that this car has, without derivatives of points that have only a number,
+        which every car has."""
+        return tuple(
+            name
+            for name, effect in EFFECTS.items()
+            if not ((effect.reports_states and effect.base) or self.refusal(effect))
+        )
 
     def refusal(self, effect: Effect) -> str:
         """Why this car does not have an effect and what to do, in words; empty if it does."""
@@ -550,10 +556,12 @@ class Scene(Part):
                 givers = [
                     effect.name for effect in EFFECTS.values() if name.rpartition(".")[2] in effect.own_names
                 ]
-                hint = f" ({givers[0]!r} gives it)" if givers else meant(name, EFFECTS)
+                hint = f" ({givers[0]!r} gives it)" if givers else no_such_derivative(name)
+                hint = hint or meant(name, EFFECTS)
                 allowed = [name for name, effect in EFFECTS.items() if not effect.base]
                 raise ValueError(
-                    f"no effect is called {shown(name)}{hint}; allowed: {', '.join(allowed)}, and gradients"
+                    f"no effect is called {shown(name)}{hint}; allowed: {', '.join(allowed)}, "
+                    f"{FIRST_NUMBERED} to {STATES[-1]}, and gradients"
                 )
         return effects
 

@@ -16,7 +16,7 @@ from every_effect import NUMBERS_OF_A_CAR
 from mechanism_files import SCENES, scene_file
 
 from pointcoord import Scene
-from pointcoord.effects.point_states import STATES
+from pointcoord.effects.point_states import NAMED
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.comparison.compare import Outcome, compare_solutions
 from validate.formulations.protocol import FormulationError, Solution
@@ -104,7 +104,7 @@ def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: s
     outcome = compared(name, who, True)
     # What is off by no more than is claimed: the reference's own part of that is nothing.
     within = [row for row in outcome.rows if row.verdict != "not given" and row.share <= 1.0]
-    assert set(STATES) <= {row.quantity for row in within}
+    assert set(NAMED) <= {row.quantity for row in within}
     lacking = of_the_car(asked(name, True)) - {row.name for row in within}
     assert lacking <= OF_A_TURN
     assert not lacking or name != "axle-steer"

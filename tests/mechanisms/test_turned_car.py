@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from pointcoord import InputOutOfRange, Scene, kinematic_map, simulate, solve_poses, sweep
-from pointcoord.effects.point_states import STATES
+from pointcoord.effects.point_states import NAMED
 from pointcoord.mechanism.file import MECHANISMS
 from validate import compare
 from validate.comparison.compare import compare_solutions
@@ -27,6 +27,7 @@ MOTIONS = {
     "roll": {"turns": "chassis", "about": "lower_arm_front", "along": "forward"},
     "pitch": {"turns": "chassis", "about": "wheel_centre", "along": "left"},
 }
+HIGHER = (*NAMED[3:], "derivative_9")
 LAWS = {
     "heave": {"sine": {"amplitude": 12.0, "angular_frequency": 3.0}},
     "roll": {"sine": {"amplitude": 0.2, "angular_frequency": 3.0, "phase": 0.3, "offset": 7.0}},
@@ -45,7 +46,7 @@ def turning(name: str, far: bool = False, order: tuple[str, ...] = ("heave", "ro
     part["points"] = {n: (np.array(p) + shift).tolist() for n, p in part["points"].items()}
     part.pop("driven", None)
     content["mechanism"] = part | tables
-    content["effects"] = [*content["effects"], *STATES[3:]]
+    content["effects"] = [*content["effects"], *HIGHER]
     content["inputs"] |= {motion: LAWS[motion] for motion in reversed(order)}
     content["time"] = {"start": 0.0, "stop": 1.0, "samples": 9}
     return Scene.from_mapping(content)
@@ -63,7 +64,7 @@ def test_every_number_of_a_turned_car_far_out_is_the_references_within_what_is_c
         scene, formulation(who).solve(scene), reference, "far", told_by(reference, scene)
     )
     assert not outcome.missing
-    assert {row.quantity for row in outcome.rows} >= {*STATES, "wheel"}
+    assert {row.quantity for row in outcome.rows} >= {*NAMED, *HIGHER, "wheel"}
     for row in outcome.rows:
         assert row.share <= 1.0, row
         # The claims would not do for a car that is turned the other way round or elsewhere.
@@ -113,7 +114,7 @@ def test_turns_follow_each_other_in_the_order_of_the_file() -> None:
 
 def test_maps_and_unrelated_poses_turn_the_car_as_its_motion_does() -> None:
     scene = turning("double-wishbone")
-    scene = scene.model_copy(update={"effects": tuple(e for e in scene.effects if e not in STATES[3:])})
+    scene = scene.model_copy(update={"effects": tuple(e for e in scene.effects if e not in HIGHER)})
     motion = simulate(scene)
     proof = motion.proof(rates=True)
     laws = {name: law.series(motion.times, 2) * (1.0, 1.0, 2.0) for name, law in scene.functions.items()}

@@ -17,9 +17,13 @@ NUMBERS_OF_A_CAR = {
 OF_A_WHEEL = tuple(
     name
     for name, effect in EFFECTS.items()
-    if (effect.lines or effect.derivative) and not getattr(effect, "of_axle", False) and effect.way != BY_ROLL
+    if (effect.lines or effect.derivative)
+    and not (effect.reports_states and effect.base)
+    and not getattr(effect, "of_axle", False)
+    and effect.way != BY_ROLL
 )
-"""The effects that a mechanism without parts, loads and a chassis that rolls may have."""
+"""The effects that a mechanism without parts, loads and a chassis that rolls may have, without derivatives of
+points that have only a number."""
 
 
 def every_effect(name: str) -> Scene:

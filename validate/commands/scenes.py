@@ -87,7 +87,7 @@ def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     if plan.left_out:
         plain = [effect for effect in plan.left_out if not EFFECTS[effect].base]
         made = [effect for effect in plan.left_out if EFFECTS[effect].base]
-        more = f"; what numbers change by, such as {made[0]}, {len(made)} in all" if made else ""
+        more = f"; derivatives of these, such as {made[0]} and {made[-1]}, {len(made)} in all" if made else ""
         names = ", ".join(plain)
         lines.append(f"left out: {names}{more}; name one under effects to have it (pointcoord help effects)")
     console.say("\n".join([*lines, *_work(plan, part.topology), *_effort(scene, plan)]))

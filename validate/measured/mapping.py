@@ -46,6 +46,7 @@ from pointcoord.effects.conventions import CONVENTIONS, Convention, ConventionNa
 from pointcoord.mechanism.faults import fault_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
+from validate.formulations.asked_numbers import per_second
 from validate.measured.meanings import (
     CONTACT,
     IGNORE,
@@ -72,7 +73,8 @@ ARCSINE: Definition = "arcsine"
 # Values in even steps that are taken as set exactly: two always are.
 FEWEST = 3
 BY_CHANCE = 1e-3  # of a step: what is even to less is hardly so by chance
-# No length, time, angle or rate of a car is larger in our units; the square of what is may be no number.
+# No length, time, angle or rate of a car is larger in our units; the square of what is may be no number. A higher
+# derivative may be this for every two seconds that it is divided by.
 FARTHEST = 1e12
 
 
@@ -526,10 +528,12 @@ class _Map:
         theirs, steps = self.columns.values[i], self.columns.steps[i]
         with np.errstate(over="ignore"):
             values = factor * (sign * theirs + part.offset)
-        for row in np.flatnonzero(np.abs(values) > FARTHEST)[:1].tolist():
+        seconds = per_second(meaning.quantity) if meaning.quantity else 0
+        farthest = FARTHEST ** max(1.0, seconds / 2.0)
+        for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
             where = f"{self.columns.rows[row]}, column {shown(column)!r}"
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
-            allowed = f"at most {FARTHEST:g} {meaning.unit}, or nothing or nan for none"
+            allowed = f"at most {farthest:g} {meaning.unit}, or nothing or nan for none"
             raise FileError(self.columns.source, where, problem, allowed)
         if part.definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
             allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"

@@ -56,6 +56,7 @@ SHARED = tuple(
     dict.fromkeys(
         name
         for effect in (*ALWAYS, *EFFECTS.values())
+        if not effect.base
         for quantity in effect.quantities
         for name in (effect.own_names if quantity.of == "car" else (quantity.name,))
     )

@@ -41,7 +41,7 @@ KINDS = {
     "N": FORCES,
     "%": {"%": 1.0},
 }
-_PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([1-9]?))?")
+_PARTS = re.compile(r"([^/]+)(?:/([^/^*]+?)(?:\^|\*\*)?([1-9][0-9]?)?)?")
 
 
 def length_called(word: str) -> str:
