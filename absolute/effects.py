@@ -142,10 +142,15 @@ def camber_by_arcsine(motion: Motion) -> Dual:
     return arctan2(-up, hypot(outboard, rearward))
 
 
-def toe_by_arcsine(motion: Motion) -> Dual:
+def toe_by_arcsine(motion: Motion, drawn: bool = False) -> Dual:
     """Asin of the forward part of the unit spin axis, by the part of it in the plane across the car."""
-    outboard, rearward, up = _along(motion, "wheel_axis")
+    outboard, rearward, up = motion.components(_spin_axis(motion, drawn))
     return arctan2(-rearward, hypot(outboard, up))
+
+
+def toe_change_by_arcsine(motion: Motion) -> Dual:
+    """The same less what it is in the drawing: the static setting."""
+    return toe_by_arcsine(motion) - toe_by_arcsine(motion, drawn=True)
 
 
 ANGLES: Mapping[str, Number] = {
@@ -156,6 +161,7 @@ ANGLES: Mapping[str, Number] = {
     "steer_angle": steer_angle,
     "camber_by_arcsine": camber_by_arcsine,
     "toe_by_arcsine": toe_by_arcsine,
+    "toe_change_by_arcsine": toe_change_by_arcsine,
 }
 LENGTHS: Mapping[str, Number] = {
     "travel": travel,
@@ -437,10 +443,15 @@ def _centre(motion: Motion) -> str:
     return motion.corner.ends("wheel_axis")[1]
 
 
+def _spin_axis(motion: Motion, drawn: bool) -> Dual:
+    """From the inner point of the spin axis to the wheel centre, (3, N); in the drawing (3, 1)."""
+    inner, centre = motion.corner.ends("wheel_axis")
+    return motion.drawn(centre) - motion.drawn(inner) if drawn else motion.line(inner, centre)
+
+
 def contact(motion: Motion, drawn: bool = False) -> Dual:
     """From the wheel centre to the contact point, (3, N)."""
-    inner, centre = motion.corner.ends("wheel_axis")
-    spin = motion.drawn(centre) - motion.drawn(inner) if drawn else motion.line(inner, centre)
+    spin = _spin_axis(motion, drawn)
     normal = spin / hypot(*spin)
     up = constant(np.array(motion.corner.axes[UP])[:, None])
     down = normal * motion.components(normal)[UP] - up

@@ -52,8 +52,14 @@ CONVENTIONS: Mapping[ConventionName, Convention] = {
             "damper_per_wheel": "wheel_per_damper",
         },
     ),
-    # Its steer angle, toe less the static setting, is none of ours.
-    "optimumk": Convention({"toe": "-toe_by_arcsine", "damper_per_wheel": "wheel_per_damper"}),
+    # Its steer angle is its toe less the static setting.
+    "optimumk": Convention(
+        {
+            "toe": "-toe_by_arcsine",
+            "steer_angle": "-toe_change_by_arcsine",
+            "damper_per_wheel": "wheel_per_damper",
+        }
+    ),
     # Adams/Car's turning tables.
     "adams": Convention({"camber": "camber_by_arcsine"}),
 }

@@ -16,7 +16,15 @@ from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.point_states import POSITION, RATES
 from pointcoord.effects.steering_axis import SCREW_AXIS, STEERING_AXIS
-from pointcoord.effects.wheel_angles import ANGLES_BY_ARCSINE, CAMBER, CASTER, STEER_ANGLE, TOE, WHEEL_ANGLES
+from pointcoord.effects.wheel_angles import (
+    ANGLES_BY_ARCSINE,
+    CAMBER,
+    CASTER,
+    STEER_ANGLE,
+    TOE,
+    TOE_CHANGE_BY_ARCSINE,
+    WHEEL_ANGLES,
+)
 from pointcoord.effects.wheel_travel import WHEEL_TRAVEL
 
 ALWAYS: tuple[Effect, ...] = (POSITION,)
@@ -27,6 +35,7 @@ _ANGLES_AND_DIMENSIONS = (
     WHEEL_ANGLES,
     TOE,
     ANGLES_BY_ARCSINE,
+    TOE_CHANGE_BY_ARCSINE,
     STEER_ANGLE,
     CASTER,
     WHEEL_TRAVEL,

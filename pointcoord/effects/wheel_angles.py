@@ -16,32 +16,39 @@ from typing import Any
 from pointcoord.effects.angle import WHEEL, Angle
 from pointcoord.effects.arithmetic import S, angle, root
 from pointcoord.effects.car_number import CarNumbers, Number
-from pointcoord.effects.corner import Corner
+from pointcoord.effects.corner import Corner, View
 
 
 def camber_by_arcsine(corner: Corner[S]) -> S:
     """-asin(n . up)."""
-    up, forward, outboard = _components(corner)
+    up, forward, outboard = _components(corner.seen)
     return -angle(up, root(forward * forward + outboard * outboard))
 
 
 def toe_by_arcsine(corner: Corner[S]) -> S:
     """asin(n . forward)."""
-    up, forward, outboard = _components(corner)
+    return _forward_arcsine(corner.seen)
+
+
+def toe_change_by_arcsine(corner: Corner[S]) -> S:
+    """asin(n . forward) - asin(drawn n . forward)."""
+    return _forward_arcsine(corner.seen) - _forward_arcsine(corner.drawn)
+
+
+def _forward_arcsine(view: View[S]) -> S:
+    up, forward, outboard = _components(view)
     return angle(forward, root(up * up + outboard * outboard))
 
 
-def _components(corner: Corner[S]) -> tuple[S, S, S]:
-    view = corner.seen
+def _components(view: View[S]) -> tuple[S, S, S]:
     return view.along(view.spin, "up"), view.along(view.spin, "forward"), view.along(view.spin, "outboard")
 
 
-def _arcsine(of: Angle, definition: str, formula: Any, source: str) -> Number:
-    name, words = f"{of.name}_by_arcsine", f"{of.words} by arcsine"
+def _arcsine(of: str, sign: str, definition: str, formula: Any, source: str) -> Number:
     return Number(
-        name,
-        words,
-        of.sign,
+        f"{of}_by_arcsine",
+        f"{of} by arcsine".replace("_", " "),
+        sign,
         definition,
         formula,
         needs_radius=False,
@@ -107,6 +114,17 @@ CASTER = CarNumbers.of("caster", "caster angle, rad", LEAN_REARWARD)
 ANGLES_BY_ARCSINE = CarNumbers.of(
     "angles_by_arcsine",
     "camber and toe as arcsines, rad",
-    _arcsine(LEAN, "-asin(n . up)", camber_by_arcsine, "Adams/Car's turning tables"),
-    _arcsine(POINTING, "asin(n . forward)", toe_by_arcsine, "OptimumK"),
+    _arcsine("camber", LEAN.sign, "-asin(n . up)", camber_by_arcsine, "Adams/Car's turning tables"),
+    _arcsine("toe", POINTING.sign, "asin(n . forward)", toe_by_arcsine, "OptimumK"),
+)
+TOE_CHANGE_BY_ARCSINE = CarNumbers.of(
+    "toe_change_by_arcsine",
+    "what toe is more than as drawn, as arcsines, rad",
+    _arcsine(
+        "toe_change",
+        "where the front edge of the wheel has gone towards the car's middle",
+        "`toe_by_arcsine` less that of the drawn n",
+        toe_change_by_arcsine,
+        "OptimumK's steer angle, which is counted outward",
+    ),
 )

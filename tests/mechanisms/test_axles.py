@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import acot, atan, cos, cot, mpf, pi, sin, workdps
+from mpmath import acot, asin, atan, cos, cot, mpf, pi, sin, workdps
 from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
 
 from pointcoord import Scene
@@ -76,7 +76,7 @@ def test_steered_wheels_are_what_the_formulas_make_of_their_angles(
     """Wheels that turn about upright hinges by their inputs; a turn to the left about up is positive."""
     turned = {"left": inner, "right": outer} if sign > 0 else {"left": outer, "right": inner}
     turns = {side: [sign * c for c in turn] for side, turn in turned.items()}
-    solution = solved_by(who, axle(UPRIGHT, ["steer_angle", "ackermann", "toe"], turns))
+    solution = solved_by(who, axle(UPRIGHT, ["steer_angle", "ackermann", "toe", "toe_change_by_arcsine"], turns))
     exact: dict[str, list[mpf]] = {}
     with workdps(DIGITS):
         track, base = 2 * mpf(HALF_TRACK), mpf(WHEELBASE)
@@ -92,6 +92,9 @@ def test_steered_wheels_are_what_the_formulas_make_of_their_angles(
                 "right.steer_angle": right,
                 "left.toe": -left,
                 "right.toe": right,
+                # Drawn straight ahead; an arcsine goes no farther than a right angle.
+                "left.toe_change_by_arcsine": asin(sin(-left)),
+                "right.toe_change_by_arcsine": asin(sin(right)),
                 "turning_radius": abs(radius),
                 "ackermann_error": other - (goal if goal >= 0 else goal + pi),
             }

@@ -114,6 +114,16 @@ def _steer_angle(car: Car) -> Numbers:
     return {"wheel": {"steer_angle": [mp.arg(mpc(dot(spin, car.outboard), dot(spin, to_the_left)))]}}
 
 
+def _toe_change_by_arcsine(car: Car) -> Numbers:
+    """How much farther the unit spin axis leans forward out of the plane across the car than it is drawn."""
+    forward, (inner, centre) = cross(car.up, car.right), car.wheel_axis
+    leans = []
+    for places in (car.places, car.drawn):
+        spin = plus(places[centre], places[inner], -1)
+        leans.append(mp.pi / 2 - mp.acos(dot(spin, forward) / mp.sqrt(dot(spin, spin))))
+    return {"wheel": {"toe_change_by_arcsine": [leans[0] - leans[1]]}}
+
+
 def _caster(car: Car) -> Numbers:
     """A steering axis that leans rearward at the top goes rearward on its way up."""
     kingpin, rearward = car.line(car.steering_axis), cross(car.right, car.up)
@@ -325,6 +335,7 @@ BY_HAND: dict[str, Callable[[Car], Numbers]] = {
     "steering_axis": _steering_axis,
     "damper": _damper,
     "angles_by_arcsine": _angles_by_arcsine,
+    "toe_change_by_arcsine": _toe_change_by_arcsine,
     "screw_axis": _screw_axis,
     "motion_ratio": _motion_ratio,
     "spring": _spring,

@@ -70,8 +70,8 @@ of inputs, and the other inputs stay where the scene begins:
 Where the scene has loads and asks for them, there are columns for the forces of rods, joints and
 slides.
 Other programs mean other numbers by the same names: --convention adams has Adams/Car's camber,
-optimumk OptimumK's toe, with what is positive there. Columns keep our names, with a minus
-before one that counts the other way.
+optimumk OptimumK's toe and steer angle, with what is positive there. Columns keep our names,
+with a minus before one that counts the other way.
 
 A row out of reach has no numbers and says why; the exit status is then 3."""
 

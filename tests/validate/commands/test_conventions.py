@@ -35,6 +35,12 @@ def toe_of_optimumk() -> Array:
     return np.degrees(np.arcsin(spin_axis()[1][:, FORWARD]))
 
 
+def steer_angle_of_optimumk() -> Array:
+    """Its toe less the static setting, which is that of the drawing."""
+    n = np.subtract(*(CAR.mechanism.points[name] for name in ("wheel_centre", "wheel_axis_inner")))
+    return toe_of_optimumk() - np.degrees(np.arcsin(n[FORWARD] / np.linalg.norm(n)))
+
+
 def steer_angle_of_iso() -> Array:
     """Of a right wheel: + where what points outboard points forward too, projected into the road."""
     _, n = spin_axis()
@@ -46,7 +52,8 @@ def steer_angle_of_iso() -> Array:
     [
         ("adams", "camber", "camber_by_arcsine [deg]", camber_of_adams),
         ("optimumk", "toe", "-toe_by_arcsine [deg]", toe_of_optimumk),
-        ("optimumk", "steer_angle", "steer_angle [deg]", steer_angle_of_iso),
+        ("optimumk", "steer_angle", "-toe_change_by_arcsine [deg]", steer_angle_of_optimumk),
+        ("lotus", "steer_angle", "steer_angle [deg]", steer_angle_of_iso),
     ],
 )
 def test_a_table_has_the_number_that_a_program_means(

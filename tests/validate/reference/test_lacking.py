@@ -53,7 +53,8 @@ def drawn(**others: Any) -> Instant:
 
 def test_what_a_car_lacks_is_said_by_name() -> None:
     found = drawn(roles={"wheel_axis": ROLES["wheel_axis"]}, wheel_radius=None)
-    of_the_axis = {"camber", "toe", "camber_by_arcsine", "toe_by_arcsine", "steer_angle", "travel"}
+    of_the_axis = {"camber", "toe", "camber_by_arcsine", "toe_by_arcsine", "steer_angle"}
+    of_the_axis |= {"toe_change_by_arcsine", "travel"}
     along = {f"{name}_{way}" for name in of_the_axis for way in ("by_travel", "by_time")}
     assert set(found.effects) == of_the_axis | along
     assert found.left_out["caster"] == "needs the role steering_axis"

@@ -20,7 +20,7 @@ from validate.reference.car_data import (
     WHEELBASE,
 )
 from validate.reference.dual import angle, slope_of, value_of
-from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car, contact_of
+from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car, Line, contact_of
 from validate.reference.effects.effect import RACK, ROLL, TIME, TRAVEL, Effect
 from validate.reference.jet import Jet
 from validate.reference.kinematics import body_rates
@@ -61,10 +61,15 @@ def _camber_by_arcsine(car: Car) -> Scalar:
     return _arcsine(-dot(a, car.up), dot(a, car.outboard), dot(a, car.forward))
 
 
-def _toe_by_arcsine(car: Car) -> Scalar:
+def _toe_by_arcsine(car: Car, wheel: Line | None = None) -> Scalar:
     """asin(n . forward), n = a / |a| (OptimumK)."""
-    a = car.wheel.along
+    a = (wheel or car.wheel).along
     return _arcsine(dot(a, car.forward), dot(a, car.outboard), dot(a, car.up))
+
+
+def _toe_change_by_arcsine(car: Car) -> Scalar:
+    """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle, the other way)."""
+    return _toe_by_arcsine(car) - _toe_by_arcsine(car, car.drawn.lines[WHEEL])
 
 
 def steer_angle(car: Car) -> Scalar:
@@ -279,6 +284,7 @@ OF_POSITIONS = (
     *ANGLES,
     Effect("camber_by_arcsine", "rad", (WHEEL,), _camber_by_arcsine),
     Effect("toe_by_arcsine", "rad", (WHEEL,), _toe_by_arcsine),
+    Effect("toe_change_by_arcsine", "rad", (WHEEL,), _toe_change_by_arcsine),
     Effect("steer_angle", "rad", (WHEEL,), steer_angle),
     Effect("travel", "mm", (WHEEL,), _travel),
     Effect("contact_travel", "mm", (WHEEL, RADIUS), _contact_travel),
