@@ -20,7 +20,7 @@ and the screw axis have it; one of velocities, which has no gradients, to `OF_VE
 both wheels of an axle to `AXLE_EFFECTS`.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -569,7 +569,9 @@ def effects_of(names: Sequence[str], model: Model) -> dict[str, Asked]:
     return {name: known[name] for name in names}
 
 
-def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str], str]:
+def inputs_of(
+    effects: Mapping[str, Asked], model: Model, driven: Collection[str]
+) -> dict[tuple[str, str], str]:
     """Part and "travel", "rack" or "roll" -> the value of the input that effects take their derivatives by.
 
     Raises:
@@ -581,7 +583,7 @@ def inputs_of(effects: Mapping[str, Asked], model: Model) -> dict[tuple[str, str
         for part in asked.parts
         if asked.effect.by not in ("", TIME)
     }
-    return {(part, by): model.input_of(part, by, what) for (part, by), what in wanted.items()}
+    return {(part, by): model.input_of(part, by, what, driven) for (part, by), what in wanted.items()}
 
 
 def numbers_of(effects: Mapping[str, Asked], motion: Motion) -> dict[str, Array]:

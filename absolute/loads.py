@@ -52,7 +52,7 @@ def forces(motion: Motion) -> dict[str, dict[str, Array]]:
     along, _, second_arm = (placed.vectors[:, kind] for kind in range(3))
     jacobian, owners = stack.jacobian(placed), list(stack.owners)
     for part, damper in model.dampers.items():
-        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,")
+        moving = model.input_of(part, "travel", f"{damper.owner!r}, which carries a load,", ())
         row = mechanism.joint_rows + [drive.value for drive in model.inputs].index(moving)
         held = RowStack([damper], len(bodies), mechanism.columns)
         jacobian[:, row] = held.jacobian(held.place(placed.rotation, placed.origin))[:, 0]

@@ -1,6 +1,6 @@
 """A linkage as `compile` makes it: bodies and their places in the drawing, rows, wheels."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -211,9 +211,9 @@ class Model:
         """Names of the values that the inputs take, each once."""
         return tuple(dict.fromkeys(drive.value for drive in self.inputs))
 
-    def input_of(self, part: str, by: str, what: str) -> str:
+    def input_of(self, part: str, by: str, what: str, driven: Collection[str]) -> str:
         """The one driven input of a part, or of all, that is the travel of a slide ("rack"), that is not
-        ("travel"), or that rolls the chassis ("roll").
+        ("travel"), or that rolls the chassis ("roll"), which need not be `driven` as the others are.
 
         Raises:
             DescriptionError: there is none, or another; `what` needs it.
@@ -223,7 +223,7 @@ class Model:
         own = {drive.value: drive.steers for drive in holding if not drive.value.startswith(others)}
         found = [value for value, steers in own.items() if bool(steers) == (by == "rack")]
         if by == "roll":
-            found = [value for value, turn in self.turns.items() if turn.rolls]
+            found = [value for value, turn in self.turns.items() if turn.rolls and value in driven]
         if len(found) != 1:
             kind = KINDS[by]
             raise DescriptionError(

@@ -134,16 +134,17 @@ class Assembled:
         """The motion by inputs at N instants; arguments and errors are those of `solve`."""
         model, mechanism = self.model, self._mechanism
         asked = effects_of(effects, model)
-        by, rated = inputs_of(asked, model), rates or any(one.effect.by == TIME for one in asked.values())
+        by = inputs_of(asked, model, inputs)
+        rated = rates or any(one.effect.by == TIME for one in asked.values())
         driving = {n: law for n, law in inputs.items() if n not in model.turns or n in model.values}
         orders = orders_of(inputs)
         series = input_series(model.values, driving, orders)
         still = np.zeros((len(series), orders, 3))
         carried = still if chassis is None else checked("chassis", chassis, (orders, 3), len(series))
         turns = [
-            (turn, checked(name, inputs.get(name, still[..., 0]), (orders,), len(series)))
+            (turn, checked(name, inputs[name], (orders,), len(series)))
             for name, turn in model.turns.items()
-            if name in inputs or name in by.values()
+            if name in inputs
         ]
         # Inputs that take the same value have a column each.
         series = series[..., [model.values.index(drive.value) for drive in model.inputs]]

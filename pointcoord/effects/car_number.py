@@ -44,8 +44,8 @@ SUCH_AS = {
 }
 LENGTHS = ("wheelbase", "centre_of_gravity_height", "spring_free_length")
 KINDS = {
-    BY_TRAVEL: "is no travel of a slide",
-    BY_RACK: "is the travel of a slide or a steering wheel",
+    BY_TRAVEL: "is no travel of a slide, such as wheel travel",
+    BY_RACK: "is the travel of a slide or a steering wheel, such as a rack",
     BY_ROLL: "rolls the chassis",
 }
 
@@ -249,8 +249,7 @@ class CarNumbers(Effect):
                 of = f" of the {wheel.part} wheel" if wheel.part else ""
                 return (
                     f"{self.name!r} needs exactly one driven input{of} that {KINDS[self.way]}, and there is "
-                    f"{', '.join(driven) or 'none'}; drive the mechanism by one, such as wheel travel and "
-                    f"rack, {or_leave_out}"
+                    f"{', '.join(driven) or 'none'}; drive one, {or_leave_out}"
                 )
         return ""
 

@@ -60,6 +60,7 @@ class Topology:
         stand_ins: points that a car need not give, each with the point that then stands in for it.
         chassis_motion: inputs that displace the whole chassis, each along a direction, zero if not given.
         chassis_turns: those that turn it before, in this order, each about a direction and a drawn point.
+        rolling: those of these that are driven and turn it about a line along the car.
         left_out: numbers of rows that follow from the others; they are no part of the map, and are looked at
             again at every answer.
         puts_in_place: whether closing the drawing moves points on purpose, however far that is.
@@ -81,6 +82,7 @@ class Topology:
     stand_ins: Mapping[str, str] = field(default_factory=dict)
     chassis_motion: Mapping[str, str] = field(default_factory=dict)
     chassis_turns: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    rolling: tuple[str, ...] = ()
     puts_in_place: bool = False
     left_out: tuple[int, ...] = ()
 
@@ -131,8 +133,7 @@ class Topology:
             part: whose wheel they move; those of another part are left out.
         """
         if way == "by_roll":
-            turns = self.chassis_turns.items()
-            return tuple(name for name, (along, _) in turns if along in ("forward", "rearward"))
+            return self.rolling
         steering = {drive.input for drive in self.drives if drive.of_slide}
         others = tuple(f"{other}." for other in self.sides if other != part)
         return tuple(

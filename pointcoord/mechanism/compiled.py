@@ -282,6 +282,7 @@ class _Compiler:
             stand_ins=structure.stand_ins,
             chassis_motion=along,
             chassis_turns=turns,
+            rolling=tuple(n for n in turns if n in self.driven and turns[n][0] in ("forward", "rearward")),
             puts_in_place=puts_in_place,
         )
 

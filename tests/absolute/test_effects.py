@@ -147,6 +147,15 @@ def test_what_a_number_lacks_is_said_in_one_line(
     assert refused.value.name
 
 
+def test_a_number_by_roll_needs_a_roll_that_is_driven() -> None:
+    """The arm can be turned about a line along the car; whoever gives no angle for it has no such input."""
+    given = {name: np.zeros((1, 3)) for name in ("turn", "steer", "roll", "pitch")}
+    assert Motion(plain(), given).solve(effects=["toe_by_roll"]).effects["toe_by_roll"].size == 1
+    words = "needs exactly one driven input that rolls the chassis, and there are 0"
+    with pytest.raises(absolute.DescriptionError, match=f"effect 'toe_by_roll' {words}"):
+        Motion(plain(), {name: given[name] for name in ("turn", "steer")}).solve(effects=["toe_by_roll"])
+
+
 def test_a_number_needs_nothing_of_the_others() -> None:
     for names, less in (
         (["travel", "hub_trail", "damper_length_by_travel", "toe"], plain(wheel_radius=None)),

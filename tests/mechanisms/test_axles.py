@@ -76,7 +76,8 @@ def test_steered_wheels_are_what_the_formulas_make_of_their_angles(
     """Wheels that turn about upright hinges by their inputs; a turn to the left about up is positive."""
     turned = {"left": inner, "right": outer} if sign > 0 else {"left": outer, "right": inner}
     turns = {side: [sign * c for c in turn] for side, turn in turned.items()}
-    solution = solved_by(who, axle(UPRIGHT, ["steer_angle", "ackermann", "toe", "toe_change_by_arcsine"], turns))
+    effects = ["steer_angle", "ackermann", "toe", "toe_change_by_arcsine"]
+    solution = solved_by(who, axle(UPRIGHT, effects, turns))
     exact: dict[str, list[mpf]] = {}
     with workdps(DIGITS):
         track, base = 2 * mpf(HALF_TRACK), mpf(WHEELBASE)

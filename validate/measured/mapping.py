@@ -73,8 +73,8 @@ ARCSINE: Definition = "arcsine"
 # Values in even steps that are taken as set exactly: two always are.
 FEWEST = 3
 BY_CHANCE = 1e-3  # of a step: what is even to less is hardly so by chance
-# No length, time, angle or rate of a car is larger in our units; the square of what is may be no number. A higher
-# derivative may be this for every two seconds that it is divided by.
+# No length, time, angle or rate of a car is larger in our units; the square of what is may be no number. Of a
+# higher derivative the limit is this for every two seconds that it is divided by.
 FARTHEST = 1e12
 
 

@@ -1,0 +1,78 @@
+"""Every mechanics refuses gradients along a way that no driven input goes, and gives those along others."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from mechanism_files import SCENES
+
+import absolute
+from absolute.effects import effects_of, inputs_of
+from pointcoord import Scene, SceneError
+from validate.formulations.reference_solution import design_of
+from validate.reference.effects.at_pose import numbers_of
+
+TURNED = Path(__file__).with_name("roll-pitch-heave.toml")
+ALONG = "needs exactly one driven input"
+# Of a car that can roll: it does, is only held over its ground, or stands on its chassis.
+ROLLING = Scene.load("axle-roll").model_dump(exclude_none=True)
+ROLLING["effects"] = []
+ROLLING["mechanism"]["rack_per_turn"] = 50.0
+HELD = {"constant": 0.0}
+TRAVELS = {"left.wheel_travel": HELD, "right.wheel_travel": HELD}
+DRIVEN: dict[str, dict[str, Any]] = {
+    "not rolled": {name: law for name, law in ROLLING["inputs"].items() if name != "roll"},
+    "by travel": TRAVELS | {"rack": HELD},
+    "rolled, by travel": TRAVELS | {"rack": HELD, "roll": HELD},
+    "by travel and a steering wheel": TRAVELS | {"steering_wheel": HELD},
+    "by heights on its chassis": ROLLING["inputs"] | {"heave": HELD},
+}
+
+
+def with_a_wheel() -> dict[str, Scene]:
+    every = {name: Scene.load(name) for name in SCENES} | {TURNED.stem: Scene.load(TURNED)}
+    every |= {what: Scene.from_mapping(ROLLING | {"inputs": inputs}) for what, inputs in DRIVEN.items()}
+    return {name: scene for name, scene in every.items() if "toe" in scene.mechanism.effects}
+
+
+def by_pointcoord(scene: Scene, effect: str) -> str:
+    try:
+        scene.model_copy(update={"effects": (effect,)})
+    except SceneError as error:
+        return str(error)
+    return ""
+
+
+def by_absolute(scene: Scene, effect: str) -> str:
+    model = absolute.compile(scene.mechanism.plain(tuple(scene.inputs)))
+    try:
+        inputs_of(
+            effects_of([f"{part}.{effect}" if part else effect for part in model.corners], model),
+            model,
+            scene.inputs,
+        )
+    except absolute.DescriptionError as error:
+        return str(error)
+    return ""
+
+
+def by_reference(scene: Scene, effect: str) -> str:
+    return " ".join(
+        number.lacks and f"needs {number.lacks}" for number in numbers_of(design_of(scene), [effect])
+    )
+
+
+@pytest.mark.parametrize("way", ["travel", "rack", "roll"])
+def test_all_mechanics_have_or_refuse_the_same_gradients_of_the_same_scenes(way: str) -> None:
+    refused = {}
+    for name, scene in with_a_wheel().items():
+        reasons = [find(scene, f"toe_by_{way}") for find in (by_pointcoord, by_absolute, by_reference)]
+        refused[name] = [ALONG in reason for reason in reasons]
+        assert refused[name] in ([True] * 3, [False] * 3), (name, reasons)
+    assert {any(of) for of in refused.values()} == {True, False} or way == "travel"
+    if way == "roll":
+        assert [name for name in DRIVEN if any(refused[name])] == [
+            "not rolled",
+            "by travel",
+            "by travel and a steering wheel",
+        ]
