@@ -42,19 +42,20 @@ RATES = {
     "rad": Quantity("angle_rate", "rate of a wheel angle", "rad/s", "car"),
     "mm": Quantity("dimension_rate", "rate of a dimension", "mm/s", "car"),
 }
+_GIVES = {BY_TRAVEL: QUANTITIES, BY_RACK: QUANTITIES, BY_ROLL: PER_ROLL, BY_TIME: RATES}
 
 
 def gradients(base: CarNumbers, way: str) -> CarNumbers:
     """What the numbers of an effect change by along a way."""
     timed = way == BY_TIME
-    gives = f"what these change by per {'second' if timed else f'{PER[way]} {WAYS[way]}'}: {base.gives}"
+    gives = f"what these change by per {PER[way]}{'' if timed else f' {WAYS[way]}'}: {base.gives}"
     numbers = [_gradient(number, way) for number in base.numbers]
     return CarNumbers.of(f"{base.name}_{way}", gives, *numbers, base=base.name, derivative=int(timed))
 
 
 def _gradient(number: CarNumber, way: str) -> Number:
     length, timed, travels = number.quantity.unit == "mm", way == BY_TIME, way == BY_TRAVEL
-    per = "second" if timed else f"{PER[way]} {way.replace('_', ' ')}"
+    per = f"{PER[way]}{'' if timed else f' {way}'.replace('_', ' ')}"
     return Number(
         name=f"{number.name}_{way}",
         words=f"{number.words} per {per}",
@@ -63,7 +64,7 @@ def _gradient(number: CarNumber, way: str) -> Number:
         formula=partial(_by_travel if travels else _slope, number),
         roles=tuple(dict.fromkeys((*number.roles, *(TRAVEL.roles if travels else ())))),
         needs_radius=number.needs_radius,
-        quantity=(RATES if timed else PER_ROLL if way == BY_ROLL else QUANTITIES)[number.quantity.unit],
+        quantity=_GIVES[way][number.quantity.unit],
         way="" if timed else way,
         power=length - travels,
     )

@@ -300,43 +300,25 @@ OF_POSITIONS = (
 )
 
 
-def _gradient(effect: Effect, along: str, evaluate: Callable[[Car], Scalar], *more: str) -> Effect:
-    needs = tuple(dict.fromkeys((*effect.needs, *more, along)))
+PER = {TRAVEL: "mm", RACK: "mm", ROLL: "rad", TIME: "s"}
+
+
+def _gradient(effect: Effect, along: str) -> Effect:
+    """N', by the one driven input that goes along, see `Effect.along`; by travel N' / travel'."""
+    travels = along == TRAVEL
+    needs = (*effect.needs, *([WHEEL] if travels else []), *([] if along == TIME else [along]))
+
+    def evaluate(car: Car) -> Scalar:
+        slope = slope_of(effect.evaluate(car))
+        return slope / slope_of(_travel(car)) if travels else slope
+
     return replace(
         effect,
         name=f"{effect.name}_{along}",
-        unit=f"{effect.unit}/{'rad' if along == ROLL else 'mm'}",
-        needs=needs,
+        unit=f"{effect.unit}/{PER[along]}",
+        needs=tuple(dict.fromkeys(needs)),
         evaluate=evaluate,
         along=along,
-    )
-
-
-def _by_travel(effect: Effect) -> Effect:
-    """N' / travel', q the one driven input that is not the travel of a slide."""
-    return _gradient(
-        effect, TRAVEL, lambda car: slope_of(effect.evaluate(car)) / slope_of(_travel(car)), WHEEL
-    )
-
-
-def _by_rack(effect: Effect) -> Effect:
-    """N', q the one driven input that is the travel of a slide."""
-    return _gradient(effect, RACK, lambda car: slope_of(effect.evaluate(car)))
-
-
-def _by_roll(effect: Effect) -> Effect:
-    """N', q the one driven input that rolls the chassis."""
-    return _gradient(effect, ROLL, lambda car: slope_of(effect.evaluate(car)))
-
-
-def _by_time(effect: Effect) -> Effect:
-    """N'."""
-    return replace(
-        effect,
-        name=f"{effect.name}_{TIME}",
-        unit=f"{effect.unit}/s",
-        evaluate=lambda car: slope_of(effect.evaluate(car)),
-        along=TIME,
     )
 
 
@@ -391,6 +373,4 @@ OF_MOTION = (
     ),
 )
 
-GRADIENTS = tuple(
-    gradient(effect) for effect in OF_POSITIONS for gradient in (_by_travel, _by_rack, _by_roll, _by_time)
-)
+GRADIENTS = tuple(_gradient(effect, along) for effect in OF_POSITIONS for along in PER)
