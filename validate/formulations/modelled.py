@@ -22,7 +22,7 @@ from validate.spanning_tree.wheels import OF_CAR
 Array = NDArray[np.float64]
 
 SLOW = 2.0**-200  # rad/s and mm/s
-LONGEST = 1000  # s, as a power of two: so long to the power of the highest derivative is still a number
+LONGEST = 500  # s, as a power of two whose square is still a number
 
 
 @dataclass(frozen=True)
@@ -161,6 +161,5 @@ def _slow_unit(laws: Mapping[str, Array], count: int) -> Array:
         for order in range(1, law.shape[-1]):
             fastest = np.maximum(fastest, np.abs(law[:, order]) ** (1.0 / order))
     slow = (fastest > 0.0) & (fastest < SLOW)
-    highest = max(law.shape[-1] for law in laws.values()) - 1
-    exponent = np.minimum(-np.frexp(np.where(slow, fastest, 1.0))[1], LONGEST // highest)
+    exponent = np.minimum(-np.frexp(np.where(slow, fastest, 1.0))[1], LONGEST)
     return np.asarray(np.where(slow, np.ldexp(1.0, exponent), 1.0))

@@ -153,6 +153,12 @@ def test_what_names_no_scene_is_refused_as_it_is(name: object) -> None:
     [
         ({"effects": ["kingpin"]}, "no effect is called 'kingpin' ('wheel_angles' gives it)"),
         ({"effects": ["Toe"]}, "no effect is called 'Toe' (did you mean 'toe'?)"),
+        ({"effects": ["derivative_2"]}, "called 'derivative_2' ('acceleration' is its name); allowed"),
+        ({"effects": ["derivative_09"]}, "called 'derivative_09' ('derivative_9' is its name)"),
+        ({"effects": ["derivative_0"]}, "('position' is its name, and it always comes)"),
+        ({"effects": ["derivative_21"]}, "(the highest is derivative_20: beyond it doubles lose their"),
+        ({"effects": [f"derivative_{'9' * 5000}"]}, "(the highest is derivative_20"),
+        ({"effects": ["derivative_\N{SUPERSCRIPT TWO}"]}, "(did you mean 'derivative_"),
         ({"mechanism": {"type": "double wishbone"}}, "(did you mean 'double_wishbone'?)"),
         (
             {"mechanism": {"type": "macpherson"}},

@@ -87,13 +87,14 @@ def test_what_two_wheels_make_over_a_rack_is_in_per_cent() -> None:
     assert wrong.endswith(".ackermann")
 
 
-def test_jerks_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen() -> None:
-    scene = asking("bounce-and-steer", ("jerk",), 21)
+@pytest.mark.parametrize(("name", "order"), [("jerk", 3), ("derivative_12", 12)])
+def test_derivatives_over_time_are_read_in_their_unit_and_a_wrong_one_is_seen(name: str, order: int) -> None:
+    scene = asking("bounce-and-steer", (name,), 21)
     motion = formulation("absolute").solve(scene)
-    for factor, wrong in ((1.0, []), (1.001, ["jerk.wheel_centre.x"])):
-        jerk = motion.numbers["jerk"]["wheel_centre"] * [factor, 1.0, 1.0]
-        heads = ["time [s]", *(f"jerk.wheel_centre.{axis} [m/s^3]" for axis in "xyz")]
-        rows = [[t, *(j * 1e-3)] for t, j in zip(scene.instants.tolist(), jerk, strict=True)]
+    for factor, wrong in ((1.0, []), (1.001, [f"{name}.wheel_centre.x"])):
+        numbers = motion.numbers[name]["wheel_centre"] * [factor, 1.0, 1.0]
+        heads = ["time [s]", *(f"{name}.wheel_centre.{axis} [m/s^{order}]" for axis in "xyz")]
+        rows = [[t, *(j * 1e-3)] for t, j in zip(scene.instants.tolist(), numbers, strict=True)]
         text = "\n".join([",".join(heads), *(",".join(f"{float(x):.9f}" for x in row) for row in rows), ""])
         assert disagreeing(text, {}, scene) == wrong
 
