@@ -2,7 +2,8 @@
 
 A family is such a row for every mechanism. The struts, on and beside their axis, are tried at every value of
 the parameter, the double wishbone at every fourth, all others at one: what is hard about a value is the same
-in each.
+in each. Values are few: far from the singular place, at it, between them, and where `right` begins to be
+demanded.
 """
 
 from __future__ import annotations
@@ -75,7 +76,6 @@ class Case:
         expected: by formulation; a case tries the formulations named here.
         judged: the trial at a value, with what else is measured, or asked of its answers.
         unit: of error and bound.
-        proven: see `try_scene`.
         given: whether the scene can be given to another solver.
         beyond: whether the scene has no pose at some instants, and `right` is a refusal that says so rightly.
         also_answered: values at which the scene has an answer although `expected` allows a refusal as well;
@@ -92,7 +92,6 @@ class Case:
     expected: Mapping[str, Expected]
     judged: Callable[[Subject, float, Trial], Trial] | None = None
     unit: str = "mm"
-    proven: bool = True
     given: bool = True
     beyond: bool = False
     also_answered: tuple[float, ...] = ()
@@ -103,7 +102,7 @@ class Case:
 
     def examine(self, value: float) -> Trial:
         """Try one value."""
-        trial = try_scene(value, self.content(value), tuple(self.expected), self.proven)
+        trial = try_scene(value, self.content(value), tuple(self.expected))
         return trial if self.judged is None else self.judged(self.subject, value, trial)
 
     def without(self, formulations: Collection[str]) -> Case:
@@ -239,8 +238,8 @@ def values_of(subject: Subject, values: Values) -> Values:
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
-    """One value per decade, going in: from 10^high down to 10^low."""
-    return tuple(float(f"1e{k}") for k in range(high, low - 1, -1))
+    """Every third decade, going in: from 10^high down to 10^low, both among them."""
+    return tuple(float(f"1e{k}") for k in (*range(high, low, -3), low))
 
 
 def coarse(values: Values) -> tuple[float, ...]:

@@ -11,7 +11,7 @@ from validate.extras import MissingPackage
 from validate.formulations.protocol import Solution
 from validate.hard.answer import Answer
 from validate.hard.case import MAP, Case
-from validate.hard.trial import Trial, compared, said, solved
+from validate.hard.trial import NOT_ASKED, Trial, asked_reference, compared, said, solved
 from validate.reference import InfeasibleError
 
 
@@ -63,11 +63,15 @@ def tried(case: Case, value: float) -> Trial:
     except Exception as error:
         reason = f"the trial fails: {said(error)}"
         return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
-    # Without a reference, or a proof that there is no pose, nothing can be compared.
-    judged = isinstance(trial.reference, Solution | InfeasibleError)
-    if trial.scene is None or not judged or value not in case.mapped:
+    if trial.scene is None or value not in case.mapped:
         return trial
-    by_map = compared(trial.scene, MAP, solved(MAP, trial.scene), trial.reference)
+    came, reference = solved(MAP, trial.scene), trial.reference
+    if isinstance(came, Solution) and reference is NOT_ASKED:
+        reference = asked_reference(trial.scene)
+    # Without a reference, or a proof that there is no pose, nothing can be compared.
+    if reference is not NOT_ASKED and not isinstance(reference, Solution | InfeasibleError):
+        return trial
+    by_map = compared(trial.scene, MAP, came, reference)
     return replace(trial, answers=(*trial.answers, by_map))
 
 

@@ -57,16 +57,11 @@ class Trial:
         return replace(self, facts={**self.facts, **facts})
 
 
-def try_scene(
-    value: float, content: Mapping[str, Any], formulations: Sequence[str], proven: bool = True
-) -> Trial:
+def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[str]) -> Trial:
     """Solve a scene by each formulation and compare the answers with the reference.
 
-    A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. The
-    drawings of hard cases are exact, so that the reference takes an unclear side from exact products.
-
-    Args:
-        proven: whether the reference is asked even if all refuse, when nothing is compared with it.
+    A scene that cannot be read is refused by all. Where the reference has no pose no answer is right. It is
+    not asked if all refuse, when there is nothing to compare with it.
     """
     try:
         scene = Scene.from_mapping(content)
@@ -74,9 +69,10 @@ def try_scene(
         refused = tuple(Answer(name, "refused", said(error)) for name in formulations)
         return Trial(value, refused, {"reference": "not asked"})
     came = {name: solved(name, scene) for name in formulations}
-    any_answer = any(isinstance(one, Solution) for one in came.values())
-    reference = _reference(scene) if proven or any_answer else NOT_ASKED
-    answers = tuple(compared(scene, name, one, reference) for name, one in came.items())
+    if not any(isinstance(one, Solution) for one in came.values()):
+        return Trial(value, tuple(compared(scene, *one, NOT_ASKED) for one in came.items()), {}, scene, came)
+    reference = asked_reference(scene)
+    answers = tuple(compared(scene, *one, reference) for one in came.items())
     facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
     return Trial(value, answers, facts, scene, came, reference)
 
@@ -101,8 +97,11 @@ def solved(name: str, scene: Scene) -> Solution | Exception:
         return error
 
 
-def _reference(scene: Scene) -> Solution | Exception:
-    """The reference, or why there is none."""
+def asked_reference(scene: Scene) -> Solution | Exception:
+    """The reference, or why there is none.
+
+    The drawings of hard cases are exact, so that it takes an unclear side from exact products.
+    """
     try:
         return reference_solution(scene, exact_sides=True)
     except (NoReferenceError, ValueError, ArithmeticError) as error:

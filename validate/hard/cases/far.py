@@ -32,6 +32,7 @@ AWAY = (1.0, -1.0, 3.0)
 PLACED = 8.0
 # A car at home may happen to be off by less than another by this factor: errors of a few roundings each.
 LUCKY = 16.0
+SIZES = (1e4, 1e2, 1e-1, 1e-3, 1e-6)
 RATES = tuple(quantity for quantity in QUANTITIES if quantity != "position")
 
 # From home, rad and mm over s: from 1.5 rad where that is a right angle.
@@ -146,9 +147,9 @@ CASES = (
     *(
         one
         for name, why, values, subjects in (
-            ("sizes-by-powers-of-two", TWOS, tuple(2.0**k for k in range(11, -20, -3)), SUBJECTS[:1]),
-            ("sizes-by-powers-of-ten", TENS, decades(-6, 4), SUBJECTS[:1]),
-            ("sizes", TENS, decades(-6, 4), (BESIDE, *ALL[1:])),
+            ("sizes-by-powers-of-two", TWOS, tuple(2.0**k for k in (11, 2, -4, -10, -19)), SUBJECTS[:1]),
+            ("sizes-by-powers-of-ten", TENS, SIZES, SUBJECTS[:1]),
+            ("sizes", TENS, SIZES, (BESIDE, *ALL[1:])),
         )
         for one in _far(
             *(scaled_car, "size, in parts of a car of some 500 mm", values),

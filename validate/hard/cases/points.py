@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from validate.cars.car import unit
 from validate.hard.cars import CARS, drawn_angle, drawn_at, scene_content
-from validate.hard.case import RIGHT, Case, Expected, Values, case, decades, reason_of, whole
+from validate.hard.case import RIGHT, Case, Expected, Values, case, reason_of, whole
 from validate.hard.subjects import NAMED, Content, Subject, hyphens
 
 Array = NDArray[np.float64]
@@ -34,9 +34,10 @@ SOLVED = Expected(("right", "refused"), right_from=1e-2)
 # A thousand times the rest of the car is as mixed as parts of one machine are.
 MIXED = Expected(("right", "refused"), right_from=1e-3)
 OFF = 37.0  # mm: how far the axis is from the ball joint in the car beside
-SLOW = decades()[::3]  # a refusal takes half a second here
-EVERY, SECOND = (*decades(), 0.0), (*decades()[::2], 0.0)
-AT_FIRST = (*decades(-4), 1e-6, 1e-9, 1e-12)  # where it is refused, each refusal takes a second
+VALUES = (1.0, 1e-2, 1e-6, 1e-12)
+# A refusal takes half a second and more here.
+SLOW = (1.0, 1e-3, 1e-6, 1e-12)
+AND_THERE = (1.0, 1e-4, 1e-8, 1e-12, 0.0)
 BALL, OUTER, INNER = "lower_ball_joint", "tie_rod_outer", "tie_rod_inner"
 FRONT, REAR, LOWER = "lower_arm_front", "lower_arm_rear", "strut_lower"
 TOP, ROD_END = "strut_top", "strut_rod_end"
@@ -197,7 +198,7 @@ PARTS = "in parts of what it is in the car"
 FROM_TOP = "drawn distance of strut_lower from the top over what it is"
 ROD_FROM_TOP = f"distance of the rod's end from the top, {PARTS}"
 ARM_AXIS, STRUT = (FRONT, REAR), (TOP, ROD_END)
-FAR = (False, FROM_TOP, MIXED, AT_FIRST)
+FAR = (False, FROM_TOP, MIXED, SLOW)
 
 
 def _of_every_car(upper: str) -> tuple[Row, ...]:
@@ -245,31 +246,27 @@ AT_THE_STRUT = Row(
     "The tie rod ends as little as 1e-10 mm from the strut's foot, in a car of 500 mm.",
     *(True, "distance, in parts of what it is in the paper's car"),
 )
-# Draw, parameter, values, of what all models have to solve.
+# Draw, and parameter, of what all models have to solve.
 THROUGH = (
     (
         ball_joint_near_the_axis,
         f"distance of the ball joint from the axis, in parts of {OFF:g} mm; then on it",
-        EVERY,
     ),
     (
         axis_in_the_knuckle_plane,
         "strut_lower off the plane of the others and the top, in parts of 100 mm; then in it",
-        SECOND,
     ),
     (
         axis_across_the_knuckle_plane,
         f"height of the tie rod's end over that plane, {PARTS}; then in it",
-        SECOND,
     ),
     (
         axis_through_the_tie_rod_end,
         f"distance of the axis from it, in parts of {OFF:g} mm; then through it",
-        SECOND,
     ),
 )
 BESIDE_ROWS = (
-    *(Row(draw, "", "", False, parameter, RIGHT, values) for draw, parameter, values in THROUGH),
+    *(Row(draw, "", "", False, parameter, RIGHT, AND_THERE) for draw, parameter in THROUGH),
     Row(
         knuckle_in_line_beside,
         parameter=f"distance of strut_lower from the line of the others, in parts of {OFF:g} mm",
@@ -301,7 +298,7 @@ BESIDE_ROWS = (
     Row(
         strut_lower_near_the_ball_joint,
         parameter=f"distance of strut_lower from the ball joint, {PARTS}",
-        values=AT_FIRST,
+        values=SLOW,
     ),
     Row(put(ROD_END, from_=TOP), "rod-end-near-the-top", FROM_TWO.format("rod"), parameter=ROD_FROM_TOP),
     Row(
@@ -344,14 +341,14 @@ NEAR = (near, "Points nearly in line or nearly coincident", SOLVED)
 OUT_OF_PROPORTION = (mixed, "Far from the origin, and mixed sizes", MIXED)
 # Motion, group, what has to come, car, values, ways to draw it.
 TABLES: tuple[Table, ...] = (
-    (near, BESIDE_GROUP, SOLVED, "beside", decades(), BESIDE_ROWS),
-    (*NEAR, "paper", decades(), _of_every_car(LOWER)),
+    (near, BESIDE_GROUP, SOLVED, "beside", VALUES, BESIDE_ROWS),
+    (*NEAR, "paper", VALUES, _of_every_car(LOWER)),
     (*NEAR, "paper", SLOW, OF_STRUT),
     (*NEAR, "wishbone", SLOW, (*_of_every_car(UPPER_BALL), *OF_WISHBONE)),
-    (*OUT_OF_PROPORTION, "wishbone", (1.0, 1e-3, 1e-6, 1e-12), WISHBONE_MIXED),
-    (*OUT_OF_PROPORTION, "paper", AT_FIRST, PAPER_MIXED),
-    (*OUT_OF_PROPORTION, "beside", AT_FIRST, BESIDE_MIXED),
-    (*OUT_OF_PROPORTION, "paper", AT_FIRST, (AT_THE_STRUT,)),
+    (*OUT_OF_PROPORTION, "wishbone", SLOW, WISHBONE_MIXED),
+    (*OUT_OF_PROPORTION, "paper", SLOW, PAPER_MIXED),
+    (*OUT_OF_PROPORTION, "beside", SLOW, BESIDE_MIXED),
+    (*OUT_OF_PROPORTION, "paper", SLOW, (AT_THE_STRUT,)),
 )
 
 

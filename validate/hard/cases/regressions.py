@@ -7,6 +7,7 @@ from functools import partial
 from validate.cars.car import RIGHT, UP, Car
 from validate.hard.cars import PAPER_CAR, SQUARE, drawn_angle, scene_content
 from validate.hard.case import RIGHT_OR_REFUSED, Expected, case, decades
+from validate.hard.cases.ends import FULL
 from validate.hard.last_values import last_value
 from validate.hard.subjects import ARM_AND_RACK, LEVEL, PAPER, Content, Subject
 
@@ -73,7 +74,7 @@ CASES = (
     _found(
         error_all_but_its_bound,
         "distance of the arm from its end, in parts of its range",
-        decades(-12, -1),
+        FULL,
         {"pointcoord": Expected(("right", "refused"), 1e-11), **BY_ANGLE},
     ),
     _found(
@@ -86,7 +87,7 @@ CASES = (
     _found(
         strut_drawn_folded,
         "distance of the rod end behind the top, in parts of the strut",
-        decades()[::2],  # near the top a refusal takes a second
+        (1.0, 1e-2, 1e-6, 1e-12),  # near the top a refusal takes a second
         {"pointcoord": Expected(("right", "refused"), 1e-2), **BY_ANGLE},
     ),
 )
