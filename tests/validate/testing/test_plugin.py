@@ -116,7 +116,7 @@ def test_one(scene):
         ),
         (
             mark("impossible_scenes", "steer"),
-            "'steer' is no case without a pose; there are: arm-",
+            "'steer' is no case without a pose; there are: reach-arm-",
         ),
     ],
     ids=str,

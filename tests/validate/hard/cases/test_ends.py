@@ -22,10 +22,12 @@ ENDS: list[CarEnd] = [
 ]
 
 
-def pose(end: CarEnd, value: float, law: str = "held") -> Instant:
-    """The reference near an end, or beyond it."""
+def pose(end: CarEnd, value: float) -> Instant:
+    """The reference near an end; beyond it for a value below 0."""
     name, driven, ahead, arm_angle = end
-    scene = Scene.from_mapping(near_end(End(NAMED[name], driven, ahead), arm_angle, law, NAMED[name], value))
+    scene = Scene.from_mapping(
+        near_end(End(NAMED[name], driven, ahead), arm_angle, "held", NAMED[name], value)
+    )
     return reference_instant(scene, inputs_at(scene, 0.0))
 
 
@@ -33,7 +35,7 @@ def pose(end: CarEnd, value: float, law: str = "held") -> Instant:
 def test_an_end_separates_poses_from_none_to_a_trillionth_of_the_range(end: CarEnd) -> None:
     assert pose(end, 1e-12).condition > 1e5
     with pytest.raises(InfeasibleError):
-        pose(end, 1e-12, "beyond")
+        pose(end, -1e-12)
 
 
 @pytest.mark.parametrize("car", ["paper", "turned"])
