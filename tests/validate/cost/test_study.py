@@ -65,13 +65,13 @@ def test_a_way_that_is_not_installed_is_left_out_and_one_that_refuses_has_failed
 
 def test_what_is_kept_is_not_measured_again_and_more_is_added(tmp_path: Path, few: None) -> None:
     path, here = tmp_path / "rows", measured_here("test")
-    study = Study(("accuracy",), (STEER,), ways_named(["series"]), quick=True)
+    study = Study(("accuracy",), (STEER,), ways_named(["absolute"]), quick=True)
     rows = measure(study, Store(path, here))
     before = path.read_bytes()
     again = measure(study, Store(path, here), lambda *_: pytest.fail("measured again"))
     assert (again, path.read_bytes()) == (rows, before)
     assert {row.program for row in rows} == {here.program}
-    more = measure(replace(study, ways=ways_named(["series", "newton"])), Store(path, here))
+    more = measure(replace(study, ways=ways_named(["absolute", "newton"])), Store(path, here))
     assert more[: len(rows)] == rows
     assert {row.way for row in more[len(rows) :]} == {"newton"}
     changed = study_scene("steer", STEER.positions_only())

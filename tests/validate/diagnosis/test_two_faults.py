@@ -145,7 +145,7 @@ def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> Non
     """Two hardpoints would do as well, were it not for angles that agree."""
     content = Scene.load("axle-opposed").model_dump(exclude_none=True)
     content |= {"effects": ("wheel_angles", "toe", "caster")}
-    content["time"]["samples"] = 11
+    content["time"]["samples"] = 5
     scene = Scene.from_mapping(content)
     wheel = misread(scene, "right.lower_arm_front.z", -1.0)["wheel"]
     said = told(scene, {"wheel": {**wheel, "left.camber": wheel["left.camber"] - 0.01}})
