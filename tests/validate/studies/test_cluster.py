@@ -225,7 +225,9 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
     assert 0 < count < every
     # Before it may stand how far the study was.
     *_, line = err.splitlines()
-    assert line == f"pointcoord: interrupted; kept holds {count} of {every:,} scenes; the same command goes on"
+    assert (
+        line == f"pointcoord: interrupted; kept holds {count} of {every:,} scenes; the same command goes on"
+    )
     assert out == ""
     # What is asked for may change.
     few = hard(["at-rest", "far-in-time-wishbone"])
