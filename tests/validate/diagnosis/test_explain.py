@@ -291,20 +291,11 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
     assert found[0].words.endswith("and rack_centre with it")
 
 
-@pytest.mark.parametrize(
-    ("name", "coordinate", "amount", "words"),
-    [
-        (SCENES[0], "wheel_centre__x", 5.0, "wheel_centre.x drawn 5 mm too far back"),
-        ("pushrod", "pushrod_outer__z", 2.0, "pushrod_outer.z drawn 2 mm too high"),
-    ],
-)
-def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly(
-    name: str, coordinate: str, amount: float, words: str
-) -> None:
-    # No link holds these points, and so their lengths in other assemblies are those of their bodies.
-    first = diagnosis(name, drawn_with(name, **{coordinate: amount}))[0]
+def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly() -> None:
+    # No link holds this point, and so its lengths in other assemblies are those of its body.
+    first = diagnosis("pushrod", drawn_with("pushrod", pushrod_outer__z=2.0))[0]
     assert (first.kind, first.leftover <= 1.0) == ("hardpoint", True)
-    assert words in first.words
+    assert "pushrod_outer.z drawn 2 mm too high" in first.words
 
 
 def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() -> None:
@@ -391,10 +382,6 @@ WRONG_INPUTS: Mapping[str, dict[str, tuple[float, float]]] = {
     "the input rack is taken as 0": {"rack": (0.0, 0.0)},
     "the input rack is taken 5 mm more": {"rack": (1.0, 5.0)},
     "the input arm_angle is taken as pi minus it": {"arm_angle": (-1.0, np.pi)},
-    "the input arm_angle is taken 0.02 rad more, and the input rack has the other sign": {
-        "rack": (-1.0, 0.0),
-        "arm_angle": (1.0, 0.02),
-    },
     "the input arm_angle is taken 0.99 times, and the input rack is taken 1.05 times": {
         "rack": (1.05, 0.0),
         "arm_angle": (0.99, 0.0),

@@ -204,12 +204,9 @@ def test_the_travel_of_the_contact_point_under_the_wheel_centres_name_is_said() 
 
 def test_a_rod_of_another_length_is_named_where_every_row_is_one_late_besides() -> None:
     scene, content = car("five-link")
-    numbers = absolute(with_rod(content, "upper_rear", 2.0)).numbers
-    late = {
-        q: {name: np.concatenate([values[:1], values[:-1]]) for name, values in part.items()}
-        for q, part in numbers.items()
-    }
-    (only,) = explained(scene, late)
+    places = absolute(with_rod(content, "upper_rear", 2.0)).numbers["position"]
+    late = {name: np.concatenate([values[:1], values[:-1]]) for name, values in places.items()}
+    (only,) = explained(scene, {"position": late})
     assert only.kind == "link and sample"
     assert only.words.endswith("upper_rear is 2 mm too long, 363.109 mm for 361.109, and one sample late")
 

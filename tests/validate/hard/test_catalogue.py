@@ -21,7 +21,7 @@ from validate.formulations.registry import formulation
 from validate.hard import trial as trying
 from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import PAPER_CAR, scene_content
-from validate.hard.case import FAILS, MAP, RIGHT, Case, Expected, case, decades
+from validate.hard.case import FAILS, MAP, REFUSED, RIGHT, Case, Expected, case, decades
 from validate.hard.report import case_parts, summary_parts
 from validate.hard.run import as_expected, examine
 from validate.hard.subjects import Subject
@@ -189,6 +189,16 @@ def test_a_wrong_number_of_the_map_is_neither_expected_nor_passed_over(
     assert {(a.formulation, a.outcome) for _, a in result.unexpected} == {(MAP, "wrong")}
     assert len(result.wrong) == 2
     assert not as_expected([result])
+
+
+def test_what_the_map_alone_answers_is_compared_too(
+    monkeypatch: pytest.MonkeyPatch, solution: Solution
+) -> None:
+    stand_in(monkeypatch, lambda scene: solution, MAP)
+    beyond = replace(STEERED, scene=lambda *_: scene_content(PAPER_CAR, rack=131.0), expected={OURS: REFUSED})
+    result = examine(replace(beyond, values=(1.0,)))
+    assert [one.outcome for _, one in result.answers(OURS)] == ["refused"]
+    assert [one.outcome for _, one in result.answers(MAP)] == ["wrong"]
 
 
 def test_its_effort_is_bounded_and_what_it_refuses_is_counted_by_reason(
