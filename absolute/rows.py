@@ -182,7 +182,8 @@ class RowStack:
             drift[..., self._distances] = _of_length([e[..., self._distances, :] for e in apart])
         if self._turns.size:
             first, second = self.first[self._turns], self.second[self._turns]
-            axis = -cross(*(of[..., self._turns, :] for of in (placed.a, placed.e)))
+            level = placed.vectors[..., 0, self._turns, :]
+            axis = -cross(level, placed.e[..., self._turns, :])
             axes = carried(axis, [rate.take(first, -3)[..., 1, :] for rate in rates], order)
             spins = [(rate.take(second, -3) - rate.take(first, -3))[..., 1, :] for rate in rates]
             drift[..., self._turns] = _product(axes, [*spins, 0.0 * axis], order - 1)
