@@ -176,14 +176,19 @@ def length_coordinate(topology: Topology, rod: str) -> int:
 
 
 def point_slopes(mechanism: Mechanism, y: Array, slopes: Array, way: Way) -> dict[str, Array]:
-    """The derivative of every point, (N, 3), mm per rad, mm or unit, from those of the coordinates."""
+    """The derivative of every point, (..., N, 3), mm per rad, mm or unit, from those of the coordinates."""
+    series = point_series(mechanism, np.stack([y, slopes], axis=-2))
+    moved = {name: each[..., 1, :] for name, each in series.items()}
+    if isinstance(way, ByGap):
+        unit = mechanism.unit[..., None]
+        moved[GAP] = np.broadcast_to(np.eye(3)[way.axis] * unit, (*y.shape[:-1], 3))
+    return moved
+
+
+def point_series(mechanism: Mechanism, series: Array) -> dict[str, Array]:
+    """The series of every point, (..., order + 1, 3), mm, from those of the coordinates."""
     layout, topology = mechanism.layout, mechanism.topology
-    series = np.stack([y, slopes], axis=-2)
     found = {name: series[..., list(layout.vector(name))] for name in (*topology.chassis, *topology.moving)}
     for name, carriers in topology.carried.items():
         found[name] = carried_series(mechanism.carrier_weights[name], *(found[c] for c in carriers))
-    unit = mechanism.unit[..., None]
-    moved = {name: each[..., 1, :] * unit for name, each in found.items()}
-    if isinstance(way, ByGap):
-        moved[GAP] = np.broadcast_to(np.eye(3)[way.axis] * unit, (len(y), 3))
-    return moved
+    return {name: each * mechanism.unit[..., None, None] for name, each in found.items()}

@@ -193,7 +193,7 @@ def multiplied(left: Array, right: Array, pairs: Products) -> Array:
     Returns:
         Shape (targets, ..., terms).
     """
-    result = np.empty((len(pairs.targets), *left.shape[1:]))
+    result = np.empty((len(pairs.targets), *left.shape[1:]), left.dtype)
     edges, block = pairs.edges, max(PAIRS // max(prod(left.shape[1:-1]), 1), 1)
     low = 0
     while low < len(pairs.targets):
@@ -218,6 +218,6 @@ def cross_series(a: Array, b: Array, inputs: int = 1, doubled: bool = False) -> 
     left = np.concatenate([a[..., NEXT], a[..., LAST]], axis=-1)
     right = np.concatenate([b[..., LAST], b[..., NEXT]], axis=-1)
     found = multiplied(powers_first(left), powers_first(right), pairs)
-    result = np.empty((*found.shape[:-1], 3))
+    result = np.empty((*found.shape[:-1], 3), found.dtype)
     result[pairs.targets] = found[..., :3] - found[..., 3:]
     return result.transpose(*range(1, result.ndim - 1), 0, result.ndim - 1)

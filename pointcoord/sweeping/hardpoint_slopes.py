@@ -15,66 +15,69 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import comb, factorial
+from math import factorial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.arithmetic import Dual, cross, multiple, times
+from pointcoord.effects.arithmetic import Dual
 from pointcoord.effects.effect import Poses
+from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.hardpoints import hardpoints_moved
 from pointcoord.linkage.mechanism import Mechanism
-from pointcoord.linkage.slopes import GAP, ByGap, Way, known_slopes, shifted, way_slopes
+from pointcoord.linkage.slopes import (
+    GAP,
+    Way,
+    known_slopes,
+    point_series,
+    point_slopes,
+    shifted,
+    way_slopes,
+)
 from pointcoord.numerics.counters import Work
-from pointcoord.numerics.infinitesimal import slope_of
+from pointcoord.numerics.infinitesimal import slope_of, with_slope
 from pointcoord.numerics.linear import factorise
 from pointcoord.numerics.newton import implicit_rate, implicit_slopes, newton_refine
-from pointcoord.results.readout import Laws, alone
+from pointcoord.results.readout import alone
 from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.pointwise import square_velocity_term, with_rates
 
 Array = NDArray[np.float64]
-Points = Mapping[str, Dual[Array]]
-"""Places or derivatives of these, mm: values (N, 3), and slopes (K, N, 3) by each of K parameters."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class DualPoses(Poses):
     """Poses of duals, whose slopes have a dimension of K parameters before those of the values.
 
-    Attributes:
-        moves: by hardpoint, what its drawn place changes by, (K, 3), mm.
+    The mechanism is one with slopes of all that is read off its drawing.
     """
-
-    moves: Mapping[str, Array]
 
     def constant(self, number: Array) -> Dual[Array]:
         """With a slope of 0."""
         return Dual(number, np.zeros_like(number))
 
-    @property
-    def drawn(self) -> Points:
-        """Where every point is drawn, which is what moves."""
-        places = self.mechanism.drawn_places
-        return {name: Dual(place, self.moves[name][:, None]) for name, place in places.items()}
+    @cached_property
+    def drawn(self) -> Mapping[str, Dual[Array]]:
+        """Where every point is drawn."""
+        return _duals(self.mechanism.drawn_places)
 
 
 @dataclass(frozen=True, eq=False)
 class MovedPoses:
-    """Poses at instants and what they change by, in coordinates.
+    """Poses at instants as coordinates with slopes by K parameters (see `infinitesimal`).
 
     Attributes:
         times: (N,), s.
-        states: y and its time derivatives, values (N, size), slopes (K, N, size).
-        ways: its derivative along each way likewise, per rad, mm or unit.
+        states: y and its time derivatives, (K, N, size).
+        ways: its derivative along each way, per rad, mm or unit, (K, N, size).
         violated: what the rows that are left out, as they follow from the others, change by where a hardpoint
             moves by the mechanism's unit, (K, N, rows).
     """
 
     times: Array
-    states: Sequence[Dual[Array]]
-    ways: Mapping[Way, Dual[Array]]
+    states: Sequence[Array]
+    ways: Mapping[Way, Array]
     violated: Array
 
 
@@ -119,75 +122,45 @@ class ByHardpoints:
             gap, rows = shifted(mechanism.topology, way)
             more = 2.0 * (system.polar(rate, slopes[0]) + rows * system.polar(slopes[0], gap))
             own = slope_of(known_slopes(self.moved, inputs, way))
-            found[way] = Dual(rate, implicit_rate(system, factors, y, own, more))
+            found[way] = with_slope(rate, implicit_rate(system, factors, y, own, more))
         violated = np.zeros((*slopes[0].shape[:-1], 0))
         if mechanism.topology.left_out:
             violated = 2.0 * float(mechanism.unit) * mechanism.topology.left_map.polar(y, slopes[0])
-        return MovedPoses(times, list(map(Dual, states, slopes)), found, violated)
+        return MovedPoses(times, list(map(with_slope, states, slopes)), found, violated)
 
     def numbers(self, at: MovedPoses) -> dict[str, dict[str, Array]]:
         """What every number changes by, by quantity and name, (K, N) of the car and (K, N, 3) of others."""
-        readout, count = self.solved.readout, len(next(iter(self.moves.values())))
-        laws, slopes, unit = readout.laws(at.times), {}, float(self.mechanism.unit)
-        for way, along in at.ways.items():
-            points = self._points([at.states[0], along])
-            if isinstance(way, ByGap):
-                nothing = np.zeros((len(at.times), 3))
-                opened = Dual(nothing + np.eye(3)[way.axis] * unit, nothing)
-                points = [points[0] | {GAP: Dual(nothing, nothing)}, points[1] | {GAP: opened}]
-            slopes[way] = self._turned(alone(laws, way), points)[1], points[1]
-        in_chassis = self._points(at.states)
+        readout, moved = self.solved.readout, self.moved
+        laws, orders = readout.laws(at.times), [factorial(d) for d in range(len(at.states))]
+        series = np.stack([state / n for state, n in zip(at.states, orders, strict=True)], axis=-2)
+        of_points = point_series(moved, series).items()
+        in_chassis = [{name: n * each[..., d, :] for name, each in of_points} for d, n in enumerate(orders)]
+        centres = {name: centre[:, 0] for name, centre in ChassisMotion.of(moved, {}).centres.items()}
+        chassis = replace(readout.chassis, centres=centres)
+        ways = {}
+        for way, rate in at.ways.items():
+            along = point_slopes(moved, at.states[0], rate, way)
+            places = {GAP: np.zeros_like(along[GAP])} if GAP in along else {}
+            turned = chassis.turned_by(alone(laws, way), [in_chassis[0] | places, along])
+            ways[way] = _duals(turned[1]), _duals(along)
         poses = DualPoses(
-            self.mechanism,
+            moved,
             readout.axes,
-            self._turned(laws, in_chassis),
-            in_chassis,
+            list(map(_duals, chassis.turned_by(laws, in_chassis))),
+            list(map(_duals, in_chassis)),
             [None if one is None else Dual(one, np.zeros_like(one)) for one in readout.added(laws)],
-            slopes,
-            moves=self.moves,
+            ways,
         )
         found: dict[str, dict[str, Array]] = {}
         for effect in readout.plan.computed:
             evaluated: Mapping[str, Mapping[str, Any]] = effect.evaluate(poses)
             for quantity, numbers in evaluated.items():
                 for name, number in numbers.items():
-                    slope = np.broadcast_to(number.slope, (count, *number.value.shape))
+                    slope = np.broadcast_to(number.slope, (len(series), *number.value.shape))
                     found.setdefault(quantity, {})[name] = slope
         return found
 
-    def _points(self, states: Sequence[Dual[Array]]) -> list[dict[str, Dual[Array]]]:
-        """Every point of coordinates and of their derivatives; a carried one is p_0 + a e1 + b e2 + c n."""
-        topology, layout = self.mechanism.topology, self.mechanism.layout
-        found: list[dict[str, Dual[Array]]] = [{} for _ in states]
-        for name in (*topology.chassis, *topology.moving):
-            span = layout.span(name)
-            for points, state in zip(found, states, strict=True):
-                points[name] = Dual(state.value[..., span], state.slope[..., span])
-        for name, carriers in topology.carried.items():
-            base, first, second = ([points[carrier] for points in found] for carrier in carriers)
-            e1, e2 = (
-                [end - start for end, start in zip(ends, base, strict=True)] for ends in (first, second)
-            )
-            weights, moved = self.mechanism.carrier_weights[name], slope_of(self.moved.carrier_weights[name])
-            a, b, c = (Dual(weights[..., i], moved[..., i]) for i in range(3))
-            for d, points in enumerate(found):
-                normal, *more = (multiple(comb(d, i), cross(e1[i], e2[d - i])) for i in range(d + 1))
-                points[name] = base[d] + times(a, e1[d]) + times(b, e2[d]) + times(c, sum(more, normal))
-        unit = float(self.mechanism.unit)
-        return [{name: multiple(unit, place) for name, place in points.items()} for points in found]
 
-    def _turned(self, laws: Laws, states: Sequence[Points]) -> list[dict[str, Dual[Array]]]:
-        """Points after the turns of the chassis.
-
-        A turn is linear in the points and its centre together, so that what these change by is turned alike.
-        """
-        chassis, turns = self.solved.readout.chassis, self.mechanism.topology.chassis_turns
-        centres = {name: self.moves[about] for name, (_, about) in turns.items()}
-        values = chassis.turned_by(laws, [{n: p.value for n, p in points.items()} for points in states])
-        slopes = replace(chassis, centres=centres).turned_by(
-            laws, [{n: p.slope for n, p in points.items()} for points in states]
-        )
-        return [
-            {name: Dual(place, slope[name]) for name, place in value.items()}
-            for value, slope in zip(values, slopes, strict=True)
-        ]
+def _duals(points: Mapping[str, Array]) -> dict[str, Dual[Array]]:
+    """Values, (N, 3), which are the same for all parameters, and slopes, (K, N, 3)."""
+    return {name: Dual(point.real[0], slope_of(point)) for name, point in points.items()}
