@@ -3,9 +3,9 @@ r"""Numbers with a slope as complex ones: x + x' h i, with h so small that h^2 i
     (a + a' h i)(b + b' h i) = a b + (a b' + a' b) h i,      f(a + a' h i) = f(a) + f'(a) a' h i
 
 for sums, products, quotients and roots. So a formula in floats that is made of these gives its derivative,
-exact to rounding, if it is given such numbers; `<` compares them by their values. A modulus or a conjugate
-has no derivative this way, and nothing that is to have one may be made of it (Squire and Trapp, *Using
-complex variables to estimate derivatives of real functions*, SIAM Review 40, 1998).
+exact to rounding, if it is given such numbers; `<` compares them by their values first. A modulus or a
+conjugate has no derivative this way, and nothing that is to have one may be made of it (Squire and Trapp,
+*Using complex variables to estimate derivatives of real functions*, SIAM Review 40, 1998).
 """
 
 from __future__ import annotations

@@ -41,8 +41,7 @@ class Sensitivity(ReadOnly):
     Attributes:
         coordinates: of hardpoints, such as lower_ball_joint.z.
         times: (N,), s.
-        derivatives: by number, (coordinates, N), its unit per mm; NaN where a design cannot be solved or has
-            no such number.
+        derivatives: by number, (coordinates, N), its unit per mm; NaN where there is none, or no such number.
         failures: by coordinate, why there is no derivative.
     """
 

@@ -222,6 +222,12 @@ def test_instants_and_coordinates_that_are_asked_for_beside_change_nothing(
     for number in numbers:
         size = np.abs(every.derivatives[number]).max()
         assert np.abs(alone.derivatives[number][0] - every.derivatives[number][place]).max() <= SOLVED * size
+    # Without the loads the pushrod and what it moves are not solved for.
+    few = sensitivity(
+        scene.model_copy(update={"effects": ("velocity",), "points": ("wheel_centre",)}), numbers[1:]
+    )
+    size = np.abs(every.derivatives[numbers[1]]).max()
+    assert np.abs(few.derivatives[numbers[1]] - every.derivatives[numbers[1]]).max() <= SOLVED * size
 
 
 def test_a_coordinate_whose_change_locks_the_mechanism_has_no_derivative_and_says_which_row_locks() -> None:
