@@ -34,6 +34,8 @@ SIDES = ("left", "right")
 ROLES = ("wheel_axis", "steering_axis", "damper")
 INPUTS = ("angle", "travel", "steers", "height", "contact", "distance")
 NOTHING, AXES = np.zeros(3), np.eye(3)
+# Two bodies, and a point in each: first, start, second, end.
+Ends = tuple[str, str, str, str]
 
 
 def compile(mechanism: Mapping[str, Any]) -> Model:
@@ -88,8 +90,7 @@ class _Compiler:
         self.middle, self.size = self._extent()
         # With free points and other aids, which are added as rows need them.
         self.bodies: dict[str, tuple[str, ...]] = {}
-        self.numbers: dict[str, int] = {}
-        self.anchors: list[Array] = []
+        self.anchors: dict[str, Array] = {}
         self.unturned: set[str] = set()
         for body, names in self.named.items():
             self._add(body, names)
@@ -116,8 +117,8 @@ class _Compiler:
         for body, names in self.bodies.items():
             for point in names:
                 holders.setdefault(point, body)
-        anchors = np.array(self.anchors)
-        drawing = Drawing(self.points, self.middle, self.size, self.numbers, anchors, holders)
+        numbers, anchors = {n: k for k, n in enumerate(self.bodies)}, np.array([*self.anchors.values()])
+        drawing = Drawing(self.points, self.middle, self.size, numbers, anchors, holders)
         return Model(
             self.bodies,
             drawing,
@@ -256,8 +257,8 @@ class _Compiler:
         apart = np.linalg.norm(places[:, None] - places, axis=-1)
         # A line of no length has no rounding either.
         nearest = np.log(np.where(apart > 0.0, apart, 1.0)).sum(axis=1).argmin()
-        self.bodies[body], self.numbers[body] = points, len(self.numbers)
-        self.anchors.append(self.middle if body == CHASSIS else places[nearest])
+        self.bodies[body] = points
+        self.anchors[body] = self.middle if body == CHASSIS else places[nearest]
         return body
 
     def _holders(self, point: str) -> list[str]:
@@ -287,23 +288,32 @@ class _Compiler:
         return line / length, length
 
     def _row(
-        self, owner: str, kind: str, first: str, second: str, along: Array, arms: tuple[Array, Array]
+        self, owner: str, kind: str, first: str, second: str, along: Array, one: Array, other: Array
     ) -> Row:
-        return Row(owner, kind, self.numbers[first], self.numbers[second], along, *arms)
+        bodies = [*self.bodies]
+        return Row(owner, kind, bodies.index(first), bodies.index(second), along, one, other)
 
-    def _arms(self, first: str, one: Array, second: str, other: Array) -> tuple[Array, Array]:
-        """To a place in each of two bodies, from their origins."""
-        from_first = (one - self.anchors[self.numbers[first]]) / self.size
-        return from_first, (other - self.anchors[self.numbers[second]]) / self.size
+    def _between(
+        self, owner: str, kind: str, ends: Ends, along: Array = NOTHING, beside: Array = NOTHING
+    ) -> Row:
+        """A row of places in two bodies.
+
+        Args:
+            ends: the first body and the point there, and the second ones.
+            beside: what leads from these to the places meant, mm; a sum would be rounded as they are.
+        """
+        first, start, second, end = ends
+        one, other = (
+            (self.points[point] - self.anchors[body]) / self.size + beside / self.size
+            for body, point in ((first, start), (second, end))
+        )
+        return self._row(owner, kind, first, second, along, one, other)
 
     # Joints
 
-    def _meet(
-        self, owner: str, first: str, start: str, second: str, end: str, along: Iterable[Array] = AXES
-    ) -> None:
+    def _meet(self, owner: str, ends: Ends, along: Iterable[Array] = AXES) -> None:
         """Points of two bodies are in one place, along some directions of the first."""
-        arms = self._arms(first, self.points[start], second, self.points[end])
-        self.joints += [self._row(owner, "offset", first, second, way, arms) for way in along]
+        self.joints += [self._between(owner, "offset", ends, way) for way in along]
 
     def _across(
         self,
@@ -315,12 +325,12 @@ class _Compiler:
     ) -> None:
         """Directions of two bodies stay at right angles; others keep their sense."""
         for rows, pairs in ((self.joints, angles), (self.senses, kept)):
-            rows += [self._row(owner, "angle", first, second, one, (NOTHING, other)) for one, other in pairs]
+            rows += [self._row(owner, "angle", first, second, one, NOTHING, other) for one, other in pairs]
 
     def _hinge(self, owner: str, first: str, second: str, start: str, end: str) -> None:
         x, y, z = frame = frame_about(self._line(owner, start, end)[0])
         # Along its own axes, so that one row at a time follows from others where hinges are parallel.
-        self._meet(owner, first, start, second, start, frame)
+        self._meet(owner, (first, start, second, start), frame)
         self._across(owner, first, second, ((y, z), (x, z)), ((z, z),))
 
     def _distance_row(self, owner: str, start: str, end: str) -> tuple[Row, float]:
@@ -334,8 +344,7 @@ class _Compiler:
                 start,
             )
         length = self._line(owner, start, end)[1]
-        arms = self._arms(firsts[0], self.points[start], seconds[0], self.points[end])
-        row = self._row(owner, "distance", firsts[0], seconds[0], NOTHING, arms)
+        row = self._between(owner, "distance", (firsts[0], start, seconds[0], end))
         return row._replace(drawn=length / self.size), length
 
     def _shared_points(self) -> None:
@@ -371,7 +380,7 @@ class _Compiler:
             apart.sort(key=lambda group: group[0] != CHASSIS)
             for number, group in enumerate(apart[1:], 1):
                 name = f"ball joint {point}" + (f" of {group[0]}" if number > 1 else "")
-                self._meet(name, apart[0][0], point, group[0], point)
+                self._meet(name, (apart[0][0], point, group[0], point))
                 if self._are_shared((point,)):
                     self.reported[point,] = name, self._felt_by(apart[0][0], group[0])
 
@@ -396,7 +405,7 @@ class _Compiler:
             label = f"slide {name}" + (f" at {point}" if len(points) > 1 else "")
             owners, free = self._holders(point), f"free point {point}"
             held = self._other_than(body, point, what) if owners else self._add_point(free, point)
-            self._meet(label, body, through, held, point, frame[:2])
+            self._meet(label, (body, through, held, point), frame[:2])
             # A point of no body has the force itself, if a rod pulls it that is not along the slide.
             rods = [ends for ends in self.of.get("rods", {}).values() if point in ends]
             felt = len(owners) == 1 or (not owners and any(not {*ends} <= {*points} for ends in rods))
@@ -429,27 +438,17 @@ class _Compiler:
 
     # Inputs
 
-    def _over(
-        self,
-        name: str,
-        first: str,
-        start: Array,
-        second: str,
-        end: Array,
-        way: Array,
-        beside: Array = NOTHING,
-        **more: Any,
-    ) -> None:
-        """How far a place in a body is from one in another, along a direction of that.
-
-        Args:
-            beside: what leads from these to the places meant, mm; a sum would be rounded as they are.
-        """
-        one, other = (arm + beside / self.size for arm in self._arms(first, start, second, end))
-        row = self._row(name, "offset", first, second, way, (one, other))
+    def _over(self, name: str, ends: Ends, way: Array, beside: Array = NOTHING, **more: Any) -> None:
+        """How far a place in a body is from one in another, along a direction of that (see `_between`)."""
         value: dict[str, Any] = {"value": name, "factor": 1.0 / self.size}
-        value["drawn"] = float(way @ (end - start)) + 0.0
-        self.inputs.append(Input(row, **(value | more)))
+        value["drawn"] = float(way @ (self.points[ends[3]] - self.points[ends[1]])) + 0.0
+        self.inputs.append(Input(self._between(name, "offset", ends, way, beside), **(value | more)))
+
+    def _turn(self, name: str, first: str, second: str, axis: Array, moves: bool = False) -> None:
+        """How far a body is turned against another, from the drawing."""
+        x, y, _ = frame_about(axis)
+        row = self._row(name, "turn", first, second, x, NOTHING, -y)
+        self.inputs.append(Input(row, name, 1.0, 0.0, moves=moves))
 
     def _angle(self, name: str, given: Mapping[str, Any]) -> None:
         body, start = given["angle"], given["from"]
@@ -466,8 +465,7 @@ class _Compiler:
                     name,
                     shared,
                 )
-            x, y, _ = frame_about(self._line(f"input {name!r}", *shared)[0])
-            self.inputs.append(Input(self._row(name, "turn", on, body, x, (NOTHING, -y)), name, 1.0, 0.0))
+            self._turn(name, on, body, self._line(f"input {name!r}", *shared)[0])
             return
         of, about = given["of"], given["about"]
         _one_of(f"a point of input {name!r}", self.named[body], of, about)
@@ -475,7 +473,7 @@ class _Compiler:
         if about not in self.named[CHASSIS]:
             # The direction is the car's: a body that goes with the point and does not turn has it.
             ground = self._add_point(f"{about} in the axes of the car", about)
-            self._meet(f"place of {ground}", body, about, ground, about)
+            self._meet(f"place of {ground}", (body, about, ground, about))
         way = self.directions[start]
         cosine = float(way @ (self.points[of] - self.points[about])) / length
         law: dict[str, Any] = {
@@ -483,7 +481,7 @@ class _Compiler:
             "cosine": True,
             "drawn": math.acos(min(max(cosine, -1.0), 1.0)),
         }
-        self._over(name, ground, self.points[about], body, self.points[of], way, **law)
+        self._over(name, (ground, about, body, of), way, **law)
 
     def _travel(self, name: str, given: Mapping[str, Any]) -> None:
         self._slides(name, given["travel"], 1.0)
@@ -506,17 +504,16 @@ class _Compiler:
         for slide in slides:
             body, point = self.slides[slide]["body"], self.slides[slide]["points"][0]
             second, (through, way) = self._other_than(body, point, f"slide {slide!r}"), self._line_of(slide)
-            start, end = self.points[through], self.points[point]
-            drawn = float(way @ (end - start)) / per_unit + 0.0
+            drawn = float(way @ (self.points[point] - self.points[through])) / per_unit + 0.0
             law: dict[str, Any] = {"factor": per_unit / self.size, "drawn": drawn}
-            self._over(name, body, start, second, end, way, steers=per_unit, **law)
+            self._over(name, (body, through, second, point), way, steers=per_unit, **law)
 
     def _height(self, name: str, given: Mapping[str, Any]) -> None:
         point, along = given["height"], given.get("along", "up")
         _one_of(f"the point of input {name!r}", self.points, point)
         _one_of(f"`along` of input {name!r}", self.directions, along)
-        body, place = self._other_than(CHASSIS, point, f"input {name!r}"), self.points[point]
-        self._over(name, CHASSIS, place, body, place, self.directions[along])
+        body = self._other_than(CHASSIS, point, f"input {name!r}")
+        self._over(name, (CHASSIS, point, body, point), self.directions[along])
 
     def _contact(self, name: str, given: Mapping[str, Any]) -> None:
         inner, centre = given["contact"]
@@ -534,14 +531,14 @@ class _Compiler:
                 name,
             )
         level = level / np.linalg.norm(level)
-        place, down = self.points[centre], -self.radius * np.cross(level, axis)
+        down = -self.radius * np.cross(level, axis)
         over = given.get("over", CHASSIS)
         _one_of(f"`over` of input {name!r}", (CHASSIS, "ground"), over)
         base = self.ground if over == "ground" else CHASSIS
         disc = self._add(f"disc of {name}", (inner, centre))
         self._hinge(f"axle of {name}", carrier, disc, inner, centre)
         self._across(f"level of {name}", base, disc, ((up, level),))
-        self._over(name, base, place, disc, place, up, beside=down)
+        self._over(name, (base, centre, disc, centre), up, beside=down)
 
     @cached_property
     def ground(self) -> str:
@@ -557,14 +554,14 @@ class _Compiler:
             ground = self._add(f"ground of {name}", (at,))
             x, y, z = frame_about(self.directions[given["along"]])
             # The car goes along z as the ground sees it, or turns about it.
-            self._meet(f"place of {ground}", ground, at, body, at, (x, y, z) if turned else (x, y))
+            ends = (ground, at, body, at)
+            self._meet(f"place of {ground}", ends, (x, y, z) if turned else (x, y))
             self._across(f"axes of {ground}", ground, body, ((x, z), (y, z)), ((z, z),))
             if turned:
-                row = self._row(name, "turn", ground, body, x, (NOTHING, -y))
-                self.inputs.append(Input(row, name, 1.0, 0.0, moves=True))
+                self._turn(name, ground, body, z, moves=True)
             else:
                 self._across(f"axes of {ground}", ground, body, ((x, y),), ((x, x),))
-                self._over(name, ground, self.points[at], body, self.points[at], z, moves=True)
+                self._over(name, ends, z, moves=True)
             body = ground
         return body
 
