@@ -96,6 +96,27 @@ def test_a_pose_that_left_the_branch_is_led_to_by_nearer_ones_or_refused(
         assert np.abs(place - plain.position[name]).max() <= 2 * off(plain).max(), name
 
 
+@pytest.mark.parametrize("rack", [0.0, 25.0, -25.0])
+def test_poses_are_predicted_to_the_second_order_in_all_inputs_together(
+    monkeypatch: pytest.MonkeyPatch, rack: float
+) -> None:
+    assembled = absolute.Assembled(absolute.compile(STRUT))
+    way, missed = 0.5 ** np.arange(5)[::-1], list[Array]()
+
+    def seen(*arguments: Any) -> Configurations:
+        found = newton(*arguments)
+        missed.append(np.abs(found.q - arguments[2]).max(axis=1))
+        return found
+
+    monkeypatch.setattr(absolute.follow, "newton", seen)
+    drawn, ends = assembled.drawn_inputs, {"arm_angle": 0.1, "rack": rack}
+    laws = {name: np.stack([drawn[name] + end * way, 0 * way, 0 * way], -1) for name, end in ends.items()}
+    assembled.solve(laws, rates=False)
+    # Half of the way, an eighth of the third order.
+    assert len(missed) == 1
+    assert missed[0][1:] / missed[0][:-1] == pytest.approx(8.0, rel=0.2)
+
+
 def test_a_long_way_close_by_a_fold_does_not_cross_it() -> None:
     # Straight to this goal the motion passes a fold so close that Newton converges beyond it: only
     # the sign of a determinant tells.
