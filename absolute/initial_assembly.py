@@ -28,7 +28,8 @@ def assemble(mechanism: Mechanism) -> Configurations:
         DescriptionError: there are more rows than unknowns, and they do not follow from each other.
     """
     target = mechanism.targets(mechanism.drawn_inputs[None])[0]
-    drawn = _drawn_pose(mechanism, target)
+    drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
+    _require_regular(mechanism, drawn)
     if drawn.closed[0]:
         _require_redundant(mechanism, drawn)
         return drawn
@@ -48,6 +49,21 @@ def assemble(mechanism: Mechanism) -> Configurations:
     return pose
 
 
+def _require_regular(mechanism: Mechanism, drawn: Configurations) -> None:
+    if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
+        limits = limits_at(mechanism, drawn)
+        raise SingularError(
+            f"the drawing is singular: condition number about {float(drawn.condition[0]):.3g}, "
+            f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
+            "Look for points on one line that should not be (a steering arm on the strut axis, "
+            "an arm along its own axis) or an input at its dead point; "
+            f"{limited_by(limits)}move a point off it",
+            inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
+            condition=float(drawn.condition[0]),
+            limits=limits,
+        )
+
+
 def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
     """Refuse a closed drawing so far from the drawing that another assembly may be the one that is meant."""
     drawing, (body, arms) = mechanism.drawing, mechanism.drawing.held()
@@ -60,7 +76,7 @@ def _require_near(mechanism: Mechanism, pose: Configurations) -> None:
             f"closing the drawing moves {furthest!r} by {moved * drawing.size:.3g} mm; beyond "
             f"{FURTHEST * drawing.size:.3g} mm, a part of the mechanism's size, another assembly may be "
             "meant: draw the points closer to an assembled pose",
-            inputs=_drawn_inputs(mechanism),
+            inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
             residual=moved * drawing.size,
         )
 
@@ -89,7 +105,7 @@ def _require_clear(mechanism: Mechanism, drawn: Configurations, gap: Array) -> N
         f"the drawing stands for two assemblies: {', '.join(map(repr, open_joints))} is drawn {largest:.3g} "
         "mm from closed, and which assembly is meant depends on which of its parts is put right, "
         "since a pose where both meet lies between; draw the points closer to an assembled pose",
-        inputs=_drawn_inputs(mechanism),
+        inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
         residual=largest,
         condition=float(drawn.condition[0]),
         limits=open_joints,
@@ -106,7 +122,7 @@ def _locked(mechanism: Mechanism, reached: BlockedError, gap: Array) -> Assembly
         f"(most at {owner!r}) and closing them locks the mechanism with {left:.3g} mm left; "
         f"{limited_by(limits)}"
         "draw the points closer to an assembled pose",
-        inputs=_drawn_inputs(mechanism),
+        inputs=mechanism.named(mechanism.drawn_inputs.tolist()),
         residual=left,
         condition=float(reached.pose.condition[0]),
         limits=limits,
@@ -142,24 +158,3 @@ def locked(
         mechanism.named(inputs),
         limits=names,
     )
-
-
-def _drawn_pose(mechanism: Mechanism, target: Array) -> Configurations:
-    drawn = configurations_at(mechanism, mechanism.choice, mechanism.drawn[None], target)
-    if not SMALLEST_RCOND * drawn.condition[0] <= 1.0:
-        limits = limits_at(mechanism, drawn)
-        raise SingularError(
-            f"the drawing is singular: condition number about {float(drawn.condition[0]):.3g}, "
-            f"at most {1 / SMALLEST_RCOND:.3g} can be solved; a body can move although all inputs are held. "
-            "Look for points on one line that should not be (a steering arm on the strut axis, "
-            "an arm along its own axis) or an input at its dead point; "
-            f"{limited_by(limits)}move a point off it",
-            inputs=_drawn_inputs(mechanism),
-            condition=float(drawn.condition[0]),
-            limits=limits,
-        )
-    return drawn
-
-
-def _drawn_inputs(mechanism: Mechanism) -> dict[str, float]:
-    return mechanism.named(mechanism.drawn_inputs.tolist())
