@@ -201,9 +201,13 @@ def test_a_mistake_of_the_command_line_is_one_line(
 
 
 def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(tmp_path: Path) -> None:
-    # So many that no machine is through with them.
-    words = ["study", "hard", "--workers", "1", "--records", "kept"]
-    folder, every = tmp_path / "kept", len(hard().tasks)
+    # So many that no machine is through with them, a tenth of a second each.
+    names = ("at-rest", "slow-inputs", "fast-inputs", "kink-of-a-table", "come-to-rest", "far-in-time")
+    more = ("start-from-rest", "close-times-of-a-table", "seen-at-rest-only", "phase-of-many-turns")
+    turns = ("quarter-turn-about-x", "quarter-turn-about-y", "quarter-turn-about-z", "turned-at-random")
+    words = ["study", "hard", *names, *more, *turns, "far-in-time-wishbone"]
+    words += ["--workers", "1", "--records", "kept"]
+    folder, every = tmp_path / "kept", len(hard(words[2:-4]).tasks)
     process = subprocess.Popen(
         [*PROGRAM, *words],
         cwd=tmp_path,
