@@ -130,7 +130,7 @@ REFUSED: list[tuple[str, int, list[str]]] = [
     (
         "table axle-steer --number tooe",
         2,
-        ["no number of a car is called tooe", "and 160 more (--all shows every one)"],
+        ["no number of a car is called tooe", "and 168 more (--all shows every one)"],
     ),
     (
         f"table {CAR} --convention bmw",

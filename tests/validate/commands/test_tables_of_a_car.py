@@ -180,9 +180,9 @@ def test_a_table_in_text_knows_how_many_digits_each_unit_has() -> None:
     ("name", "convention", "said"),
     [
         # An input and a number of one name; a screw axis, whose pitch is in mm/deg; forces at joints.
-        ("pushrod-by-damper", "iso", "91 numbers compared: 91 agree."),
+        ("pushrod-by-damper", "iso", "94 numbers compared: 94 agree."),
         # Wheels that are not steered to the same side have no turning circle.
-        ("axle-opposed", "iso", "159 numbers compared: 159 agree."),
+        ("axle-opposed", "iso", "165 numbers compared: 165 agree."),
         # The scene holds the arm elsewhere than drawn.
         ("steer", "paper", "arm_angle is held at 1.5708 rad: the scene does, and the file does not give it"),
     ],
