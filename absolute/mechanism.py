@@ -16,9 +16,9 @@ from absolute.solution import Array
 
 # Rows that depend on each other do so only nearly where the drawing does not close yet.
 LARGEST_DEPENDENT = 0.1
-# What rows say together is the volume that they span. Those kept span less and less of it where another one
-# should be left out instead, and nothing where that does not follow from the others.
-LEAST_SAID = 0.5
+# Rows are chosen anew where those kept span less than this share of the volume that the best choice spans.
+# They span none where a row that was left out says what they do not.
+LEAST_SPANNED = 0.5
 
 
 class Choice(NamedTuple):
@@ -88,13 +88,14 @@ class Mechanism:
         return self._leaving_out(left_out)
 
     def choice_at(self, placed: Placed, before: Choice) -> Choice:
-        """That of a pose, (1,), or the one before, where the rows that it keeps say nearly as much."""
+        """That of a pose, (1,), or the one before, where the rows that it keeps span nearly as much."""
         if not len(before.left_out):
             return before
         vanishing = self._vanishing(Placed(*(of[0] for of in placed)))[0]
         left_out = _largest(vanishing)
-        said, most = (abs(np.linalg.det(vanishing[rows])) for rows in (before.left_out, left_out))
-        return before if said >= LEAST_SAID * most else self._leaving_out(left_out)
+        # Rows kept span as much as those left out have part in the combinations that vanish.
+        spanned, most = (abs(np.linalg.det(vanishing[rows])) for rows in (before.left_out, left_out))
+        return before if spanned >= LEAST_SPANNED * most else self._leaving_out(left_out)
 
     def _vanishing(self, placed: Placed) -> tuple[Array, Array]:
         """(joint rows, too many) linear combinations of rows of joints that vanish, and singular values."""
