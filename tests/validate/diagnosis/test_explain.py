@@ -293,9 +293,9 @@ def test_a_point_that_stands_in_for_another_is_misread_with_it_and_nothing_else_
 
 def test_a_misread_point_of_a_body_is_a_misread_hardpoint_and_no_other_assembly() -> None:
     # No link holds this point, and so its lengths in other assemblies are those of its body.
-    first = diagnosis("pushrod", drawn_with("pushrod", pushrod_outer__z=2.0))[0]
+    first = diagnosis(SCENES[0], drawn_with(SCENES[0], wheel_centre__x=5.0))[0]
     assert (first.kind, first.leftover <= 1.0) == ("hardpoint", True)
-    assert "pushrod_outer.z drawn 2 mm too high" in first.words
+    assert "wheel_centre.x drawn 5 mm too far back" in first.words
 
 
 def test_what_is_wrong_by_a_few_tolerances_is_said_with_what_is_clearly_wrong() -> None:
