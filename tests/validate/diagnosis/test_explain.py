@@ -382,9 +382,9 @@ WRONG_INPUTS: Mapping[str, dict[str, tuple[float, float]]] = {
     "the input rack is taken as 0": {"rack": (0.0, 0.0)},
     "the input rack is taken 5 mm more": {"rack": (1.0, 5.0)},
     "the input arm_angle is taken as pi minus it": {"arm_angle": (-1.0, np.pi)},
-    "the input arm_angle is taken 0.99 times, and the input rack is taken 1.05 times": {
-        "rack": (1.05, 0.0),
-        "arm_angle": (0.99, 0.0),
+    "the input arm_angle is taken 0.02 rad more, and the input rack has the other sign": {
+        "rack": (-1.0, 0.0),
+        "arm_angle": (1.0, 0.02),
     },
 }
 
