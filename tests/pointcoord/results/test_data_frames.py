@@ -46,8 +46,8 @@ SCENE = every_effect("bounce-on-a-heaving-chassis")
 
 def test_a_frame_has_the_columns_of_the_csv_with_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     expected = as_csv(SCENE)
-    # Camber, kingpin, toe, caster and the steer angle, two of them by arcsine too.
-    assert sum(name.endswith("[deg]") for name in expected) == 7
+    # Camber, kingpin, toe, caster and the steer angle, two of them by arcsine too, and the change of toe.
+    assert sum(name.endswith("[deg]") for name in expected) == 8
     for there in LIBRARIES:
         if find_spec(there):
             frame = simulate(SCENE).to_dataframe(there)
