@@ -144,7 +144,7 @@ def test_another_unit_of_all_angles_hides_no_misread_hardpoint() -> None:
 def test_an_offset_of_one_wheel_hides_no_misread_hardpoint_of_the_other() -> None:
     """Two hardpoints would do as well, were it not for angles that agree."""
     content = Scene.load("axle-opposed").model_dump(exclude_none=True)
-    content |= {"effects": ("wheel_angles", "toe", "caster")}
+    content |= {"effects": ("camber", "toe")}
     content["time"]["samples"] = 5
     scene = Scene.from_mapping(content)
     wheel = misread(scene, "right.lower_arm_front.z", -1.0)["wheel"]
