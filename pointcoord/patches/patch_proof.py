@@ -40,7 +40,7 @@ from numpy.typing import NDArray
 
 from pointcoord.numerics.enclosed_rows import differences, residual
 from pointcoord.numerics.enclosure import Enclosed
-from pointcoord.numerics.kantorovich import INFLATION, ball
+from pointcoord.numerics.kantorovich import INFLATION, ball, nearer_perron
 from pointcoord.numerics.linear import Factors
 from pointcoord.numerics.multi_index import powers, products
 from pointcoord.numerics.power_series import multiplied
@@ -213,13 +213,9 @@ def _change(system: QuadraticMap, factors: Factors, series: Array, order: int, l
 
 def _perron(matrix: Array) -> Array:
     """Weights for which the norm of a matrix of no negative elements is near its spectral radius, (P, n)."""
-    usable = np.where(np.isfinite(matrix), matrix, 0.0)
-    weights = np.ones(matrix.shape[:-1])
-    largest = np.maximum(usable.sum(axis=-1).max(axis=-1), 1e-300)[:, None]
+    usable, weights = np.where(np.isfinite(matrix), matrix, 0.0), np.ones(matrix.shape[:-1])
     for _ in range(ITERATIONS):
-        # Adding what was there keeps matrices with several eigenvalues of one size from going round.
-        weights = weights + np.matvec(usable, weights) / largest
-        weights /= weights.max(axis=-1, keepdims=True)
+        weights, _ = nearer_perron(usable, weights)
     return np.asarray(np.maximum(weights, LEAST))
 
 

@@ -3,12 +3,9 @@ r"""The paper's own algorithm: Newton at every instant, then two linear solves.
     C(u, w) = 0,    C_u u' = -C_w w',    C_u u'' = -C_w w'' - 2 B(y', y')      (eqs. 1, 19, 22)
 
 Each instant is reached from the one before it, by proof. That is no loop over time: from a pose y0 with
-X = C_u(y0)^-1 the poses of many instants ahead are guessed by three terms of the straight way to their
-inputs,
-
-    u1 = -X C_w dw,    u2 = -X B(y1, y1),    u3 = -X 2 B(y1, y2),
-
-and corrected all at once, by Newton's method, or with X kept for as long as it serves (`chord`),
+X = C_u(y0)^-1 the poses of many instants ahead are guessed by a few terms of the series along the straight
+way to their inputs (see `power_series`) and corrected all at once, by Newton's method, or with X kept for as
+long as it serves (`chord`),
 
     u <- u - X C(u, w);
 
@@ -34,6 +31,7 @@ from pointcoord.numerics.kantorovich import smallest_radius
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import implicit_rate, newton_refine
 from pointcoord.numerics.partial_map import PartialMap
+from pointcoord.numerics.power_series import expand
 from pointcoord.numerics.quadratic import QuadraticMap
 from pointcoord.numerics.rounding import EPS
 from pointcoord.solve.assembly import LONGEST, Pose, blocked, by_inputs, close_drawing, driven_to
@@ -57,6 +55,8 @@ Reached = tuple[Array, Array, Work, Status]
 BLOCK = 512
 # Instants ahead that are tried first; twice as many after all of them were proven.
 FIRST_AHEAD = 8
+# Terms of the way there: with more the guess is nearer than Newton's first step needs.
+TERMS = 3
 # Where n eps cond(C_u) is larger, rounding may be more than that.
 ROUNDED = 1e-2
 # Of a kept X a slower contraction is worth a new factorisation, which costs as much as some five steps.
@@ -231,7 +231,7 @@ def _ahead(
         return *none, Work()
     inverse = factors.preconditioner
     with np.errstate(all="ignore"):
-        guess = _guessed(system, inverse, start, targets)
+        guess = _guessed(system, factors, start, targets)
     # A guess that is not finite ends what is tried.
     finite = _first_false(np.asarray(np.isfinite(guess).all(axis=-1)))
     if not finite:
@@ -245,10 +245,7 @@ def _ahead(
     poses = np.concatenate([start[None], y])
     here, following = poses[:-1], poses[1:]
     with np.errstate(all="ignore"):
-        series = np.zeros((len(here), 2, len(start)))
-        series[:, 0], series[:, 1, n:] = here, following[:, n:] - here[:, n:]
-        lacking = system.residual(here) + 2.0 * system.polar(here, series[:, 1])
-        series[:, 1, :n] = -lacking @ inverse.T
+        series = _straight(system, factors, here, following[:, n:], 1)
         proof = prove(system, inverse, series, 0.0, np.ones(1))
         apart = np.abs(following - series.sum(axis=1))[:, :n] + left[:, None]
         good = found & (proof.length == 1.0) & proof.within(apart)
@@ -289,17 +286,23 @@ def _by_chord(
     return y, done & (rate <= SLOW), left, Work(residuals=count * len(y))
 
 
-def _guessed(system: QuadraticMap, inverse: Array, start: Array, targets: Array) -> Array:
-    """Three terms of the straight way to known coordinates, shape (N, size)."""
-    n = system.unknowns
-    first, second, third = (np.zeros((len(targets), len(start))) for _ in range(3))
-    first[:, n:] = targets - start[n:]
-    first[:, :n] = -(2.0 * system.polar(start, first) + system.residual(start)) @ inverse.T
-    second[:, :n] = -system.residual(first) @ inverse.T
-    third[:, :n] = -2.0 * system.polar(first, second) @ inverse.T
-    guess = start + (first + (second + third))
-    guess[:, n:] = targets
-    return guess
+def _guessed(system: QuadraticMap, factors: Factors, start: Array, targets: Array) -> Array:
+    """Poses near those with known coordinates, from one pose, shape (N, size)."""
+    starts = np.broadcast_to(start, (len(targets), len(start)))
+    guess = np.sum(_straight(system, factors, starts, targets, TERMS), axis=1)
+    guess[:, system.unknowns :] = targets
+    return np.asarray(guess)
+
+
+def _straight(system: QuadraticMap, factors: Factors, y: Array, targets: Array, order: int) -> Array:
+    """Series of straight ways to known coordinates, (N, terms, size); what poses y lack is taken back.
+
+    Args:
+        factors: of C_u at a pose nearby. targets: (N, known coordinates).
+    """
+    known = np.zeros((len(y), order + 1, targets.shape[-1]))
+    known[:, 0], known[:, 1] = y[:, system.unknowns :], targets - y[:, system.unknowns :]
+    return expand(system, factors, y, known, system.residual(y))
 
 
 def _first_false(flags: NDArray[np.bool_]) -> int:

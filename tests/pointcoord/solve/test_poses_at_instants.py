@@ -59,9 +59,9 @@ def test_what_a_kept_inverse_leaves_is_no_less_than_the_error(tolerance: float) 
     # u^2 = w with the inverse at u = 1, as far as it contracts by a tenth.
     w = np.linspace(0.85, 1.15, 61)
     targets = np.stack([w, np.zeros_like(w), np.ones_like(w)], axis=-1)
-    inverse = factorise(PARABOLA.jacobian(AT_ONE)).preconditioner
-    guess = pointwise._guessed(PARABOLA, inverse, AT_ONE, targets)
-    y, found, left, _ = pointwise._by_chord(PARABOLA, inverse, guess, tolerance)
+    factors = factorise(PARABOLA.jacobian(AT_ONE))
+    guess = pointwise._guessed(PARABOLA, factors, AT_ONE, targets)
+    y, found, left, _ = pointwise._by_chord(PARABOLA, factors.preconditioner, guess, tolerance)
     assert found.all()
     assert np.count_nonzero(left) > 30
     # A step is rounded, and the root too.
@@ -147,7 +147,7 @@ def test_no_pose_is_reached_across_poses_that_do_not_exist(
     task = prepare_task(scene, NEWTON)
     mechanism = task.readout.mechanism
     known = mechanism.known_series({n: f.series(scene.instants, 0) for n, f in task.functions.items()})[1, 0]
-    guess = pointwise._guessed(mechanism.map, task.start.factors.preconditioner, task.start.y, known[None])
+    guess = pointwise._guessed(mechanism.map, task.start.factors, task.start.y, known[None])
     assert pointwise.newton_refine(mechanism.map, guess).converged.all()
 
 
@@ -169,7 +169,7 @@ def test_another_assembly_is_not_taken_for_the_next_pose(
         others.append(reached.y[np.argmax(elsewhere)])
         assert elsewhere.any()
     # Newton's method is started at another assembly of each instant, and stays there.
-    monkeypatch.setattr(pointwise, "_guessed", lambda system, inverse, start, targets: at(others, targets, n))
+    monkeypatch.setattr(pointwise, "_guessed", lambda system, factors, start, targets: at(others, targets, n))
     motion = simulate(scene, "newton")
     found = motion.solved.coordinates(scene.instants, 0)[0]
     assert unit * np.abs(found - plain).max() <= 2.0 * (unit * allowed + float(motion.proof().bound.max()))
