@@ -78,7 +78,6 @@ from validate.formulations.protocol import NOTHING, Accuracy, Numbers
 from validate.reference import Design
 from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
-from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
 from validate.reference.effects.car import KNUCKLE, Car
 from validate.reference.effects.effect import RACK, TIME
@@ -94,7 +93,7 @@ from validate.reference.in_doubles import (
     values_of,
     with_slopes,
 )
-from validate.reference.jet import Jet, part_of
+from validate.reference.jet import Dual, Jet, part_of, slope_of, value_of
 from validate.reference.kinematics import body_turns
 from validate.reference.vectors import Scalar, Vector, each
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from validate.peers.linkage import Inputs, Linkage
+from validate.reference.chassis import ChassisMotion
 from validate.reference.effects.registry import ANGLES
-from validate.spanning_tree.chassis import ChassisMotion
-from validate.spanning_tree.wheels import OF_CAR
+from validate.reference.jet import Jet
+from validate.reference.kinematics import body_rates
+from validate.reference.vectors import Vector
+from validate.spanning_tree.wheels import OF_CAR, components
 
 Array = NDArray[np.float64]
 Rates = dict[str, dict[str, Array]]
@@ -64,15 +68,36 @@ def numbers(
     """
     tree, unit, still = linkage.tree, linkage.tree.unit, np.zeros((len(poses.inputs), 3))
     near = {name: poses.places.get(name, still + place.at) for name, place in tree.points.items()}
-    found: dict[str, dict[str, Array]] = {
-        "position": {name: place * unit + tree.origin for name, place in near.items()}
-    }
+    laws = {} if inputs is None else inputs.laws
+    driven = {name: Jet(*laws.get(name, still).T) for name in linkage.plain["inputs"]}
+    drawn = {name: components(place) for name, place in tree.drawn.items()}
+    chassis = ChassisMotion.of(linkage.plain, drawn, Fraction(unit), driven, float)
+    quantities = ("position",) if rates is None else ("position", "velocity", "acceleration")
+    found: dict[str, dict[str, Array]] = {quantity: {} for quantity in quantities}
+    for name, place in near.items():
+        states = [place, *((rates or {})[quantity].get(name, still) for quantity in quantities[1:])]
+        moved = _states(chassis.moved(_jets(states)), len(quantities), still)
+        for quantity, state in zip(quantities, moved, strict=True):
+            found[quantity][name] = state * unit + (tree.origin if quantity == "position" else 0.0)
     if rates is not None:
-        found |= rates
-        for quantity in ("velocity", "acceleration"):
-            found[quantity] = {name: rates[quantity].get(name, still) * unit for name in near}
-    chassis = None if inputs is None else ChassisMotion.of(linkage.plain, inputs.laws)
-    if chassis is not None:
-        found = chassis.moved(found)
-    found[OF_CAR] = linkage.wheels.numbers(near, {} if inputs is None else inputs.laws, effects)
+        turning = tuple(f"angular_{quantity}" for quantity in quantities[1:])
+        found |= {quantity: {} for quantity in turning}
+        along, across = (chassis.turned(_jets([axis + still])) for axis in np.eye(3)[:2])
+        own = [np.stack([x + still[:, 0] for x in turn], axis=-1) for turn in body_rates(along, across)]
+        for name in rates[turning[0]]:
+            moved = _states(chassis.turned(_jets([rates[quantity][name] for quantity in turning])), 2, still)
+            for quantity, state, more in zip(turning, moved, own, strict=True):
+                found[quantity][name] = state + more
+    found[OF_CAR] = linkage.wheels.numbers(near, chassis.still(), effects)
     return found
+
+
+def _jets(states: Sequence[Array]) -> Vector:
+    """A vector's value and rates, (N, 3) each, as jets."""
+    x, y, z = (Jet(*(state[:, axis] for state in states)) for axis in range(3))
+    return x, y, z
+
+
+def _states(vector: Vector, count: int, still: Array) -> list[Array]:
+    """The other way round; a rate that is not there is zero."""
+    return [np.stack([jet.part(order) + still[:, 0] for jet in vector], axis=-1) for order in range(count)]

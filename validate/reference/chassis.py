@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import Any
 
 from validate.reference.directions import directed
-from validate.reference.dual import Dual
 from validate.reference.jet import Jet, part_of
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, root, times
 
@@ -71,8 +70,8 @@ class ChassisMotion:
     def with_slopes(self) -> ChassisMotion:
         """With the values of the jets and their rates as slopes."""
 
-        def dual(jet: Jet) -> Dual:
-            return Dual(jet.value, jet.part(1))
+        def dual(jet: Jet) -> Jet:
+            return Jet(jet.value, jet.slope)
 
         turns = tuple(replace(turn, sine=dual(turn.sine), cosine=dual(turn.cosine)) for turn in self.turns)
         return ChassisMotion(turns, None if self.rise is None else each(dual, self.rise))

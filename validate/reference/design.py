@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, ctx
 
-from validate.reference.car_data import car_data
+from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
 from validate.reference.equations import Equations, equations_in
 from validate.reference.errors import BadInputError
@@ -97,11 +97,7 @@ class Design:
         table: the points, by name, local.
         origin: the first point, mm.
         unit: a power of two near the mechanism's size, mm.
-        up: direction of z.
-        right: direction of y.
-        corners: the prefix of each part's names, and 1 where outboard is `right` there, -1 where it is the
-            opposite; without parts there is one, whose names have none.
-        car: what is given of the car as a whole, see `car_data`.
+        corners, car: see `car_data`.
         loads: of the corners that have one, by their prefix, force, N, and moment, N mm, of the ground on the
             knuckle at its contact point.
         chosen: the rows that are solved, as many as unknowns; the others depend on them as drawn.
@@ -112,8 +108,6 @@ class Design:
     table: Mapping[str, Vector]
     origin: Vector
     unit: Fraction
-    up: Vector
-    right: Vector
     corners: Mapping[str, int]
     car: Mapping[str, Fraction]
     loads: Mapping[str, tuple[Vector, Vector]]
@@ -144,7 +138,7 @@ class Design:
                     if point not in given:
                         raise BadInputError(f"{kind}.{name}", point, f"one of {', '.join(given)}")
         origin = next(iter(given.values()))
-        unit, corners = _unit(given.values(), origin), _corners(plain)
+        unit, parts = _unit(given.values(), origin), corners(plain)
         table = {name: times(minus(p, origin), 1 / unit) for name, p in given.items()}
         exact = {**plain, "up": up, "right": right}
         mechanism = compiled(exact, table, unit)
@@ -154,11 +148,9 @@ class Design:
             table,
             origin,
             unit,
-            up,
-            right,
-            corners,
+            parts,
             car_data(plain),
-            _loads(plain, corners),
+            _loads(plain, parts),
             _chosen(mechanism, table),
         )
 
@@ -175,21 +167,6 @@ class Design:
     def role(self, name: str) -> Any:
         """What a role names, or None."""
         return self.plain["roles"].get(name)
-
-    @property
-    def wheel_radius(self) -> Fraction | None:
-        """mm; None if it is not given.
-
-        Raises:
-            BadInputError: it is no number above 0.
-        """
-        given = self.plain.get("wheel_radius")
-        if given is None:
-            return None
-        radius = as_fraction(given, "wheel_radius")
-        if not radius > 0:
-            raise BadInputError("wheel_radius", given, "a number of mm above 0")
-        return radius
 
     def equations(self) -> Equations:
         """In balls at the present precision."""
@@ -275,16 +252,6 @@ def _unit(points: Collection[Vector], origin: Vector) -> Fraction:
         raise BadInputError("points", "all in one place", "points with some distance between them")
     power = size.numerator.bit_length() - size.denominator.bit_length()
     return Fraction(2**power) if power >= 0 else Fraction(1, 2**-power)
-
-
-def _corners(plain: Mapping[str, Any]) -> dict[str, int]:
-    sides = {(f"{part}.", f"sides[{part!r}]"): side for part, side in plain.get("sides", {}).items()}
-    found = {}
-    for (prefix, what), side in (sides or {("", "side"): plain["side"]}).items():
-        if side not in ("left", "right"):
-            raise BadInputError(what, side, "'left' or 'right'")
-        found[prefix] = -1 if side == "left" else 1
-    return found
 
 
 def _loads(plain: Mapping[str, Any], corners: Collection[str]) -> dict[str, tuple[Vector, Vector]]:

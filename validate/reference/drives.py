@@ -28,10 +28,9 @@ from flint import arb
 from validate.reference.chassis import ChassisMotion
 from validate.reference.compiler import CHASSIS, Compiler, Exact, Table
 from validate.reference.directions import directed
-from validate.reference.dual import angle
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
-from validate.reference.jet import Jet
+from validate.reference.jet import Jet, angle
 from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
 

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
-from validate.reference.dual import Dual, value_of
 from validate.reference.equations import Equations, equations_in
-from validate.reference.jet import Jet
+from validate.reference.jet import Dual, Jet, value_of
 from validate.reference.kinematics import with_rates
 from validate.reference.vectors import Scalar, Vector
 

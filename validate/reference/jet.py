@@ -1,23 +1,25 @@
-"""A number with its time derivatives: differentiating an equation is evaluating it with jets."""
+"""A number with its derivatives: differentiating an equation is evaluating it with jets."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from math import comb
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
+from flint import arb
 
-from validate.reference.vectors import Scalar, Vector, each
+from validate.reference.vectors import Scalar, Vector, each, root
 
 
 @dataclass(frozen=True, init=False)
 class Jet:
-    """(x, x', x'', ...), the derivatives by time. Sums, differences and products follow Leibniz.
+    """(x, x', x'', ...), by time or by one parameter; the parts may be jets by another one.
 
-    (x y)'' = x'' y + 2 x' y' + x y'': the factor 2 that eq. (23) of the paper drops cannot be
-    forgotten here, because no equation is differentiated by hand.
+    Products, quotients and roots follow Leibniz. (x y)'' = x'' y + 2 x' y' + x y'': the factor 2 that
+    eq. (23) of the paper drops cannot be forgotten here, because no equation is differentiated by hand.
 
     Attributes:
         parts: the number and its derivatives; those that are missing are zero.
@@ -35,6 +37,11 @@ class Jet:
         """The number itself."""
         return self.parts[0]
 
+    @property
+    def slope(self) -> Scalar:
+        """Its first derivative."""
+        return self.part(1)
+
     def part(self, order: int) -> Scalar:
         """A derivative; the number itself is that of order 0."""
         return self.parts[order] if order < len(self.parts) else 0
@@ -51,11 +58,29 @@ class Jet:
         one, two = self.parts, other.parts
         return Jet(*(_leibniz(one, two, order) for order in range(max(len(one), len(two)))))
 
+    def __truediv__(self, other: Scalar) -> Jet:
+        """q of q y = x: the derivatives of q that are known so far are taken off those of x."""
+        divisor = _jet(other)
+        found = [self.value / divisor.value]
+        for order in range(1, max(len(self.parts), len(divisor.parts))):
+            found.append((self.part(order) - _leibniz(found, divisor.parts, order)) / divisor.value)
+        return Jet(*found)
+
     def __neg__(self) -> Jet:
         return Jet(*(-part for part in self.parts))
 
     def __rsub__(self, other: Scalar) -> Jet:
         return self.__neg__().__add__(other)
+
+    def __rtruediv__(self, other: Scalar) -> Jet:
+        return Jet(other).__truediv__(self)
+
+    def sqrt(self) -> Jet:
+        """The root r of a positive number, r r = x likewise."""
+        found = [root(self.value)]
+        for order in range(1, len(self.parts)):
+            found.append((self.part(order) - _leibniz(found, found, order)) / (2 * found[0]))
+        return Jet(*found)
 
     def sin_cos(self) -> tuple[Jet, Jet]:
         """The sine and the cosine: sin' = cos x', cos' = -sin x', and their derivatives by Leibniz."""
@@ -71,12 +96,36 @@ class Jet:
     __rmul__ = __mul__
 
 
+Dual = Jet  # where there is just one derivative
+
+
+def value_of(number: Scalar) -> Scalar:
+    """x of a jet; any other number is itself."""
+    return number.value if isinstance(number, Jet) else number
+
+
+def slope_of(number: Scalar) -> Scalar:
+    """x' of a jet; any other number does not depend on the parameter."""
+    return number.slope if isinstance(number, Jet) else 0
+
+
 def part_of(vector: Vector, order: int) -> Vector:
     """A derivative of a vector of jets, or with 0 the vector itself."""
     return each(lambda jet: jet.part(order), vector)
 
 
-def _leibniz(one: Any, two: Any, order: int) -> Scalar:
+def angle(y: Scalar, x: Scalar) -> Scalar:
+    """atan2(y, x), rad, of balls, of arrays, or with one derivative; no number of two balls about 0."""
+    if isinstance(y, arb) and isinstance(x, arb):
+        return arb("nan") if y.contains(0) and x.contains(0) else arb.atan2(y, x)
+    if not (isinstance(y, Jet) or isinstance(x, Jet)):
+        return np.arctan2(y, x)
+    across, along = value_of(y), value_of(x)
+    turning = along * slope_of(y) - across * slope_of(x)
+    return Jet(angle(across, along), turning / (along * along + across * across))
+
+
+def _leibniz(one: Sequence[Scalar], two: Sequence[Scalar], order: int) -> Scalar:
     """A derivative of a product; what a factor lacks is zero."""
     total: Scalar | None = None
     for i in range(min(order, len(one) - 1), max(order - len(two), -1), -1):

@@ -26,15 +26,15 @@ from itertools import combinations
 
 from flint import arb, ctx
 
+from validate.reference.car_data import RADIUS
 from validate.reference.compiler import CHASSIS, at
 from validate.reference.design import Design, Known, ball_vector
-from validate.reference.dual import Dual, slope_of, value_of
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
-from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, WHEEL
+from validate.reference.effects.car import DAMPER, KNUCKLE, WHEEL
 from validate.reference.effects.effect import NEEDS, TRAVEL
 from validate.reference.equations import Equations, equations_in
 from validate.reference.exact import as_ball
-from validate.reference.jet import Jet
+from validate.reference.jet import Dual, slope_of
 from validate.reference.kinematics import body_rates
 from validate.reference.krawczyk import column
 from validate.reference.mechanism import Mechanism, compiled
@@ -89,8 +89,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         centre, body = design.role(prefix + WHEEL)[1], design.role(prefix + KNUCKLE)
         for j in range(mechanism.size):
             pose = [Dual(y, arb(int(i == j))) for i, y in enumerate(unknown)]
-            u, v = (each(_moving, side) for side in equations.frame_of(pose, body))
-            turn = chassis.turned(body_rates(u, v)[0])
+            turn = chassis.turned(body_rates(*equations.frame_of(pose, body), 1)[0])
             moved = chassis.turned(each(slope_of, equations.points_of(pose, [centre])[centre]))
             work[j] += dot(f, plus(moved, cross(turn, spoke))) + dot(m, turn)
         scale += length(f) + length(m)
@@ -216,7 +215,3 @@ def _felt_by(design: Design, bodies: Sequence[str]) -> str:
     knuckles = {design.role(prefix + KNUCKLE) for prefix in design.corners}
     moving = [body for body in bodies if body != CHASSIS]
     return next((body for body in moving if body in knuckles), moving[0])
-
-
-def _moving(number: Dual) -> Jet:
-    return Jet(value_of(number), slope_of(number))

@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from validate.reference.car_data import LENGTHS, car_data
-from validate.reference.effects.car import RADIUS, Car, DrawnCar, Line
+from validate.reference.car_data import corners
+from validate.reference.chassis import ChassisMotion
+from validate.reference.effects.at_pose import car_at
+from validate.reference.effects.car import DrawnCar
 from validate.reference.effects.effect import PAIR
 from validate.reference.effects.registry import ANGLES, EFFECTS
 from validate.reference.vectors import Vector
-from validate.spanning_tree.chassis import ChassisMotion
-from validate.spanning_tree.cut import SpanningTree, car_directions
+from validate.spanning_tree.cut import SpanningTree
 
 Array = NDArray[np.float64]
-Ends = tuple[str, str]
 
 OF_CAR = "car"
 """What witnesses call these numbers among all that they found, by quantity."""
@@ -33,96 +33,53 @@ class Wheels:
     """The wheels of a flat mechanism, in its tree's lengths.
 
     Attributes:
-        plain: the flat mechanism. tree: of it.
+        unit: mm.
         cars: as drawn, of each part by its prefix, which the names of its roles and numbers have.
+        pair: the prefixes of the left and the right part, where there are these two.
     """
 
-    plain: Mapping[str, Any]
-    tree: SpanningTree
+    unit: float
     cars: Mapping[str, DrawnCar]
+    pair: tuple[str, ...]
 
     @classmethod
     def of(cls, plain: Mapping[str, Any], tree: SpanningTree) -> Wheels:
         """The wheels that roles name."""
-        parts: dict[str, dict[str, Any]] = {}
-        for role, named in plain["roles"].items():
-            part, dot, last = role.rpartition(".")
-            parts.setdefault(part + dot, {})[last] = named
-        directions, radius = car_directions(plain), plain["wheel_radius"]
-        points = {name: _vector(place) for name, place in tree.drawn.items()}
-        given = {key: float(one) for key, one in car_data(plain).items()}
-        data = {key: one / tree.unit if key in LENGTHS else one for key, one in given.items()}
-        cars = {
-            prefix: DrawnCar.of(
-                roles=roles,
-                points=points,
-                up=_vector(directions["up"]),
-                right=_vector(directions["right"]),
-                side=_side(plain, prefix),
-                wheel_radius=None if radius is None else radius / tree.unit,
-                origin=_vector(-tree.origin / tree.unit),
-                data=data,
-                number=float,
-            )
-            for prefix, roles in parts.items()
-        }
-        return cls(plain, tree, {prefix: car for prefix, car in cars.items() if car.ends})
-
-    @property
-    def ends(self) -> tuple[Ends, ...]:
-        """The two points of every line."""
-        return tuple(dict.fromkeys(pair for car in self.cars.values() for pair in car.ends.values()))
+        points, sides = {name: components(place) for name, place in tree.drawn.items()}, corners(plain)
+        origin = components(tree.origin)
+        cars = {part: DrawnCar.of(plain, part, points, origin, tree.unit, float) for part in sides}
+        cars = {part: car for part, car in cars.items() if car.ends}
+        both = tuple(sorted(sides, key=lambda part: sides[part]))
+        is_pair = len(cars) == 2 and [sides[part] for part in both] == [-1, 1]
+        return cls(tree.unit, cars, both if is_pair else ())
 
     def numbers(
-        self,
-        places: Mapping[str, Array],
-        inputs: Mapping[str, Array],
-        names: Iterable[str] = ANGLES,
+        self, places: Mapping[str, Array], chassis: ChassisMotion, names: Iterable[str] = ANGLES
     ) -> dict[str, Array]:
         """Numbers of the wheels, (N,), rad or mm; those that are not made of positions alone are left out.
 
         Args:
             places: of the points relative to the chassis, (N, 3), in the tree's lengths.
-            inputs: value, rate and acceleration by name, (N, 3), rad or mm, and s; of those that turn the
-                chassis, where they are given.
+            chassis: how it stands.
             names: of the numbers, as the reference has them.
         """
-        points = {name: places[name] for ends in self.ends for name in ends}
-        vectors = {ends: points[ends[1]] - points[ends[0]] for ends in self.ends}
-        turned_points, turned_vectors = points, vectors
-        turns = {name: given for name, given in self.plain["inputs"].items() if "turns" in given}
-        still = {**self.plain, "points": self.tree.drawn, "inputs": turns}
-        turning = ChassisMotion.of(still, inputs)
-        if turning is not None:
-            turned_points = turning.moved({"position": points})["position"]
-            turned_vectors = {ends: turning.directions(vector) for ends, vector in vectors.items()}
         cars = {
-            prefix: Car(one, _lines(one, turned_points, turned_vectors), _lines(one, points, vectors))
-            for prefix, one in self.cars.items()
+            part: car_at(drawn, chassis, {name: components(places[name]) for name in drawn.points})
+            for part, drawn in self.cars.items()
         }
-        pair = self._pair()
-        own = dict.fromkeys(name.rpartition(".")[2] for name in names)
         found = {}
-        for name, effect in ((name, EFFECTS[name]) for name in own if name in EFFECTS):
-            if effect.along is not None:
+        for name in dict.fromkeys(name.rpartition(".")[2] for name in names):
+            effect = EFFECTS.get(name)
+            if effect is None or effect.along is not None:
                 continue
-            both = PAIR in effect.needs
-            for prefixes in [pair] if both and pair else [] if both else [(prefix,) for prefix in cars]:
-                if not any(effect.lacks(self._has(prefix) | {PAIR}) for prefix in prefixes):
-                    value = effect.evaluate(*(cars[prefix] for prefix in prefixes))
-                    label = name if both else prefixes[0] + name
-                    found[label] = value * self.tree.unit**effect.power
+            one_each = [(part,) for part in cars]
+            for parts in one_each if PAIR not in effect.needs else [self.pair] if self.pair else []:
+                has = [{PAIR, *self.cars[part].ends, *self.cars[part].data} for part in parts]
+                if not any(map(effect.lacks, has)):
+                    label = name if PAIR in effect.needs else parts[0] + name
+                    value = effect.evaluate(*(cars[part] for part in parts))
+                    found[label] = value * self.unit**effect.power
         return found
-
-    def _has(self, prefix: str) -> set[str]:
-        """What a part's car has of what effects need."""
-        one = self.cars[prefix]
-        return {*one.ends, *one.data, *([] if one.wheel_radius is None else [RADIUS])}
-
-    def _pair(self) -> tuple[str, ...]:
-        """The prefixes of the left and the right part, where there are these two."""
-        sides = {side: f"{part}." for part, side in self.plain["sides"].items() if f"{part}." in self.cars}
-        return (sides["left"], sides["right"]) if len(sides) == len(self.cars) == 2 else ()
 
 
 def knuckles(plain: Mapping[str, Any]) -> dict[str, str]:
@@ -130,18 +87,6 @@ def knuckles(plain: Mapping[str, Any]) -> dict[str, str]:
     return {body: body for role, body in plain["roles"].items() if role.rpartition(".")[2] == "knuckle"}
 
 
-def _lines(car: DrawnCar, points: Mapping[str, Array], vectors: Mapping[Ends, Array]) -> dict[str, Line]:
-    return {
-        role: Line(_vector(points[ends[0]]), _vector(points[ends[1]]), _vector(vectors[ends]))
-        for role, ends in car.ends.items()
-    }
-
-
-def _vector(array: Array) -> Vector:
-    """Its components, (3,) or (N, 3)."""
+def components(array: Array) -> Vector:
+    """Of a vector, (3,) or (N, 3)."""
     return array[..., 0], array[..., 1], array[..., 2]
-
-
-def _side(plain: Mapping[str, Any], prefix: str) -> int:
-    """1 where outboard of a part, or of the whole, is right: by its side, wherever its wheel is drawn."""
-    return 1 if plain["sides"].get(prefix.removesuffix("."), plain["side"]) == "right" else -1

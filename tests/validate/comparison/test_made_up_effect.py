@@ -31,10 +31,10 @@ from validate.comparison.compare import Outcome, compare
 from validate.output.document import schema_text
 from validate.output.report import outcome_parts
 from validate.output.table import text_of
-from validate.reference.dual import angle
 from validate.reference.effects import registry as reference_registry
 from validate.reference.effects.car import WHEEL
 from validate.reference.effects.effect import Effect as ReferenceEffect
+from validate.reference.jet import angle
 from validate.reference.vectors import dot
 
 STUB = Quantity("stub", "stub length", "mm", "car")

@@ -5,22 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 
 from flint import arb, arb_mat
 
-from validate.reference.car_data import LENGTHS
 from validate.reference.chassis import ChassisMotion
 from validate.reference.design import Design, Known
 from validate.reference.drives import travel_per_radian
-from validate.reference.dual import Dual, value_of
-from validate.reference.effects.car import KNUCKLE, LINES, RADIUS, Car, DrawnCar, Frame, lines_of
+from validate.reference.effects.car import KNUCKLE, LINES, Car, DrawnCar, Frame, Line, lines_of
 from validate.reference.effects.effect import PAIR, RACK, ROLL, TIME, TRAVEL, Effect
 from validate.reference.effects.registry import named
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball
-from validate.reference.jet import Jet
+from validate.reference.jet import Jet, value_of
 from validate.reference.kinematics import unknown_rates
-from validate.reference.vectors import Scalar, Vector, times
+from validate.reference.vectors import Scalar, Vector
 
 
 @dataclass(frozen=True)
@@ -75,19 +74,7 @@ def drawn_car(design: Design, number: Callable[[Fraction], Scalar], prefix: str 
         number: a fraction in the kind of number of the poses.
         prefix: of the part.
     """
-    radius = design.wheel_radius
-    roles = {role: design.role(prefix + role) for role in LINES}
-    return DrawnCar.of(
-        roles={role: points for role, points in roles.items() if points is not None},
-        points=design.table,
-        up=design.up,
-        right=design.right,
-        side=design.corners[prefix],
-        wheel_radius=None if radius is None else radius / design.unit,
-        origin=times(design.origin, -1 / design.unit),
-        data={key: one / design.unit if key in LENGTHS else one for key, one in design.car.items()},
-        number=number,
-    )
+    return DrawnCar.of(design.plain, prefix, design.table, design.origin, design.unit, number)
 
 
 def drivers(design: Design, prefix: str = "") -> dict[str, str]:
@@ -104,13 +91,9 @@ def drivers(design: Design, prefix: str = "") -> dict[str, str]:
 
 def provided(design: Design, prefix: str = "") -> frozenset[str]:
     """What effects may need and a part of the car has, of `effect.NEEDS`."""
-    has = {role for role in LINES if design.role(prefix + role) is not None}
-    has |= {*drivers(design, prefix), *design.car}
-    if design.wheel_radius is not None:
-        has.add(RADIUS)
-    if design.role(prefix + KNUCKLE) in design.mechanism.frames:
-        has.add(KNUCKLE)
-    return frozenset(has)
+    lines = (role for role in LINES if design.role(prefix + role) is not None)
+    knuckle = [KNUCKLE] if design.role(prefix + KNUCKLE) in design.mechanism.frames else []
+    return frozenset({*lines, *drivers(design, prefix), *design.car, *knuckle})
 
 
 def car_at(
@@ -123,13 +106,13 @@ def car_at(
         places: of the lines' points, relative to the chassis.
         knuckle: two vectors fixed in the wheel's carrier, relative to the chassis.
     """
-    turning = chassis.without_displacement()
-    return Car(
-        drawn=drawn,
-        lines=lines_of(drawn.ends, {name: turning.moved(place) for name, place in places.items()}),
-        on_chassis=lines_of(drawn.ends, places),
-        knuckle=None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1])),
-    )
+    turning, lines = chassis.without_displacement(), lines_of(drawn.ends, places)
+    turned = {
+        role: Line(turning.moved(line.start), turning.moved(line.end), turning.turned(line.along))
+        for role, line in lines.items()
+    }
+    frame = None if knuckle is None else (turning.turned(knuckle[0]), turning.turned(knuckle[1]))
+    return Car(drawn, turned, lines, frame)
 
 
 def effects_at(
@@ -145,38 +128,34 @@ def effects_at(
         inverse: of the Jacobian over the enclosure.
     """
     unit, equations = as_ball(design.unit), known.equations
-    cars: dict[tuple[str, str | None], Car] = {}
 
+    @cache
     def car(prefix: str, along: str | None) -> Car:
-        if (prefix, along) not in cars:
-            pose: Sequence[Scalar] = enclosure
-            chassis, driven = known.chassis.still(), known
-            if along == TIME:
-                chassis = known.chassis.with_slopes()
-            elif along is not None:
-                # A slide is driven in the design's own lengths, in which the car's are.
-                driver = drivers(design, prefix)[along]
-                rate = unit if along == RACK else arb(1)
-                if "steers" in design.plain["inputs"][driver]:
-                    rate /= travel_per_radian(design.plain)
-                driven = known.driven_at(driver, rate)
-                if along == ROLL:
-                    laws = {n: Jet(jet.value, arb(n == driver)) for n, jet in known.inputs.items()}
-                    plain, table = design.plain, design.table
-                    chassis = ChassisMotion.of(plain, table, design.unit, laws, as_ball).with_slopes()
-            if along is not None:
-                rates = unknown_rates(enclosure, driven, inverse)
-                pose = [Dual(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
-            drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)
-            turns = along is not None and body in equations.frames
-            frame = equations.frame_of(pose, body) if turns else None
-            cars[prefix, along] = car_at(drawn, chassis, equations.points_of(pose, drawn.points), frame)
-        return cars[prefix, along]
+        pose, chassis = list[Scalar](enclosure), known.chassis.still()
+        drawn, body = drawn_car(design, as_ball, prefix), design.role(prefix + KNUCKLE)
+        if along is None:
+            return car_at(drawn, chassis, equations.points_of(pose, drawn.points))
+        driven = known
+        if along == TIME:
+            chassis = known.chassis.with_slopes()
+        else:
+            # A slide is driven in the design's own lengths, in which the car's are.
+            driver = drivers(design, prefix)[along]
+            rate = unit if along == RACK else arb(1)
+            if "steers" in design.plain["inputs"][driver]:
+                rate /= travel_per_radian(design.plain)
+            driven = known.driven_at(driver, rate)
+            if along == ROLL:
+                laws = {n: Jet(jet.value, arb(n == driver)) for n, jet in known.inputs.items()}
+                moving = ChassisMotion.of(design.plain, design.table, design.unit, laws, as_ball)
+                chassis = moving.with_slopes()
+        rates = unknown_rates(enclosure, driven, inverse)
+        pose = [Jet(y, slope) for y, slope in zip(enclosure, rates, strict=True)]
+        frame = equations.frame_of(pose, body) if body in equations.frames else None
+        return car_at(drawn, chassis, equations.points_of(pose, drawn.points), frame)
 
     found = {}
-    for number in numbers:
-        if not number.lacks:
-            effect = number.effect
-            value = effect.evaluate(*(car(prefix, effect.along) for prefix in number.corners))
-            found[number.name] = arb(value_of(value)) * unit**effect.power
+    for name, effect, corners in ((one.name, one.effect, one.corners) for one in numbers if not one.lacks):
+        value = effect.evaluate(*(car(prefix, effect.along) for prefix in corners))
+        found[name] = arb(value_of(value)) * unit**effect.power
     return found

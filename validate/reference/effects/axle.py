@@ -12,10 +12,10 @@ from math import nan
 import numpy as np
 
 from validate.reference.car_data import WHEELBASE
-from validate.reference.dual import Dual, angle, slope_of, value_of
-from validate.reference.effects.car import RADIUS, WHEEL, Car
+from validate.reference.effects.car import Car
 from validate.reference.effects.effect import PAIR, TRAVEL, Effect
-from validate.reference.effects.wheel import MOVING, steer_angle, velocity_of_contact
+from validate.reference.effects.wheel import MOVING, ON_GROUND, steer_angle, velocity_of_contact
+from validate.reference.jet import Jet, angle, slope_of, value_of
 from validate.reference.vectors import Scalar, Vector, dot, each, minus, root
 
 
@@ -52,8 +52,7 @@ def _by_side(left: Car, right: Car, to_left: Scalar, to_right: Scalar) -> Scalar
             right_or_none = np.where((one < 0) & (two < 0), part(to_right), nan)
             return np.where((one > 0) & (two > 0), part(to_left), right_or_none)
 
-        dual = isinstance(to_left, Dual)
-        return Dual(chosen(value_of), chosen(slope_of)) if dual else chosen(value_of)
+        return Jet(chosen(value_of), chosen(slope_of)) if isinstance(to_left, Jet) else chosen(value_of)
     if one > 0 and two > 0:
         return to_left
     return to_right if one < 0 and two < 0 else to_left * nan
@@ -106,10 +105,10 @@ def _ackermann_error(left: Car, right: Car) -> Scalar:
     )
 
 
-_STEERED = (PAIR, WHEEL, RADIUS, WHEELBASE)
+_STEERED = (PAIR, *ON_GROUND, WHEELBASE)
 
 NUMBERS = (
-    Effect("track", "mm", (PAIR, WHEEL, RADIUS), _track),
+    Effect("track", "mm", (PAIR, *ON_GROUND), _track),
     Effect("axle_roll_centre_height", "mm", (PAIR, *MOVING), lambda *cars: _roll_centre(*cars)[1], TRAVEL),
     Effect("axle_roll_centre_offset", "mm", (PAIR, *MOVING), lambda *cars: _roll_centre(*cars)[0], TRAVEL),
     Effect("turning_radius", "mm", _STEERED, _turning_radius),

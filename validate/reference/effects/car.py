@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
+from validate.reference.car_data import LENGTHS, RADIUS, car_data, corners
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, times
 
 WHEEL, STEERING, DAMPER = LINES = ("wheel_axis", "steering_axis", "damper")
-KNUCKLE, RADIUS = "knuckle", "wheel_radius"
+KNUCKLE = "knuckle"
 
 
 @dataclass(frozen=True)
@@ -30,14 +30,6 @@ Lines = Mapping[str, Line]
 Frame = tuple[Vector, Vector]
 
 
-def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) -> dict[str, Line]:
-    """The lines through these points."""
-    return {
-        role: Line(points[start], points[end], minus(points[end], points[start]))
-        for role, (start, end) in ends.items()
-    }
-
-
 @dataclass(frozen=True)
 class DrawnCar:
     """What effects know of a corner beside its pose; lengths in any unit, the same in all.
@@ -49,7 +41,6 @@ class DrawnCar:
         up: unit vector.
         forward: unit vector, up x right.
         outboard: unit vector, away from the car's middle.
-        wheel_radius: None if it is not given.
         origin: where the user's coordinates have theirs, a point of the car's middle plane.
         data: what is given of the car as a whole, see `car_data`.
     """
@@ -59,44 +50,38 @@ class DrawnCar:
     up: Vector
     forward: Vector
     outboard: Vector
-    wheel_radius: Scalar | None
     origin: Vector
     data: Mapping[str, Scalar]
 
     @classmethod
     def of(
         cls,
-        roles: Mapping[str, Any],
+        plain: Mapping[str, Any],
+        prefix: str,
         points: Mapping[str, Vector],
-        up: Vector,
-        right: Vector,
-        side: int,
-        wheel_radius: Scalar | None,
         origin: Vector,
-        data: Mapping[str, Any],
-        number: Callable[[Fraction], Scalar],
+        unit: Any,
+        number: Callable[[Any], Scalar],
     ) -> DrawnCar:
-        """A drawing.
+        """A description's corner.
 
         Args:
-            roles: by name, two points each.
-            points: as drawn.
-            side: 1 where outboard is `right`, -1 where it is the opposite.
-            number: these numbers in the kind that poses have.
+            prefix: of its names.
+            points: as drawn, (p - origin) / unit.
+            number: what is given in the kind of number of the poses.
         """
-        ends = {role: (roles[role][0], roles[role][1]) for role in LINES if role in roles}
+        named = {role: plain["roles"].get(prefix + role) for role in LINES}
+        ends = {role: (points[0], points[1]) for role, points in named.items() if points is not None}
+        drawn = {name: each(number, points[name]) for both in ends.values() for name in both}
+        up, right = plain["up"], plain["right"]
         return cls(
             ends=ends,
-            lines={
-                name: Line(each(number, line.start), each(number, line.end), each(number, line.along))
-                for name, line in lines_of(ends, points).items()
-            },
+            lines=lines_of(ends, drawn),
             up=each(number, up),
             forward=each(number, cross(up, right)),
-            outboard=each(number, times(right, side)),
-            wheel_radius=None if wheel_radius is None else number(wheel_radius),
-            origin=each(number, origin),
-            data={key: number(one) for key, one in data.items()},
+            outboard=each(number, times(right, corners(plain)[prefix])),
+            origin=each(number, times(origin, -1 / unit)),
+            data={k: number(x / unit if k in LENGTHS else x) for k, x in car_data(plain).items()},
         )
 
     @property
@@ -115,7 +100,7 @@ class Car:
     """A pose of a corner. A displacement of the chassis is in none of its lines.
 
     Attributes:
-        drawn: what it is a pose of.
+        drawn: what it is a pose of; its unit vectors do not turn with the chassis.
         lines: with the chassis turned.
         on_chassis: before its turns.
         knuckle: two vectors fixed in the wheel's carrier, with the chassis turned; None where nobody says it.
@@ -128,23 +113,23 @@ class Car:
 
     @property
     def up(self) -> Vector:
-        """Unit vector; as `forward` and `outboard` it does not turn with the chassis."""
+        """Unit vector."""
         return self.drawn.up
 
     @property
     def forward(self) -> Vector:
-        """Unit vector, up x right."""
+        """Unit vector."""
         return self.drawn.forward
 
     @property
-    def rearward(self) -> Vector:
-        """Unit vector, right x up."""
-        return times(self.forward, -1)
+    def outboard(self) -> Vector:
+        """Unit vector."""
+        return self.drawn.outboard
 
     @property
-    def outboard(self) -> Vector:
-        """Unit vector, away from the car's middle."""
-        return self.drawn.outboard
+    def rearward(self) -> Vector:
+        """Unit vector."""
+        return times(self.forward, -1)
 
     @property
     def is_right(self) -> bool:
@@ -167,6 +152,12 @@ class Car:
         return contact_of(self.drawn, self.wheel)
 
 
+def lines_of(ends: Mapping[str, tuple[str, str]], points: Mapping[str, Vector]) -> dict[str, Line]:
+    """The lines through these points."""
+    both = {role: (points[start], points[end]) for role, (start, end) in ends.items()}
+    return {role: Line(start, end, minus(end, start)) for role, (start, end) in both.items()}
+
+
 def contact_of(drawn: DrawnCar, wheel: Line) -> Vector:
     """The lowest point of a thin disc about a spin axis a: c = W - R m / |m|, m = up (a . a) - a (a . up).
 
@@ -174,4 +165,4 @@ def contact_of(drawn: DrawnCar, wheel: Line) -> Vector:
     """
     a, up = wheel.along, drawn.up
     across = minus(times(up, dot(a, a)), times(a, dot(a, up)))
-    return minus(wheel.end, times(across, drawn.wheel_radius / length(across)))
+    return minus(wheel.end, times(across, drawn.data[RADIUS] / length(across)))

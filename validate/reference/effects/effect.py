@@ -5,16 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
-from validate.reference.car_data import (
-    AXLE,
-    BRAKE_SHARE,
-    DRIVE_SHARE,
-    FREE_LENGTH,
-    HEIGHT,
-    SPRING_RATE,
-    WHEELBASE,
-)
-from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL
+import validate.reference.car_data as given
+from validate.reference.effects.car import DAMPER, KNUCKLE, STEERING, WHEEL
 from validate.reference.vectors import Scalar
 
 TRAVEL, RACK, ROLL, TIME = "by_travel", "by_rack", "by_roll", "by_time"
@@ -25,33 +17,18 @@ NEEDS = {
     STEERING: "the role steering_axis",
     DAMPER: "the role damper",
     KNUCKLE: "the role knuckle, a body that moves",
-    RADIUS: "a wheel_radius, mm",
+    given.RADIUS: "a wheel_radius, mm",
     TRAVEL: "exactly one driven input that is not the travel of a slide and steers none",
     RACK: "exactly one driven input that is the travel of a slide or steers one",
     ROLL: "exactly one driven input that turns the chassis about a line along the car",
     PAIR: "two parts on opposite sides of the car",
-    AXLE: "the car's axle, 'front' or 'rear'",
-    WHEELBASE: "the car's wheelbase, mm",
-    HEIGHT: "the car's centre_of_gravity_height, mm",
-    BRAKE_SHARE: "the car's brake_share, 0 to 1",
-    DRIVE_SHARE: "the car's drive_share, 0 to 1",
-    SPRING_RATE: "the car's spring_rate, N/mm",
-    FREE_LENGTH: "the car's spring_free_length, mm",
-}
-
-# A force is the rate of a spring, N/mm, times a length.
-POWERS = {
-    "rad": 0,
-    "mm": 1,
-    "rad/mm": -1,
-    "mm/mm": 0,
-    "rad/rad": 0,
-    "rad/s": 0,
-    "mm/s": 1,
-    "%": 0,
-    "mm/rad": 1,
-    "N": 1,
-    "N/mm": 0,
+    given.AXLE: "the car's axle, 'front' or 'rear'",
+    given.WHEELBASE: "the car's wheelbase, mm",
+    given.HEIGHT: "the car's centre_of_gravity_height, mm",
+    given.BRAKE_SHARE: "the car's brake_share, 0 to 1",
+    given.DRIVE_SHARE: "the car's drive_share, 0 to 1",
+    given.SPRING_RATE: "the car's spring_rate, N/mm",
+    given.FREE_LENGTH: "the car's spring_free_length, mm",
 }
 
 
@@ -61,7 +38,7 @@ class Effect:
 
     Attributes:
         name: what results call it, behind the prefix of its part if there are parts.
-        unit: of the number, one of `POWERS`.
+        unit: of the number, a unit or a quotient of two.
         needs: what the car must have, of `NEEDS`; with `PAIR` each of the two parts.
         evaluate: the number of a `Car`, or with `PAIR` of the left and the right one, in their kind of scalar
             and their lengths; not a finite ball where it is undefined.
@@ -80,7 +57,9 @@ class Effect:
     @property
     def power(self) -> int:
         """Of a unit of length, which the number in the car's own lengths is multiplied by."""
-        return POWERS[self.unit]
+        # A force is the rate of a spring, N/mm, times a length.
+        above, below = (int(part in ("mm", "N")) for part in f"{self.unit}/".split("/")[:2])
+        return above - below
 
     def lacks(self, has: Collection[str]) -> str:
         """What it needs and a car does not have, in words; empty if it can be had."""

@@ -12,7 +12,7 @@ EFFECTS: dict[str, Effect] = {
     effect.name: effect for effect in (*wheel.OF_POSITIONS, *wheel.GRADIENTS, *wheel.OF_MOTION, *axle.NUMBERS)
 }
 
-ANGLES = tuple(effect.name for effect in wheel.ANGLES)
+ANGLES = ("camber", "kingpin", "toe", "caster")
 """Those that are computed where nobody says which."""
 
 OF_POSITIONS = tuple(effect.name for effect in wheel.OF_POSITIONS)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from validate.reference.car_data import (
     AXLE,
@@ -16,60 +17,41 @@ from validate.reference.car_data import (
     DRIVE_SHARE,
     FREE_LENGTH,
     HEIGHT,
+    RADIUS,
     SPRING_RATE,
     WHEELBASE,
 )
-from validate.reference.dual import angle, slope_of, value_of
-from validate.reference.effects.car import DAMPER, KNUCKLE, RADIUS, STEERING, WHEEL, Car, Line, contact_of
+from validate.reference.effects.car import DAMPER, KNUCKLE, STEERING, WHEEL, Car, Line, contact_of
 from validate.reference.effects.effect import RACK, ROLL, TIME, TRAVEL, Effect
-from validate.reference.jet import Jet
+from validate.reference.jet import angle, slope_of, value_of
 from validate.reference.kinematics import body_rates
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, length, minus, plus, root, times
 
+# Of positions.
 
-def _camber(car: Car) -> Scalar:
-    """atan2(-a . up, a . outboard), eq. (17) of the paper."""
-    return angle(-dot(car.wheel.along, car.up), dot(car.wheel.along, car.outboard))
-
-
-def _kingpin(car: Car) -> Scalar:
-    """atan2(-k . outboard, k . up), eq. (16)."""
-    return angle(-dot(car.steering.along, car.outboard), dot(car.steering.along, car.up))
-
-
-def _toe(car: Car) -> Scalar:
-    """atan2(a . forward, a . outboard) (ISO 8855, 7.1.6)."""
-    return angle(dot(car.wheel.along, car.forward), dot(car.wheel.along, car.outboard))
-
-
-def _caster(car: Car) -> Scalar:
-    """atan2(k . rearward, k . up)."""
-    return angle(-dot(car.steering.along, car.forward), dot(car.steering.along, car.up))
+LEANS: dict[str, tuple[str, Callable[[Scalar, Scalar, Scalar], Scalar]]] = {
+    "camber": (WHEEL, lambda out, _, up: angle(-up, out)),  # eq. (17) of the paper
+    "kingpin": (STEERING, lambda out, _, up: angle(-out, up)),  # eq. (16)
+    "toe": (WHEEL, lambda out, ahead, _: angle(ahead, out)),  # ISO 8855, 7.1.6
+    "caster": (STEERING, lambda _, ahead, up: angle(-ahead, up)),
+    # An arcsine of a component of a unit vector, from it and the other two of a vector of any length: all are
+    # along the car's axes, which are rounded, and l^2 - s^2 would be of other axes than s is.
+    "camber_by_arcsine": (WHEEL, lambda out, ahead, up: angle(-up, root(out * out + ahead * ahead))),
+    "toe_by_arcsine": (WHEEL, lambda out, ahead, up: angle(ahead, root(out * out + up * up))),
+}
+"""Angles of a line by its components outboard, forward and up; by arcsine as Adams/Car and OptimumK do."""
 
 
-def _arcsine(sine: Scalar, one: Scalar, other: Scalar) -> Scalar:
-    """asin of a component of a unit vector, from it and the other two of a vector of any length.
-
-    They are all along the car's axes, which are rounded: l^2 - s^2 would be of other axes than s is.
-    """
-    return angle(sine, root(one * one + other * other))
-
-
-def _camber_by_arcsine(car: Car) -> Scalar:
-    """-asin(n . up), n = a / |a| (Adams/Car)."""
-    a = car.wheel.along
-    return _arcsine(-dot(a, car.up), dot(a, car.outboard), dot(a, car.forward))
-
-
-def _toe_by_arcsine(car: Car, wheel: Line | None = None) -> Scalar:
-    """asin(n . forward), n = a / |a| (OptimumK)."""
-    a = (wheel or car.wheel).along
-    return _arcsine(dot(a, car.forward), dot(a, car.outboard), dot(a, car.up))
+def _lean(name: str, car: Car, line: Line | None = None) -> Scalar:
+    """One of `LEANS`, of its own line unless another one is given."""
+    role, formula = LEANS[name]
+    v = (line or car.lines[role]).along
+    return formula(dot(v, car.outboard), dot(v, car.forward), dot(v, car.up))
 
 
 def _toe_change_by_arcsine(car: Car) -> Scalar:
     """asin(n . forward) - asin(drawn n . forward) (OptimumK's steer angle, the other way)."""
-    return _toe_by_arcsine(car) - _toe_by_arcsine(car, car.drawn.lines[WHEEL])
+    return _lean("toe_by_arcsine", car) - _lean("toe_by_arcsine", car, car.drawn.lines[WHEEL])
 
 
 def steer_angle(car: Car) -> Scalar:
@@ -88,110 +70,92 @@ def _contact_travel(car: Car) -> Scalar:
     return dot(minus(contact_of(car.drawn, car.on_chassis[WHEEL]), car.drawn.contact), car.up)
 
 
-def _half_track_change(car: Car) -> Scalar:
-    """(c - drawn c) . outboard."""
-    return dot(minus(car.contact, car.drawn.contact), car.outboard)
-
-
-def _recession(car: Car) -> Scalar:
-    """(c - drawn c) . rearward."""
-    return dot(minus(car.contact, car.drawn.contact), car.rearward)
-
-
-def _level(off: Vector, k: Vector, up: Vector) -> Vector:
-    """From the point of an axis along k that is as high as a point to it: o - k (o . up) / (k . up).
-
-    Args:
-        off: o, from any point of the axis.
-    """
-    return minus(off, times(k, dot(off, up) / dot(k, up)))
-
-
-def _from_axis(car: Car, point: Vector) -> Vector:
-    """From the steering axis' point at the height of a point to it."""
-    return _level(minus(point, car.steering.start), car.steering.along, car.up)
-
-
-def _kingpin_offset(car: Car) -> Scalar:
-    """From the axis to c along outboard (ISO 8855, 7.2.6)."""
-    return dot(_from_axis(car, car.contact), car.outboard)
-
-
-def _scrub_radius(car: Car) -> Scalar:
-    """From the axis to c (ISO 8855, 7.2.10)."""
-    return length(_from_axis(car, car.contact))
-
-
-def _mechanical_trail(car: Car) -> Scalar:
-    """From c to the axis along (forward a . outboard - outboard a . forward) / h, the tyre's own forward.
-
-    h is the length of the level part of a (ISO 8855, 7.2.3).
-    """
-    return _ahead(car, _from_axis(car, car.contact), car.wheel.along)
-
-
-def _ahead(car: Car, offset: Vector, a: Vector) -> Scalar:
-    """Of an offset, backward along the level part of the plane of the tyre."""
-    out, ahead = dot(a, car.outboard), dot(a, car.forward)
-    across = dot(offset, car.outboard) * ahead - dot(offset, car.forward) * out
-    return across / root(out * out + ahead * ahead)
-
-
-def _castor_offset(car: Car) -> Scalar:
-    """From c to the axis along forward."""
-    return -dot(_from_axis(car, car.contact), car.forward)
-
-
-def _kingpin_offset_at_wheel(car: Car) -> Scalar:
-    """From the axis to W along outboard."""
-    return dot(_from_axis(car, car.wheel.end), car.outboard)
-
-
-def _hub_trail(car: Car) -> Scalar:
-    """From W to the axis along rearward."""
-    return dot(_from_axis(car, car.wheel.end), car.forward)
+def _contact_moved(car: Car, along: Vector) -> Scalar:
+    return dot(minus(car.contact, car.drawn.contact), along)
 
 
 def _damper_length(car: Car) -> Scalar:
-    """The distance of its ends."""
     return length(car.lines[DAMPER].along)
+
+
+def _behind(car: Car, off: Vector, a: Vector) -> Scalar:
+    """Backward along the level part of the tyre's plane: (forward a . outboard - outboard a . forward) / h.
+
+    h is the length of the level part of a (ISO 8855, 7.2.3).
+    """
+    out, ahead = dot(a, car.outboard), dot(a, car.forward)
+    across = dot(off, car.outboard) * ahead - dot(off, car.forward) * out
+    return across / root(out * out + ahead * ahead)
+
+
+OFFSETS: dict[str, tuple[bool, Callable[[Car, Vector, Vector], Scalar]]] = {
+    "kingpin_offset": (True, lambda car, off, _: dot(off, car.outboard)),  # ISO 8855, 7.2.6
+    "scrub_radius": (True, lambda _, off, __: length(off)),  # ISO 8855, 7.2.10
+    "mechanical_trail": (True, _behind),
+    "castor_offset": (True, lambda car, off, _: -dot(off, car.forward)),
+    "kingpin_offset_at_wheel": (False, lambda car, off, _: dot(off, car.outboard)),
+    "hub_trail": (False, lambda car, off, _: dot(off, car.forward)),
+}
+"""Whether it is one of c, or of W; and its formula in the offset of that point from an axis, and a."""
+
+
+def _offset(name: str, car: Car, start: Vector, k: Vector, known: Callable[[Vector], Vector]) -> Scalar:
+    """One of `OFFSETS`, from the point of the axis along k that is as high: o - k (o . up) / (k . up).
+
+    Args:
+        start: any point of the axis.
+        known: what is taken of the wheel's vectors.
+    """
+    at_contact, formula = OFFSETS[name]
+    o = minus(known(car.contact if at_contact else car.wheel.end), start)
+    level = minus(o, times(k, dot(o, car.up) / dot(k, car.up)))
+    return formula(car, level, known(car.wheel.along))
+
+
+def _from_steering(name: str, car: Car) -> Scalar:
+    return _offset(name, car, car.steering.start, car.steering.along, lambda vector: vector)
+
+
+# Of motion.
+
+
+def _values(vector: Vector) -> Vector:
+    return each(value_of, vector)
+
+
+def _slopes(vector: Vector) -> Vector:
+    return each(slope_of, vector)
 
 
 def _turning(car: Car) -> Vector:
     """omega."""
     assert car.knuckle is not None
-    u, v = (each(lambda x: Jet(value_of(x), slope_of(x)), vector) for vector in car.knuckle)
-    return body_rates(u, v)[0]
+    return body_rates(*car.knuckle, 1)[0]
 
 
 def velocity_of_contact(car: Car) -> Vector:
     """v = W' + omega x (c - W)."""
-    centre = car.wheel.end
-    arm = minus(each(value_of, car.contact), each(value_of, centre))
-    return plus(each(slope_of, centre), cross(_turning(car), arm))
+    arm = minus(_values(car.contact), _values(car.wheel.end))
+    return plus(_slopes(car.wheel.end), cross(_turning(car), arm))
 
 
-def _roll_centre_height(car: Car) -> Scalar:
+def _roll_centre(car: Car, v: Vector) -> Scalar:
     """(c . outboard) (v . outboard) / (v . up).
 
     The line through c at right angles to v meets the middle plane, which holds the origin, there above c.
     """
-    v, contact = velocity_of_contact(car), each(value_of, car.contact)
-    return dot(minus(contact, car.drawn.origin), car.outboard) * dot(v, car.outboard) / dot(v, car.up)
+    far = dot(minus(_values(car.contact), car.drawn.origin), car.outboard)
+    return far * dot(v, car.outboard) / dot(v, car.up)
 
 
 def _arm_roll_centre_height(car: Car) -> Scalar:
     """The same with the turn omega + f k about the steering axis besides, f such that no point of the axis of
     this motion moves along it: (omega + f k) . u = 0 with u = W' + omega x (A - W), A the axis' lower point.
     """
-    lower, k = each(value_of, car.steering.start), each(value_of, car.steering.along)
-    arm = minus(each(value_of, car.contact), lower)
-    omega, centre = _turning(car), each(value_of, car.wheel.end)
-    u = plus(each(slope_of, car.wheel.end), cross(omega, minus(lower, centre)))
+    lower, k, omega = _values(car.steering.start), _values(car.steering.along), _turning(car)
+    u = plus(_slopes(car.wheel.end), cross(omega, minus(lower, _values(car.wheel.end))))
     turn = minus(omega, times(k, dot(omega, u) / dot(k, u)))
-    v = plus(u, cross(turn, arm))
-    far = dot(minus(each(value_of, car.contact), car.drawn.origin), car.outboard)
-    return far * dot(v, car.outboard) / dot(v, car.up)
+    return _roll_centre(car, plus(u, cross(turn, minus(_values(car.contact), lower))))
 
 
 def _damper_per_wheel(car: Car) -> Scalar:
@@ -210,35 +174,27 @@ def _spring_force(car: Car) -> Scalar:
     return data[SPRING_RATE] * (data[FREE_LENGTH] - value_of(_damper_length(car)))
 
 
-def _wheel_rate(car: Car) -> Scalar:
-    """K (l' / travel')^2."""
-    return car.drawn.data[SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car)
-
-
 # As the rack moves, all else held, the carrier turns with omega about an axis that leads through
 # W + omega x W' / omega^2, and goes along it by omega . W' / omega^2 per radian. Where it does not turn, or
 # omega is level, the quotients are not finite.
 
 
-def _from_screw(car: Car, point: Vector) -> Vector:
-    """From the point of the screw axis at the height of a point to it."""
-    omega, moved = _turning(car), each(slope_of, car.wheel.end)
-    beside = times(cross(omega, moved), 1 / dot(omega, omega))
-    off = minus(minus(each(value_of, point), each(value_of, car.wheel.end)), beside)
-    return _level(off, omega, car.up)
+def _from_screw(name: str, car: Car) -> Scalar:
+    omega, moved = _turning(car), _slopes(car.wheel.end)
+    start = plus(_values(car.wheel.end), times(cross(omega, moved), 1 / dot(omega, omega)))
+    return _offset(name, car, start, omega, _values)
 
 
-def _screw_lean(car: Car, direction: Vector) -> Scalar:
-    """atan2(k . direction, k . up) of the axis k = omega (omega . up), which leads up."""
+def _screw_lean(name: str, car: Car) -> Scalar:
+    """Of the axis omega (omega . up), which leads up."""
     omega = _turning(car)
-    rise = dot(omega, car.up)
-    return angle(dot(omega, direction) * rise, rise * rise)
+    return _lean(name, car, Line(omega, omega, times(omega, dot(omega, car.up))))
 
 
 def _screw_pitch(car: Car) -> Scalar:
     """Omega . W' / omega^2."""
     omega = _turning(car)
-    return dot(omega, each(slope_of, car.wheel.end)) / dot(omega, omega)
+    return dot(omega, _slopes(car.wheel.end)) / dot(omega, omega)
 
 
 # In the plane through c that a level direction h and `up` span, the carrier moves its points as a plane
@@ -247,7 +203,7 @@ def _screw_pitch(car: Car) -> Scalar:
 # Where omega . a = 0 this instant centre is at infinity: the quotients are not finite.
 
 
-def _aside(car: Car, h: Vector) -> Scalar:
+def _beside(car: Car, h: Vector) -> Scalar:
     """x."""
     return -dot(velocity_of_contact(car), car.up) / dot(_turning(car), cross(h, car.up))
 
@@ -273,32 +229,70 @@ def _anti(car: Car, share: str, v: Vector) -> Scalar:
     return 100 * data[share] * data[AXLE] * dot(v, car.rearward) / dot(v, car.up) * lever
 
 
-ANGLES = (
-    Effect("camber", "rad", (WHEEL,), _camber),
-    Effect("kingpin", "rad", (STEERING,), _kingpin),
-    Effect("toe", "rad", (WHEEL,), _toe),
-    Effect("caster", "rad", (STEERING,), _caster),
-)
+ON_GROUND = (WHEEL, RADIUS)
+MOVING = (*ON_GROUND, KNUCKLE, TRAVEL)
+_SPRUNG = (DAMPER, WHEEL, TRAVEL, SPRING_RATE, FREE_LENGTH)
+_OF_THE_CAR = (*MOVING, AXLE, WHEELBASE, HEIGHT)
 
 OF_POSITIONS = (
-    *ANGLES,
-    Effect("camber_by_arcsine", "rad", (WHEEL,), _camber_by_arcsine),
-    Effect("toe_by_arcsine", "rad", (WHEEL,), _toe_by_arcsine),
+    *(Effect(name, "rad", (role,), partial(_lean, name)) for name, (role, _) in LEANS.items()),
     Effect("toe_change_by_arcsine", "rad", (WHEEL,), _toe_change_by_arcsine),
     Effect("steer_angle", "rad", (WHEEL,), steer_angle),
     Effect("travel", "mm", (WHEEL,), _travel),
-    Effect("contact_travel", "mm", (WHEEL, RADIUS), _contact_travel),
-    Effect("half_track_change", "mm", (WHEEL, RADIUS), _half_track_change),
-    Effect("recession", "mm", (WHEEL, RADIUS), _recession),
-    Effect("kingpin_offset", "mm", (WHEEL, STEERING, RADIUS), _kingpin_offset),
-    Effect("scrub_radius", "mm", (WHEEL, STEERING, RADIUS), _scrub_radius),
-    Effect("mechanical_trail", "mm", (WHEEL, STEERING, RADIUS), _mechanical_trail),
-    Effect("castor_offset", "mm", (WHEEL, STEERING, RADIUS), _castor_offset),
-    Effect("kingpin_offset_at_wheel", "mm", (WHEEL, STEERING), _kingpin_offset_at_wheel),
-    Effect("hub_trail", "mm", (WHEEL, STEERING), _hub_trail),
+    Effect("contact_travel", "mm", ON_GROUND, _contact_travel),
+    Effect("half_track_change", "mm", ON_GROUND, lambda car: _contact_moved(car, car.outboard)),
+    Effect("recession", "mm", ON_GROUND, lambda car: _contact_moved(car, car.rearward)),
+    *(
+        Effect(
+            name, "mm", (WHEEL, STEERING, *([RADIUS] if at_contact else [])), partial(_from_steering, name)
+        )
+        for name, (at_contact, _) in OFFSETS.items()
+    ),
     Effect("damper_length", "mm", (DAMPER,), _damper_length),
 )
 
+
+def _of_travel(name: str, unit: str, needs: tuple[str, ...], evaluate: Callable[[Car], Scalar]) -> Effect:
+    return Effect(name, unit, needs, evaluate, TRAVEL)
+
+
+def _of_screw(name: str, unit: str, evaluate: Callable[[Car], Scalar]) -> Effect:
+    return Effect(f"screw_{name}", unit, (*ON_GROUND, KNUCKLE, RACK), evaluate, RACK)
+
+
+OF_MOTION = (
+    *(_of_screw(name, "rad", partial(_screw_lean, name)) for name in ("kingpin", "caster")),
+    *(_of_screw(name, "mm", partial(_from_screw, name)) for name in OFFSETS),
+    _of_screw("pitch", "mm/rad", _screw_pitch),
+    _of_travel("damper_per_wheel", "mm/mm", (DAMPER, WHEEL, TRAVEL), _damper_per_wheel),
+    _of_travel("wheel_per_damper", "mm/mm", (DAMPER, WHEEL, TRAVEL), _wheel_per_damper),
+    _of_travel("spring_force", "N", _SPRUNG, _spring_force),
+    _of_travel("wheel_force", "N", _SPRUNG, lambda car: _spring_force(car) * _damper_per_wheel(car)),
+    _of_travel(
+        "wheel_rate",
+        "N/mm",
+        _SPRUNG,
+        lambda car: car.drawn.data[SPRING_RATE] * _damper_per_wheel(car) * _damper_per_wheel(car),
+    ),
+    _of_travel("arm_roll_centre_height", "mm", (*MOVING, STEERING), _arm_roll_centre_height),
+    _of_travel("roll_centre_height", "mm", MOVING, lambda car: _roll_centre(car, velocity_of_contact(car))),
+    _of_travel("front_view_swing_arm", "mm", MOVING, lambda car: -_beside(car, car.outboard)),
+    _of_travel("front_view_centre_height", "mm", MOVING, lambda car: _above(car, car.outboard)),
+    _of_travel("side_view_swing_arm", "mm", MOVING, lambda car: _beside(car, car.rearward)),
+    _of_travel("side_view_centre_height", "mm", MOVING, lambda car: _above(car, car.rearward)),
+    _of_travel(
+        "anti_brake",
+        "%",
+        (*_OF_THE_CAR, BRAKE_SHARE),
+        lambda car: _anti(car, BRAKE_SHARE, velocity_of_contact(car)),
+    ),
+    _of_travel(
+        "anti_drive",
+        "%",
+        (*_OF_THE_CAR, DRIVE_SHARE),
+        lambda car: _anti(car, DRIVE_SHARE, _slopes(car.wheel.end)),
+    ),
+)
 
 PER = {TRAVEL: "mm", RACK: "mm", ROLL: "rad", TIME: "s"}
 
@@ -321,56 +315,5 @@ def _gradient(effect: Effect, along: str) -> Effect:
         along=along,
     )
 
-
-MOVING = (WHEEL, RADIUS, KNUCKLE, TRAVEL)
-_OF_THE_CAR = (*MOVING, AXLE, WHEELBASE, HEIGHT)
-
-STEERED = (WHEEL, RADIUS, KNUCKLE, RACK)
-SPRUNG = (DAMPER, WHEEL, TRAVEL, SPRING_RATE, FREE_LENGTH)
-
-OF_SCREW: tuple[tuple[str, str, Callable[[Car], Scalar]], ...] = (
-    ("kingpin", "rad", lambda car: -_screw_lean(car, car.outboard)),
-    ("caster", "rad", lambda car: -_screw_lean(car, car.forward)),
-    ("kingpin_offset", "mm", lambda car: dot(_from_screw(car, car.contact), car.outboard)),
-    ("scrub_radius", "mm", lambda car: length(_from_screw(car, car.contact))),
-    (
-        "mechanical_trail",
-        "mm",
-        lambda car: _ahead(car, _from_screw(car, car.contact), each(value_of, car.wheel.along)),
-    ),
-    ("castor_offset", "mm", lambda car: -dot(_from_screw(car, car.contact), car.forward)),
-    ("kingpin_offset_at_wheel", "mm", lambda car: dot(_from_screw(car, car.wheel.end), car.outboard)),
-    ("hub_trail", "mm", lambda car: dot(_from_screw(car, car.wheel.end), car.forward)),
-    ("pitch", "mm/rad", _screw_pitch),
-)
-
-OF_MOTION = (
-    *(Effect(f"screw_{name}", unit, STEERED, evaluate, RACK) for name, unit, evaluate in OF_SCREW),
-    Effect("damper_per_wheel", "mm/mm", (DAMPER, WHEEL, TRAVEL), _damper_per_wheel, TRAVEL),
-    Effect("wheel_per_damper", "mm/mm", (DAMPER, WHEEL, TRAVEL), _wheel_per_damper, TRAVEL),
-    Effect("spring_force", "N", SPRUNG, _spring_force, TRAVEL),
-    Effect("wheel_force", "N", SPRUNG, lambda car: _spring_force(car) * _damper_per_wheel(car), TRAVEL),
-    Effect("wheel_rate", "N/mm", SPRUNG, _wheel_rate, TRAVEL),
-    Effect("arm_roll_centre_height", "mm", (*MOVING, STEERING), _arm_roll_centre_height, TRAVEL),
-    Effect("roll_centre_height", "mm", MOVING, _roll_centre_height, TRAVEL),
-    Effect("front_view_swing_arm", "mm", MOVING, lambda car: -_aside(car, car.outboard), TRAVEL),
-    Effect("front_view_centre_height", "mm", MOVING, lambda car: _above(car, car.outboard), TRAVEL),
-    Effect("side_view_swing_arm", "mm", MOVING, lambda car: _aside(car, car.rearward), TRAVEL),
-    Effect("side_view_centre_height", "mm", MOVING, lambda car: _above(car, car.rearward), TRAVEL),
-    Effect(
-        "anti_brake",
-        "%",
-        (*_OF_THE_CAR, BRAKE_SHARE),
-        lambda car: _anti(car, BRAKE_SHARE, velocity_of_contact(car)),
-        TRAVEL,
-    ),
-    Effect(
-        "anti_drive",
-        "%",
-        (*_OF_THE_CAR, DRIVE_SHARE),
-        lambda car: _anti(car, DRIVE_SHARE, each(slope_of, car.wheel.end)),
-        TRAVEL,
-    ),
-)
 
 GRADIENTS = tuple(_gradient(effect, along) for effect in OF_POSITIONS for along in PER)
