@@ -76,7 +76,6 @@ from validate.formulations.input_rates import laws_of
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import NOTHING, Accuracy, Numbers
 from validate.reference import Design
-from validate.reference.compiler import CHASSIS
 from validate.reference.design import Known, values_only
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, numbers_of
 from validate.reference.effects.car import KNUCKLE, Car
@@ -95,6 +94,7 @@ from validate.reference.in_doubles import (
 )
 from validate.reference.jet import Dual, Jet, part_of, slope_of, value_of
 from validate.reference.kinematics import body_turns
+from validate.reference.mechanism import CHASSIS
 from validate.reference.vectors import Scalar, Vector, each
 
 Array = NDArray[np.float64]

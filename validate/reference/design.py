@@ -13,12 +13,13 @@ from flint import arb, arb_mat, ctx
 
 from validate.reference.car_data import car_data, corners
 from validate.reference.chassis import ChassisMotion
+from validate.reference.drives import compiled
 from validate.reference.equations import Equations, equations_in
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet
 from validate.reference.krawczyk import System
-from validate.reference.mechanism import Mechanism, compiled
+from validate.reference.mechanism import Mechanism
 from validate.reference.vectors import Scalar, Vector, dot, each, minus, times
 
 DIRECTION_SLACK = Fraction(1, 10**12)  # a float64 unit vector is off by about 1e-16; a wrong one by far more

@@ -18,7 +18,6 @@ All lengths are local (see `design`), and so is the drawing.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from typing import Any
@@ -26,57 +25,37 @@ from typing import Any
 from flint import arb
 
 from validate.reference.chassis import ChassisMotion
-from validate.reference.compiler import CHASSIS, Compiler, Exact, Table
 from validate.reference.directions import directed
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet, angle
+from validate.reference.mechanism import CHASSIS, Drive, Exact, Mechanism, Table
 from validate.reference.polynomial import Polynomial
 from validate.reference.vectors import Scalar, across, cross, dot, each, minus, root
 
 
-@dataclass(frozen=True)
-class Drive:
-    """An input of a mechanism.
-
-    Attributes:
-        numbers: the numbers w of the values of all inputs, rad or mm, as jets of any kind of number, and of
-            what makes a fraction one of that kind.
-        drawn: these numbers as drawn.
-        input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
-        required: whether it must be given; else it rests at zero.
-        turns: whether it is an angle of any number of turns.
-    """
-
-    numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
-    drawn: Callable[[], Sequence[arb]]
-    input_of: Callable[[Sequence[arb]], arb]
-    required: bool = True
-    turns: bool = False
-
-
-def drive_of(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    """The drive that a description's input is; its rows go to the compiler, the one with the numbers last.
+def drive_of(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    """The drive that a description's input is; its rows go to the mechanism, the one with the numbers last.
 
     Raises:
         BadInputError: there is no such kind of input, or it cannot drive the car as drawn.
     """
     for kind, make in KINDS.items():
         if kind in spec:
-            return make(compiler, name, spec)
+            return make(mechanism, name, spec)
     raise BadInputError(f"inputs.{name}", dict(spec), f"one of {', '.join(KINDS)}, moves or turns")
 
 
-def _angle(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+def _angle(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     if spec["from"] == "drawing":
-        return _angle_from_drawing(compiler, name, spec)
+        return _angle_from_drawing(mechanism, name, spec)
     end, pivot = spec["of"], spec["about"]
-    along = directed(compiler.plain, spec["from"])
-    drawn = minus(compiler.table[end], compiler.table[pivot])
+    along = directed(mechanism.plain, spec["from"])
+    drawn = minus(mechanism.table[end], mechanism.table[pivot])
     d2, height = dot(drawn, drawn), dot(drawn, along)
     if d2 == 0:
         raise BadInputError(f"the distance from {end} to {pivot}", 0, "more than 0")
-    compiler.row(name, dot(minus(compiler.place(end), compiler.place(pivot)), along) - compiler.number())
+    mechanism.row(name, dot(minus(mechanism.place(end), mechanism.place(pivot)), along) - mechanism.number())
 
     def angle(numbers: Sequence[arb]) -> arb:
         # By cosine and sine: an arc cosine loses its digits where the arm stands along the direction. That is
@@ -90,23 +69,23 @@ def _angle(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
     return _own(name, numbers, lambda: [as_ball(height)], angle)
 
 
-def _angle_from_drawing(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    body, on, table = spec["angle"], spec["on"], compiler.table
-    both = [point for point in compiler.plain["bodies"][body] if point in compiler.plain["bodies"][on]]
+def _angle_from_drawing(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    body, on, table = spec["angle"], spec["on"], mechanism.table
+    both = [point for point in mechanism.plain["bodies"][body] if point in mechanism.plain["bodies"][on]]
     if len(both) != 2:
         raise BadInputError(f"inputs.{name}: angle", body, f"a body hinged on {on}")
     n = minus(table[both[1]], table[both[0]])
     e, nn = across(n)[0], dot(n, n)
-    turning, held = compiler.bodies[body].turned(e), compiler.bodies[on]
+    turning, held = mechanism.bodies[body].turned(e), mechanism.bodies[on]
     products = [dot(turning, held.turned(v)) for v in (e, cross(n, e))]
     if on != CHASSIS:  # each is quadratic itself, and so an unknown
         for i, product in enumerate(tuple(products)):
-            (products[i],) = compiler.unknowns(1, partial(_of_unknowns, product))
-            compiler.row(name, products[i] - product)
-    sine, cosine = compiler.number(), compiler.number()
-    compiler.row(name, products[0] * sine - products[1] * cosine)
+            (products[i],) = mechanism.unknowns(1, partial(_of_unknowns, product))
+            mechanism.row(name, products[i] - product)
+    sine, cosine = mechanism.number(), mechanism.number()
+    mechanism.row(name, products[0] * sine - products[1] * cosine)
     # At the angle itself g1 cos + g2 sin / |n| is positive; half a turn from it negative.
-    compiler.positive.append(products[0] * cosine * nn + products[1] * sine)
+    mechanism.positive.append(products[0] * cosine * nn + products[1] * sine)
 
     def numbers(value: Jet, exact: Exact) -> list[Jet]:
         sin, cos = value.sin_cos()
@@ -127,15 +106,15 @@ def _of_unknowns(
     return [one.at(unknown, exact)]
 
 
-def _travel(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    return _slid(compiler, name, spec["travel"], lambda exact: exact(Fraction(1)))
+def _travel(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    return _slid(mechanism, name, spec["travel"], lambda exact: exact(Fraction(1)))
 
 
-def _steers(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    given = compiler.plain.get("rack_per_turn")
+def _steers(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    given = mechanism.plain.get("rack_per_turn")
     if given is None:
         raise BadInputError("rack_per_turn", None, f"a number of mm, which inputs.{name} needs")
-    return _slid(compiler, name, spec["steers"], partial(travel_per_radian, compiler.plain))
+    return _slid(mechanism, name, spec["steers"], partial(travel_per_radian, mechanism.plain))
 
 
 def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scalar:
@@ -152,15 +131,15 @@ def travel_per_radian(plain: Mapping[str, Any], exact: Exact = as_ball) -> Scala
 
 
 def _slid(
-    compiler: Compiler, name: str, slides: Sequence[str], per_input: Callable[[Exact], Scalar]
+    mechanism: Mechanism, name: str, slides: Sequence[str], per_input: Callable[[Exact], Scalar]
 ) -> Drive:
     """Slides that go `per_input` mm per mm or rad of the input."""
-    drawn, lengths, unit = [], [], compiler.unit
+    drawn, lengths, unit = [], [], mechanism.unit
     for slide in slides:
-        shares, along, squared = compiler.lines[slide]
-        compiler.row(name, shares[0] - compiler.number())
-        told = compiler.plain["slides"][slide]
-        off = minus(compiler.table[told["points"][0]], compiler.table[told["through"]])
+        shares, along, squared = mechanism.lines[slide]
+        mechanism.row(name, shares[0] - mechanism.number())
+        told = mechanism.plain["slides"][slide]
+        off = minus(mechanism.table[told["points"][0]], mechanism.table[told["through"]])
         drawn.append(dot(off, along) / dot(along, along))
         lengths.append(squared)
     per_input(as_ball)  # what it refuses is refused here
@@ -178,21 +157,21 @@ def _slid(
     )
 
 
-def _height(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
-    along = directed(compiler.plain, spec.get("along", "up"))
-    drawn = dot(compiler.table[spec["height"]], along)
-    compiler.row(name, dot(compiler.place(spec["height"]), along) - compiler.number())
-    return _risen(name, compiler.unit, lambda exact: exact(drawn))
+def _height(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
+    along = directed(mechanism.plain, spec.get("along", "up"))
+    drawn = dot(mechanism.table[spec["height"]], along)
+    mechanism.row(name, dot(mechanism.place(spec["height"]), along) - mechanism.number())
+    return _risen(name, mechanism.unit, lambda exact: exact(drawn))
 
 
-def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+def _contact(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     inner, centre = spec["contact"]
-    radius = compiler.plain.get("wheel_radius")
+    radius = mechanism.plain.get("wheel_radius")
     if radius is None:
         raise BadInputError("wheel_radius", None, f"a number of mm, which inputs.{name} needs")
-    up, r = directed(compiler.plain, "up"), Fraction(radius) / compiler.unit
-    axis = minus(compiler.table[centre], compiler.table[inner])
-    l2, m, high = dot(axis, axis), dot(axis, up), dot(compiler.table[centre], up)
+    up, r = directed(mechanism.plain, "up"), Fraction(radius) / mechanism.unit
+    axis = minus(mechanism.table[centre], mechanism.table[inner])
+    l2, m, high = dot(axis, axis), dot(axis, up), dot(mechanism.table[centre], up)
     if l2 == 0:
         raise BadInputError(f"the distance from {inner} to {centre}", 0, "more than 0")
     share2 = r * r / l2
@@ -205,23 +184,23 @@ def _contact(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
         return exact(high) - root(exact(r * r - m * m * share2))
 
     if over == "ground":
-        return _over_ground(compiler, name, (inner, centre), (r * r, share2), drawn)
+        return _over_ground(mechanism, name, (inner, centre), (r * r, share2), drawn)
 
     def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
         lean = dot(minus(points[centre], points[inner]), each(exact, up))
         return [root(exact(r * r) - lean * lean * exact(share2))]
 
-    (drop,) = compiler.unknowns(1, read)
-    compiler.positive.append(drop)
-    lean = dot(minus(compiler.place(centre), compiler.place(inner)), up)
+    (drop,) = mechanism.unknowns(1, read)
+    mechanism.positive.append(drop)
+    lean = dot(minus(mechanism.place(centre), mechanism.place(inner)), up)
     if isinstance(lean, Polynomial):
-        compiler.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
-    compiler.row(name, dot(compiler.place(centre), up) - drop - compiler.number())
-    return _risen(name, compiler.unit, drawn)
+        mechanism.row(f"contact of {name}", drop * drop + lean * lean * share2 - r * r)
+    mechanism.row(name, dot(mechanism.place(centre), up) - drop - mechanism.number())
+    return _risen(name, mechanism.unit, drawn)
 
 
 def _over_ground(
-    compiler: Compiler,
+    mechanism: Mechanism,
     name: str,
     axis: tuple[str, str],
     disc: tuple[Fraction, Fraction],
@@ -233,8 +212,8 @@ def _over_ground(
         disc: r^2 and (r / l)^2.
     """
     (inner, centre), (square, share) = axis, disc
-    up, plain, first = directed(compiler.plain, "up"), compiler.plain, compiler.numbers
-    x, y, z, lift, level = (compiler.number() for _ in range(5))
+    up, plain, first = directed(mechanism.plain, "up"), mechanism.plain, mechanism.count
+    x, y, z, lift, level = (mechanism.number() for _ in range(5))
     seen = (x, y, z)
 
     def read(points: Table, _: Sequence[Scalar], exact: Exact, numbers: Sequence[Scalar]) -> list[Scalar]:
@@ -242,25 +221,25 @@ def _over_ground(
         lean = dot(minus(points[centre], points[inner]), (a, b, c))
         return [lean, root(exact(square) - lean * lean * exact(share))]
 
-    lean, drop = compiler.unknowns(2, read)
-    compiler.positive.append(drop)
-    compiler.row(f"lean of {name}", lean - dot(minus(compiler.place(centre), compiler.place(inner)), seen))
-    compiler.row(f"contact of {name}", drop * drop + lean * lean * share - square)
-    compiler.row(name, dot(compiler.place(centre), seen) + lift - drop - level)
+    lean, drop = mechanism.unknowns(2, read)
+    mechanism.positive.append(drop)
+    mechanism.row(f"lean of {name}", lean - dot(minus(mechanism.place(centre), mechanism.place(inner)), seen))
+    mechanism.row(f"contact of {name}", drop * drop + lean * lean * share - square)
+    mechanism.row(name, dot(mechanism.place(centre), seen) + lift - drop - level)
 
     def numbers(inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
-        chassis = ChassisMotion.of(plain, compiler.table, compiler.unit, inputs, exact)
+        chassis = ChassisMotion.of(plain, mechanism.table, mechanism.unit, inputs, exact)
         zero = inputs[name] * 0
         nowhere, upward = (zero, zero, zero), each(exact, up)
         ways = ([zero + int(i == k) for i in range(3)] for k in range(3))
         ground = [zero + dot(chassis.turned((a, b, c)), upward) for a, b, c in ways]
-        risen = inputs[name] * exact(1 / compiler.unit) + drawn(exact)
+        risen = inputs[name] * exact(1 / mechanism.unit) + drawn(exact)
         return [*ground, zero + dot(chassis.moved(nowhere), upward), risen]
 
     return Drive(
         numbers,
         lambda: [*each(as_ball, up), arb(0), drawn(as_ball)],
-        lambda w: (w[4] - drawn(as_ball)) * as_ball(compiler.unit),
+        lambda w: (w[4] - drawn(as_ball)) * as_ball(mechanism.unit),
     )
 
 
@@ -286,11 +265,11 @@ def _risen(name: str, unit: Fraction, drawn: Callable[[Exact], Scalar]) -> Drive
     )
 
 
-def _distance(compiler: Compiler, name: str, spec: Mapping[str, Any]) -> Drive:
+def _distance(mechanism: Mechanism, name: str, spec: Mapping[str, Any]) -> Drive:
     one, two = spec["distance"]
-    unit, drawn = compiler.unit, minus(compiler.table[one], compiler.table[two])
-    apart, d2 = minus(compiler.place(one), compiler.place(two)), dot(drawn, drawn)
-    compiler.row(name, dot(apart, apart) - compiler.number())
+    unit, drawn = mechanism.unit, minus(mechanism.table[one], mechanism.table[two])
+    apart, d2 = minus(mechanism.place(one), mechanism.place(two)), dot(drawn, drawn)
+    mechanism.row(name, dot(apart, apart) - mechanism.number())
     return _own(
         name,
         lambda value, exact: [value * value * exact(1 / unit**2)],
@@ -307,3 +286,20 @@ KINDS: dict[str, Callable[[Any, str, Mapping[str, Any]], Drive]] = {
     "contact": _contact,
     "distance": _distance,
 }
+
+
+def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool = True) -> Mechanism:
+    """The equations of a description with its inputs, see `Mechanism`.
+
+    Raises:
+        BadInputError: something in the description cannot be.
+    """
+    mechanism = Mechanism(plain, table, unit, hangs)
+    for name, spec in plain["inputs"].items():
+        if "moves" not in spec and "turns" not in spec:
+            mechanism.drives[name] = drive_of(mechanism, name, spec)
+            mechanism.driving[name] = len(mechanism.rows) - 1
+    for name in table:
+        if name not in mechanism.holder and name not in mechanism.free:
+            raise BadInputError(f"points.{name}", "in no body, rod or slide", "a point of one of them")
+    return mechanism

@@ -10,7 +10,7 @@ from functools import cached_property
 from flint import arb, arb_mat
 
 from validate.reference.mechanism import Mechanism
-from validate.reference.polynomial import Monomial, Polynomial, value_of
+from validate.reference.polynomial import Monomial, ordered, polynomial, value_of
 from validate.reference.vectors import Scalar, Vector, each
 
 Terms = tuple[tuple[Monomial, Scalar], ...]
@@ -22,7 +22,7 @@ class Equations:
 
     Attributes:
         size: unknowns, and equations.
-        rows: of each row its terms, in the unknowns and the numbers w behind them.
+        rows: of each row its terms, in the unknowns and the numbers w.
         entries: (row, column, terms) of the Jacobian by the unknowns, zeros left out.
         places: of each point, relative to the chassis.
         frames: of each moving body two vectors fixed in it.
@@ -36,12 +36,12 @@ class Equations:
 
     def residual(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
         """C(y, w)."""
-        values = [*unknown, *numbers]
+        values = ordered(unknown, numbers)
         return [value_of(row, values) for row in self.rows]
 
     def jacobian(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[tuple[int, int, Scalar]]:
         """dC/dy as (row, column, entry), zeros left out."""
-        values = [*unknown, *numbers]
+        values = ordered(unknown, numbers)
         return [(row, column, value_of(terms, values)) for row, column, terms in self.entries]
 
     def matrix(self, unknown: Sequence[arb], numbers: Sequence[arb]) -> arb_mat:
@@ -56,7 +56,7 @@ class Equations:
     def _bending(self) -> list[tuple[int, int, Terms]]:
         """Of the entries the terms that y changes."""
         bending = (
-            (i, j, tuple(term for term in terms if term[0] and term[0][0] < self.size))
+            (i, j, tuple(term for term in terms if term[0] and term[0][0] >= 0))
             for i, j, terms in self.entries
         )
         return [entry for entry in bending if entry[2]]
@@ -91,17 +91,18 @@ def equations_in(
         number: a fraction in that kind.
     """
 
-    def terms(one: Polynomial) -> Terms:
-        return tuple((m, number(one.terms[m])) for m in sorted(one.terms, key=lambda m: -len(m)))
+    def terms(one: Scalar) -> Terms:
+        found = polynomial(one).terms
+        return tuple((m, number(found[m])) for m in sorted(found, key=lambda m: -len(m)))
 
-    chosen = [mechanism.rows[row] for row in rows]
+    chosen = [mechanism.rows[row][1] for row in rows]
     return Equations(
         size=mechanism.size,
         rows=tuple(terms(row) for row in chosen),
         entries=tuple(
             (i, j, terms(row.derivative(j)))
             for i, row in enumerate(chosen)
-            for j in sorted({s for m in row.terms for s in m if s < mechanism.size})
+            for j in sorted({s for m in row.terms for s in m if s >= 0})
         ),
         places={name: each(terms, place) for name, place in mechanism.places.items()},
         frames={name: (each(terms, u), each(terms, v)) for name, (u, v) in mechanism.frames.items()},

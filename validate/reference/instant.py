@@ -18,6 +18,7 @@ from validate.reference.jet import part_of
 from validate.reference.kinematics import body_turns, inverse_jacobian, unknown_jets
 from validate.reference.krawczyk import newton
 from validate.reference.loads import forces_at
+from validate.reference.polynomial import ordered
 from validate.reference.vectors import Vector, each, plus, times
 
 Triple = tuple[Fraction, Fraction, Fraction]
@@ -202,16 +203,17 @@ def _require_others(design: Design, enclosure: Sequence[arb], known: Known, leas
     Raises:
         NoReferenceError: one does not hold.
     """
-    mechanism, values = design.mechanism, [*enclosure, *known.numbers]
-    for i in set(range(len(mechanism.rows))) - set(design.chosen):
-        missed = mechanism.rows[i].at(values, as_ball)
+    values = ordered(enclosure, known.numbers)
+    for i in set(range(len(design.mechanism.rows))) - set(design.chosen):
+        name, row = design.mechanism.rows[i]
+        missed = row.at(values, as_ball)
         if not missed.contains(0):
             raise NoReferenceError(
-                f"the row {mechanism.names[i]!r}, which depends on the others in the drawing, is violated "
+                f"the row {name!r}, which depends on the others in the drawing, is violated "
                 f"here by {missed.str(6)}, needed 0; the mechanism is locked, or not drawn exactly enough"
             )
         if not missed.abs_upper() < least:
-            raise NotDecidedError(f"the row {mechanism.names[i]!r}", missed, least)
+            raise NotDecidedError(f"the row {name!r}", missed, least)
 
 
 def _motion(

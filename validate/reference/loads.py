@@ -19,7 +19,7 @@ equations are those of the mechanism with rows for every joint and slide.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
@@ -27,8 +27,8 @@ from itertools import combinations
 from flint import arb, ctx
 
 from validate.reference.car_data import RADIUS
-from validate.reference.compiler import CHASSIS, at
 from validate.reference.design import Design, Known, ball_vector
+from validate.reference.drives import compiled
 from validate.reference.effects.at_pose import car_at, drawn_car, drivers, provided
 from validate.reference.effects.car import DAMPER, KNUCKLE, WHEEL
 from validate.reference.effects.effect import NEEDS, TRAVEL
@@ -37,7 +37,7 @@ from validate.reference.exact import as_ball
 from validate.reference.jet import Dual, slope_of
 from validate.reference.kinematics import body_rates
 from validate.reference.krawczyk import column
-from validate.reference.mechanism import Mechanism, compiled
+from validate.reference.mechanism import CHASSIS, Mechanism, at
 from validate.reference.vectors import Vector, cross, dot, each, length, minus, plus, times
 
 ROD_FORCE, JOINT_FORCE, HINGE_THRUST = "rod_force", "joint_force", "hinge_thrust"
@@ -117,7 +117,7 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
         if len(points) == 2:
             (other,) = (point for point in points if point != met)
             row, *sides = mechanism.closing[other]
-            one, two = (at(side, [*unknown, *numbers], as_ball) for side in sides)
+            one, two = (at(side, unknown, as_ball) for side in sides)
             pulls[other] = chassis.turned(
                 times(plus(times(one, solved[row]), times(two, solved[row + 1])), sense)
             )
@@ -141,7 +141,7 @@ def _lacking(design: Design) -> str:
     """What forces need and the car does not have, in words; empty if they can be had."""
     rows = set(range(len(design.mechanism.rows))) - set(design.chosen)
     if rows:
-        twice = ", ".join(dict.fromkeys(design.mechanism.names[row] for row in sorted(rows)))
+        twice = ", ".join(dict.fromkeys(design.mechanism.rows[row][0] for row in sorted(rows)))
         return f"rows that do not depend on each other, as these do: {twice}"
     for prefix in design.corners:
         has = provided(design, prefix)
@@ -156,12 +156,11 @@ def _lacking(design: Design) -> str:
 @lru_cache(maxsize=64)
 def _held(design: Design) -> Mechanism:
     """The mechanism with rows for all its joints, and dampers held for the inputs that move the wheels."""
-    free = compiled(design.plain, design.table, design.unit, hangs=False)
-    rows = list(free.rows)
-    for row, ends in _dampers(design, free).values():
-        apart = minus(*(free.places[end] for end in ends))
-        rows[row] = dot(apart, apart)
-    return replace(free, rows=tuple(rows))
+    held = compiled(design.plain, design.table, design.unit, hangs=False)
+    for name, (row, ends) in _dampers(design, held).items():
+        apart = minus(*(held.places[end] for end in ends))
+        held.rows[row] = name, dot(apart, apart)
+    return held
 
 
 def _dampers(design: Design, mechanism: Mechanism) -> dict[str, tuple[int, Sequence[str]]]:

@@ -1,31 +1,87 @@
-"""A mechanism's description, compiled: equations and inputs in their final numbering."""
+r"""A mechanism's description, compiled: its equations C(y, w) = 0, every one at most quadratic.
+
+The unknowns y are, in local coordinates (see `design`) and relative to the chassis:
+
+    of a body hinged on the chassis     c, s      it is turned about n, the line of its two points there:
+                                                  v -> n (n.v)/n^2 + c (v - n (n.v)/n^2) + s (n x v)
+    of any other body                   c1 c2 c3  the columns of its matrix R,
+    and if no point of it is placed yet p         the place of its first point
+    of a point on a slide               s         where on the line, p = through + s line
+    of a free point                     p         where it is, unless a slide of the chassis says so
+    of a contact height, or an angle between two moving bodies, one or two numbers more: see `drives`
+
+and the rows are
+
+    n^2 s^2 + c^2 = 1,  ci . cj = 1 if i = j else 0      a body turns and does not deform
+    p = p'                                               a point of two bodies is one point, three rows
+    R u . (p - p') = R v . (p - p') = 0                  the second point of a hinge, two rows; u, v across it
+    |a - b|^2 = d^2                                      a rod
+    p = through + s R line                               a point on a slide; if it may not turn, of u and v
+                                                         across the line  R u . R' v - R v . R' u = 0
+    and those of the inputs: see `drives`
+
+A body that shares a point with one before it hangs on that point, so its place is no unknown, unless every
+joint is to have its rows (see `loads`). The numbers w are what the inputs stand for. Everything that the
+drawing gives is exact.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
+from itertools import combinations
 from typing import Any
 
 from flint import arb
 
-from validate.reference.compiler import Compiler, Exact, Reader, Table, at
-from validate.reference.drives import Drive, drive_of
+from validate.reference.directions import directions
 from validate.reference.errors import BadInputError
 from validate.reference.jet import Jet
-from validate.reference.polynomial import Polynomial, polynomial
-from validate.reference.vectors import Scalar, Vector, cross, dot, each
+from validate.reference.polynomial import Polynomial, ordered, polynomial
+from validate.reference.vectors import Scalar, Vector, across, cross, dot, each, minus, near_one, plus, times
+
+CHASSIS = "chassis"
+Table = Mapping[str, Vector]
+Exact = Callable[[Fraction], Scalar]
+Reader = Callable[[Table, Sequence[Scalar], Exact, Sequence[Scalar]], Sequence[Scalar]]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class Drive:
+    """An input of a mechanism.
+
+    Attributes:
+        numbers: the numbers w of the values of all inputs, rad or mm, as jets of any kind of number, and of
+            what makes a fraction one of that kind.
+        drawn: these numbers as drawn.
+        input_of: the input itself, rad or mm, of its numbers; of an angle from the drawing the least one.
+        required: whether it must be given; else it rests at zero.
+        turns: whether it is an angle of any number of turns.
+    """
+
+    numbers: Callable[[Mapping[str, Jet], Exact], Sequence[Jet]]
+    drawn: Callable[[], Sequence[arb]]
+    input_of: Callable[[Sequence[arb]], arb]
+    required: bool = True
+    turns: bool = False
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body in the equations: where a vector fixed in it points to, and where a point of it is."""
+
+    turned: Callable[[Vector], Vector]
+    place: Callable[[str], Vector]
+
+
 class Mechanism:
     """The compiled description.
 
     Attributes:
-        size: unknowns.
-        rows: C(y, w); symbols from `size` on are the numbers w.
-        names: of every row, what it says.
-        places: of every point, relative to the chassis.
+        size: unknowns, y0 and so on; symbols of the numbers w are -1, -2 and so on, see `polynomial`.
+        rows: C(y, w), each with what it says.
         frames: of every moving body two vectors fixed in it and not parallel.
         triples: the columns of every matrix R; an assembly's are right-handed.
         positive: products that are positive in an assembly: where not, a hinge is mounted the wrong way round
@@ -39,27 +95,55 @@ class Mechanism:
         sliding: of each point on a slide the first of the three rows that say where it is on the line.
         closing: of the second point of each hinge that has such rows the first of the two more rows that make
             it one, and what each of them takes the product of place - place with.
+        lines: of each slide where its points are on the line, its direction as drawn, and the square of its
+            length.
     """
 
-    size: int
-    rows: tuple[Polynomial, ...]
-    names: tuple[str, ...]
-    places: Mapping[str, Vector]
-    frames: Mapping[str, tuple[Vector, Vector]]
-    triples: tuple[tuple[Vector, Vector, Vector], ...]
-    positive: tuple[Polynomial, ...]
-    readers: tuple[Reader, ...]
-    drives: Mapping[str, Drive]
-    driving: Mapping[str, int]
-    rods: Mapping[str, int]
-    joints: Mapping[str, tuple[str, int]]
-    sliding: Mapping[str, int]
-    closing: Mapping[str, tuple[int, Vector, Vector]]
+    def __init__(self, plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool = True) -> None:
+        """Take over bodies, slides and rods, their points from `table`, local.
 
-    @property
+        Args:
+            hangs: whether a body hangs on a point or a hinge of one before it, and a free point on a line of
+                the chassis; else each joint and slide has its rows.
+        """
+        self.plain, self.table, self.unit, self.hangs = plain, table, unit, hangs
+        self.size, self.count = 0, 0
+        self.rows: list[tuple[str, Polynomial]] = []
+        self.readers: list[Reader] = []
+        self.positive: list[Polynomial] = []
+        self.triples: list[tuple[Vector, Vector, Vector]] = []
+        self.frames: dict[str, tuple[Vector, Vector]] = {}
+        self.drives: dict[str, Drive] = {}
+        self.driving: dict[str, int] = {}
+        self.rods: dict[str, int] = {}
+        self.joints: dict[str, tuple[str, int]] = {}
+        self.closing: dict[str, tuple[int, Vector, Vector]] = {}
+        self.sliding: dict[str, int] = {}
+        self.lines: dict[str, tuple[list[Polynomial], Vector, Fraction]] = {}
+        self.free: dict[str, Vector] = {}
+        self.bodies = {CHASSIS: Body(lambda v: v, lambda name: self.table[name])}
+        self.holder = dict.fromkeys(plain["bodies"][CHASSIS], CHASSIS)
+        for name in self._in_order():
+            self._add_body(name)
+        for name, slide in plain["slides"].items():
+            self._add_slide(name, slide)
+        for name, ends in plain["rods"].items():
+            gap = minus(*(self.place(end) for end in ends))
+            drawn = minus(*(table[end] for end in ends))
+            if dot(drawn, drawn) == 0:
+                raise BadInputError(f"the length of {name}", 0, "more than 0")
+            self.rods[name] = len(self.rows)
+            self.row(name, dot(gap, gap) - dot(drawn, drawn))
+
+    @cached_property
+    def places(self) -> dict[str, Vector]:
+        """Of every point, relative to the chassis."""
+        return {name: self.place(name) for name in self.table}
+
+    @cached_property
     def fixed(self) -> frozenset[str]:
         """The points of the chassis."""
-        constant = ((n, all(not m for x in p for m in x.terms)) for n, p in self.places.items())
+        constant = ((n, all(not m for x in p for m in polynomial(x).terms)) for n, p in self.places.items())
         return frozenset(name for name, rests in constant if rests)
 
     def numbers(self, inputs: Mapping[str, Jet], exact: Exact) -> list[Jet]:
@@ -84,61 +168,222 @@ class Mechanism:
 
     def handed(self, unknown: Sequence[Scalar], numbers: Sequence[Scalar], exact: Exact) -> list[Scalar]:
         """Numbers that are all positive in an assembly, and one of them not in a zero that is none."""
-        values = [*unknown, *numbers]
-        found = [one.at(values, exact) for one in self.positive]
+        values = ordered(unknown, numbers)
+        found = [polynomial(one).at(values, exact) for one in self.positive]
         for columns in self.triples:
             a, b, c = (at(column, values, exact) for column in columns)
             found.append(dot(cross(a, b), c))
         return found
 
+    def unknowns(self, count: int, read: Reader) -> list[Polynomial]:
+        """New ones; `read` gives their values from points, the unknowns before them and the numbers w."""
+        first = self.size
+        self.size += count
+        self.readers.append(read)
+        return [Polynomial.symbol(first + i) for i in range(count)]
 
-def compiled(plain: Mapping[str, Any], table: Table, unit: Fraction, hangs: bool = True) -> Mechanism:
-    """The equations of a description, its points taken from `table`, local.
+    def number(self) -> Polynomial:
+        """A new number w."""
+        self.count += 1
+        return Polynomial.symbol(-self.count)
 
-    Args:
-        hangs: whether a body hangs on a point or a hinge of one before it, and a free point on a line of the
-            chassis; else each joint and slide has its rows.
-    Raises:
-        BadInputError: something in the description cannot be.
-    """
-    compiler = Compiler(plain, table, unit, hangs)
-    compiler.add_parts()
-    drives, driving = {}, {}
-    for name, spec in plain["inputs"].items():
-        if "moves" not in spec and "turns" not in spec:
-            drives[name] = drive_of(compiler, name, spec)
-            driving[name] = len(compiler.rows) - 1
-    for name in compiler.table:
-        if name not in compiler.holder and name not in compiler.free:
-            raise BadInputError(f"points.{name}", "in no body, rod or slide", "a point of one of them")
-    size = compiler.size
+    def row(self, name: str, row: Scalar) -> None:
+        """One equation: what is named is 0."""
+        self.rows.append((name, polynomial(row)))
 
-    def final(vector: Vector) -> Vector:
-        return each(lambda one: _final(one, size), vector)
+    def _meet(self, name: str, one: Vector, other: Vector) -> None:
+        """Two places are one: three rows."""
+        for apart in minus(one, other):
+            self.row(name, apart)
 
-    return Mechanism(
-        size=size,
-        rows=tuple(_final(row, size) for _, row in compiler.rows),
-        names=tuple(name for name, _ in compiler.rows),
-        places={name: final(compiler.place(name)) for name in compiler.table},
-        frames={body: (final(u), final(v)) for body, (u, v) in compiler.frames.items()},
-        triples=tuple((final(a), final(b), final(c)) for a, b, c in compiler.triples),
-        positive=tuple(_final(one, size) for one in compiler.positive),
-        readers=tuple(compiler.readers),
-        drives=drives,
-        driving=driving,
-        rods=compiler.rods,
-        joints=compiler.joints,
-        sliding=compiler.sliding,
-        closing={point: (row, final(u), final(v)) for point, (row, u, v) in compiler.closing.items()},
-    )
+    def place(self, point: str) -> Vector:
+        """Where a point is."""
+        if point in self.holder:
+            return self.bodies[self.holder[point]].place(point)
+        if point not in self.free:
+            if point not in self.table:
+                raise BadInputError("a point", point, f"one of {', '.join(self.table)}")
+            x, y, z = self.unknowns(3, lambda points, *_: points[point])
+            self.free[point] = (x, y, z)
+        return self.free[point]
+
+    def _in_order(self) -> Iterator[str]:
+        """The moving bodies, each after those that it hangs on."""
+        left = {name: set(points) for name, points in self.plain["bodies"].items() if name != CHASSIS}
+        chassis = set(self.plain["bodies"][CHASSIS])
+        placed = set(chassis)
+        while left:
+            name = max(left, key=lambda n: (min(len(left[n] & chassis), 2), bool(left[n] & placed)))
+            placed |= left.pop(name)
+            yield name
+
+    def _add_body(self, name: str) -> None:
+        points: list[str] = self.plain["bodies"][name]
+        shared = {other: [p for p in points if p in self.plain["bodies"][other]] for other in self.bodies}
+        if any(len(both) > 2 for both in shared.values()):
+            raise BadInputError(f"the body {name}", "three points with another body", "at most two")
+        # A hinge is told by both its points: bodies with two come first.
+        ties = sorted(((o, both) for o, both in shared.items() if both), key=lambda tie: -len(tie[1]))
+        if len(shared[CHASSIS]) == 2 and self.hangs:
+            tied = set(shared[CHASSIS])
+            body = self._hinged(name, points, *shared[CHASSIS])
+        else:
+            hung = ties[0][1][0] if ties and self.hangs else None
+            base = self.bodies[ties[0][0]].place(hung) if hung else None
+            tied = {hung} if hung else set()
+            body = self._loose(name, points, hung or points[0], base)
+        self.bodies[name] = body
+        for other, both in ties:
+            for i, point in enumerate(both):
+                if point in tied:
+                    continue
+                tied.add(point)
+                place, there = body.place(point), self.bodies[other].place(point)
+                if i == 0:
+                    self.joints[point] = name, len(self.rows)
+                    self._meet(f"{point} of {name} and {other}", place, there)
+                else:
+                    self._close_hinge(name, other, both, minus(place, there))
+        for point in points:
+            self.holder.setdefault(point, name)
+
+    def _close_hinge(self, name: str, other: str, both: Sequence[str], apart: Vector) -> None:
+        axis = minus(self.table[both[1]], self.table[both[0]])
+        if dot(axis, axis) == 0:
+            raise BadInputError(f"the hinge of {name} and {other}", "both points in one place", "a line")
+        first, second = (self.bodies[other].turned(side) for side in across(axis))
+        self.closing[both[1]] = len(self.rows), first, second
+        for side in (first, second):
+            self.row(f"hinge of {name} and {other}", dot(side, apart))
+        self.positive.append(dot(self.bodies[other].turned(axis), self.bodies[name].turned(axis)))
+
+    def _hinged(self, name: str, points: Sequence[str], a: str, b: str) -> Body:
+        """A body on a hinge of the chassis."""
+        n = near_one(minus(self.table[b], self.table[a]))
+        if n is None:
+            raise BadInputError(f"the hinge of {name}", f"{a} and {b} in one place", "a line")
+        nn, start = dot(n, n), self.table[a]
+
+        def beside(point: str) -> Vector:
+            return cross(n, minus(self.table[point], start))
+
+        seen = max(points, key=lambda point: float(dot(beside(point), beside(point))))
+        g = beside(seen)
+        gg = dot(g, g)
+        if gg == 0:
+            raise BadInputError(f"the points of {name}", "all on one line", "a point beside the hinge")
+        h = times(cross(g, n), Fraction(1) / nn)  # from the hinge to the point seen, square to it
+
+        cosine, sine = times(h, 1 / dot(h, h)), times(g, 1 / gg)
+
+        def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
+            r = minus(points[seen], points[a])
+            return [dot(r, each(exact, cosine)), dot(r, each(exact, sine))]
+
+        c, s = self.unknowns(2, read)
+        self.row(f"turn of {name}", c * c + s * s * nn - 1)
+
+        def turned(v: Vector) -> Vector:
+            along = times(n, dot(n, v) / nn)
+            return plus(along, plus(times(minus(v, along), c), times(cross(n, v), s)))
+
+        self.frames[name] = (turned(h), turned(n))
+        return Body(turned, lambda point: plus(start, turned(minus(self.table[point], start))))
+
+    def _loose(self, name: str, points: Sequence[str], base: str, origin: Vector | None) -> Body:
+        """A body that hangs on a point, or on none."""
+        ends = {(p, q): minus(self.table[p], self.table[q]) for p, q in combinations(points, 2)}
+        (i, j), (k, m) = max(combinations(ends, 2), key=lambda pair: _spread(ends[pair[0]], ends[pair[1]]))
+        one, two = ends[i, j], ends[k, m]
+        normal = cross(one, two)
+        area = dot(normal, normal)
+        if area == 0:
+            raise BadInputError(f"the points of {name}", "all on one line", "a triangle")
+        # Rows that give 1 with one, two and the normal, each 0 with the others.
+        duals = [times(g, 1 / area) for g in (cross(two, normal), cross(normal, one), normal)]
+
+        def read(points: Table, _: Sequence[Scalar], exact: Exact, *__: object) -> list[Scalar]:
+            a, b = minus(points[i], points[j]), minus(points[k], points[m])
+            rows, g = tuple(zip(a, b, cross(a, b), strict=True)), [each(exact, dual) for dual in duals]
+            return [dot(row, column) for column in zip(*g, strict=True) for row in rows]
+
+        y = self.unknowns(9, read)
+        c1, c2, c3 = columns = ((y[0], y[1], y[2]), (y[3], y[4], y[5]), (y[6], y[7], y[8]))
+        for p in range(3):
+            for q in range(p, 3):
+                self.row(f"turn of {name}", dot(columns[p], columns[q]) - int(p == q))
+        self.triples.append(columns)
+        if origin is None:
+            px, py, pz = self.unknowns(3, lambda points, *_: points[base])
+            origin = (px, py, pz)
+
+        def turned(v: Vector) -> Vector:
+            return plus(plus(times(c1, v[0]), times(c2, v[1])), times(c3, v[2]))
+
+        self.frames[name] = (c1, c2)
+        return Body(turned, lambda point: plus(origin, turned(minus(self.table[point], self.table[base]))))
+
+    def _add_slide(self, name: str, slide: Mapping[str, Any]) -> None:
+        """Points on a line of a body."""
+        body, through = slide["body"], slide["through"]
+        if through not in self.plain["bodies"][body]:
+            raise BadInputError(f"slides.{name}: through", through, f"a point of {body}")
+        along = directions(self.plain).get(slide["along"])
+        # A direction of the car is a unit vector to its rounding; a line towards a point is as long as it is.
+        squared = Fraction(1)
+        if along is None:
+            along = near_one(minus(self.table[slide["along"]], self.table[through]))
+            if along is None:
+                raise BadInputError(f"slides.{name}: along", f"{slide['along']} in {through}", "a line")
+            squared = dot(along, along)
+        line, start = self.bodies[body].turned(along), self.bodies[body].place(through)
+        shares = [self._on_line(name, point, body, through, along, line, start) for point in slide["points"]]
+        self.lines[name] = (shares, along, squared)
+        if not slide["turns"]:
+            self._hold(name, slide, along)
+
+    def _on_line(
+        self, name: str, point: str, body: str, through: str, along: Vector, line: Vector, start: Vector
+    ) -> Polynomial:
+        shorter = times(line, 1 / dot(along, along))
+
+        def read(points: Table, unknown: Sequence[Scalar], exact: Exact, *_: object) -> list[Scalar]:
+            now = each(exact, shorter) if body == CHASSIS else at(shorter, unknown, exact)
+            return [dot(minus(points[point], points[through]), now)]
+
+        (share,) = self.unknowns(1, read)
+        there = plus(start, times(line, share))
+        if self.hangs and body == CHASSIS and point not in self.holder and point not in self.free:
+            self.free[point] = there  # its place needs no unknowns besides
+        else:
+            self.sliding[point] = len(self.rows)
+            self._meet(f"{point} on {name}", self.place(point), there)
+        return share
+
+    def _hold(self, name: str, slide: Mapping[str, Any], along: Vector) -> None:
+        """A sliding joint that may not turn."""
+        one = self.bodies[slide["body"]]
+        points = set(slide["points"])
+        holders = [b for b in self.bodies if b != slide["body"] and points <= set(self.plain["bodies"][b])]
+        if not holders:
+            raise BadInputError(f"slides.{name}: turns", False, "points of one other body")
+        u, v = across(along)
+        other = self.bodies[holders[0]]
+        # The axis of the turn from the one body to the other has no component along the line: what is drawn
+        # off it is turned onto it by the smallest rotation.
+        self.row(
+            f"turn of {name}",
+            dot(one.turned(u), other.turned(v)) - dot(one.turned(v), other.turned(u)),
+        )
+        self.positive.append(dot(one.turned(u), other.turned(u)))
 
 
-def _final(one: Scalar, size: int) -> Polynomial:
-    """With the symbols of the numbers behind the unknowns."""
-    terms = {
-        tuple(sorted(s if s >= 0 else size - 1 - s for s in monomial)): coefficient
-        for monomial, coefficient in polynomial(one).terms.items()
-        if coefficient
-    }
-    return Polynomial(terms)
+def at(vector: Vector, values: Sequence[Scalar], exact: Exact) -> Vector:
+    """The values of a vector of polynomials."""
+    return each(lambda one: polynomial(one).at(values, exact), vector)
+
+
+def _spread(k: Vector, m: Vector) -> float:
+    """|k x m|^2 / (|k|^2 + |m|^2): errors of two vectors turn a body the less the greater this is."""
+    normal = cross(k, m)
+    return float(dot(normal, normal)) / (float(dot(k, k) + dot(m, m)) or 1.0)

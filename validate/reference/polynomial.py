@@ -1,4 +1,7 @@
-"""Exact polynomials of at most second degree: the equations are written with them once, as vector algebra."""
+"""Exact polynomials of at most second degree: the equations are written with them once, as vector algebra.
+
+The unknowns are the symbols 0, 1 and so on, the numbers w of the inputs are -1, -2 and so on.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ class Polynomial:
         terms = dict(self.terms)
         for monomial, coefficient in polynomial(other).terms.items():
             terms[monomial] = terms.get(monomial, Fraction(0)) + coefficient
-        return Polynomial(terms)
+        return _without_zeros(terms)
 
     def __mul__(self, other: Scalar) -> Polynomial:
         terms: dict[Monomial, Fraction] = {}
@@ -36,7 +39,7 @@ class Polynomial:
                     raise ValueError("a product of more than two symbols: no row may be more than quadratic")
                 monomial = tuple(sorted(one + two))
                 terms[monomial] = terms.get(monomial, Fraction(0)) + a * b
-        return Polynomial(terms)
+        return _without_zeros(terms)
 
     def __neg__(self) -> Polynomial:
         return Polynomial({monomial: -coefficient for monomial, coefficient in self.terms.items()})
@@ -71,6 +74,11 @@ def polynomial(number: Scalar) -> Polynomial:
     return number if isinstance(number, Polynomial) else Polynomial({(): Fraction(number)} if number else {})
 
 
+def ordered(unknown: Sequence[Scalar], numbers: Sequence[Scalar]) -> list[Scalar]:
+    """Values such that each stands where its symbol says, of w counted from the end."""
+    return [*unknown, *reversed(numbers)]
+
+
 def value_of(terms: Sequence[tuple[Monomial, Scalar]], values: Sequence[Scalar]) -> Scalar:
     """The sum of the terms, a constant last; of the kind of the values even where no symbol is in it."""
     total: Scalar = None
@@ -83,3 +91,7 @@ def value_of(terms: Sequence[tuple[Monomial, Scalar]], values: Sequence[Scalar])
             term = coefficient if total is not None else values[0] * 0 + coefficient
         total = term if total is None else total + term
     return values[0] * 0 if total is None else total
+
+
+def _without_zeros(terms: Mapping[Monomial, Fraction]) -> Polynomial:
+    return Polynomial({monomial: coefficient for monomial, coefficient in terms.items() if coefficient})
