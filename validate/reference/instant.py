@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from flint import arb
 
@@ -124,10 +125,9 @@ def prove_instant(
     _require_others(design, enclosure, still, least)
     inverse = inverse_jacobian(enclosure, still)
     solved = unknown_jets(enclosure, known, inverse)
-    vectors = _motion(design, known.points_of(solved), body_turns(solved, known), known.derivatives)
-    further = [derivative_called(order) for order in range(len(DERIVATIVES), known.derivatives + 1)]
-    bounds = {quantity: _largest_radius(of.values()) for quantity, of in vectors.items()}
-    for quantity, scale in _scales(vectors, unit).items():
+    found = _motion(design, known.points_of(solved), body_turns(solved, known), known.derivatives)
+    bounds = {quantity: _largest_radius(of) for quantity, of in found.items()}
+    for quantity, scale in _scales(found, unit).items():
         if not bounds[quantity] <= scale * least:
             raise NotDecidedError(f"the error bound of {quantity}", bounds[quantity], scale * least)
 
@@ -141,32 +141,26 @@ def prove_instant(
         raise NotDecidedError("the answer well inside its box (mm)", shift, as_ball(radius / 2))
 
     numbers = {number.name: number for number in numbers_of(design, effects)}
-    told = {
+    evaluated = effects_at(design, known, enclosure, inverse, numbers.values())
+    found["effects"] = {
         name: ball
-        for name, ball in effects_at(design, known, enclosure, inverse, numbers.values()).items()
+        for name, ball in evaluated.items()
         if ball.rad() < unit ** numbers[name].effect.power * least
     }
-    bounds["effects"] = max((ball.rad() for ball in told.values()), default=arb(0))
     left_out = {
         name: f"needs {number.lacks}" if number.lacks else UNDEFINED
         for name, number in numbers.items()
-        if name not in told
+        if name not in found["effects"]
     }
-    statics = forces_at(design, known, enclosure, digits)
-    if design.loads:
-        bounds["rod_force"] = max((ball.rad() for ball in statics.rods.values()), default=arb(0))
-        bounds["joint_force"] = _largest_radius(statics.joints.values())
-        bounds["hinge_thrust"] = max((ball.rad() for ball in statics.thrusts.values()), default=arb(0))
+    forces, no_forces = forces_at(design, known, enclosure, digits)
+    told = (found | forces).items() if design.loads else found.items()
+    further = [derivative_called(order) for order in range(len(DERIVATIVES), known.derivatives + 1)]
     return Instant(
-        **{quantity: _centres(of) for quantity, of in vectors.items() if quantity not in further},
-        higher=tuple(_centres(vectors[quantity]) for quantity in further),
-        effects={name: centre_of(ball) for name, ball in told.items()},
-        rod_force={name: centre_of(ball) for name, ball in statics.rods.items()},
-        joint_force=_centres(statics.joints),
-        hinge_thrust={name: centre_of(ball) for name, ball in statics.thrusts.items()},
-        left_out={**left_out, **statics.left_out},
+        **{quantity: _centres(of) for quantity, of in (found | forces).items() if quantity not in further},
+        higher=tuple(_centres(found[quantity]) for quantity in further),
+        left_out={**left_out, **no_forces},
         radius=radius,
-        error_bound={quantity: centre_of(bound) for quantity, bound in bounds.items()},
+        error_bound={quantity: centre_of(_largest_radius(of)) for quantity, of in told},
         condition=certificate.condition,
         digits=working,
     )
@@ -217,23 +211,17 @@ def _require_others(design: Design, enclosure: Sequence[arb], known: Known, leas
 
 
 def _motion(
-    design: Design,
-    points: Mapping[str, Vector],
-    turns: Mapping[str, Sequence[Vector]],
-    derivatives: int,
-) -> Mapping[str, Mapping[str, Vector]]:
+    design: Design, points: Mapping[str, Vector], turns: Mapping[str, Sequence[Vector]], derivatives: int
+) -> dict[str, Mapping[str, Any]]:
     """Positions, rates and turning in mm, s, rad."""
     unit, origin = as_ball(design.unit), ball_vector(design.origin)
-    local = {
+    found: dict[str, Mapping[str, Any]] = {
         derivative_called(order): {name: times(part_of(points[name], order), unit) for name in design.names}
         for order in range(derivatives + 1)
     }
-    found = {
-        **local,
-        "position": {name: plus(origin, place) for name, place in local["position"].items()},
-        "angular_velocity": {body: turn[0] for body, turn in turns.items()},
-        "angular_acceleration": {body: turn[1] for body, turn in turns.items()},
-    }
+    found["position"] = {name: plus(origin, place) for name, place in found["position"].items()}
+    for order, quantity in enumerate(("angular_velocity", "angular_acceleration")):
+        found[quantity] = {body: turn[order] for body, turn in turns.items()}
     if not all(x.is_finite() for of in found.values() for vector in of.values() for x in vector):
         raise NotDecidedError("a quotient with a divisor that may be 0", "not finite", "finite")
     return found
@@ -261,9 +249,11 @@ def _scales(vectors: Mapping[str, Mapping[str, Vector]], unit: arb) -> dict[str,
     return scales
 
 
-def _largest_radius(vectors: Iterable[Vector]) -> arb:
-    return max((x.rad() for vector in vectors for x in vector), default=arb(0))
+def _largest_radius(found: Mapping[str, Any]) -> arb:
+    """Of balls, or of vectors of balls."""
+    every = (x for of in found.values() for x in (of if isinstance(of, tuple) else (of,)))
+    return max((x.rad() for x in every), default=arb(0))
 
 
-def _centres(balls: Mapping[str, Vector]) -> dict[str, Triple]:
-    return {name: each(centre_of, ball) for name, ball in balls.items()}
+def _centres(found: Mapping[str, Any]) -> dict[str, Any]:
+    return {n: each(centre_of, of) if isinstance(of, tuple) else centre_of(of) for n, of in found.items()}

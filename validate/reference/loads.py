@@ -19,10 +19,10 @@ equations are those of the mechanism with rows for every joint and slide.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
+from typing import Any
 
 from flint import arb, ctx
 
@@ -38,45 +38,38 @@ from validate.reference.jet import Dual, slope_of
 from validate.reference.kinematics import body_rates
 from validate.reference.krawczyk import column
 from validate.reference.mechanism import CHASSIS, Mechanism, at
-from validate.reference.vectors import Vector, cross, dot, each, length, minus, plus, times
+from validate.reference.vectors import cross, dot, each, length, minus, plus, times
 
-ROD_FORCE, JOINT_FORCE, HINGE_THRUST = "rod_force", "joint_force", "hinge_thrust"
-
-
-@dataclass(frozen=True)
-class Statics:
-    """Forces, N, or why there are none.
-
-    Attributes:
-        rods: tension, of every rod by its name and of every damper that holds, `left.damper`.
-        joints: in the scene's axes, of every point that is a ball joint of just two bodies, or one of both
-            points of their hinge, and is on no slide: on the body of a role knuckle if it is one of them,
-            else on the one that the mechanism's file names first and that is not the chassis. Of a hinge,
-            which no input turns, what is across its line. Of every point of one body that is on one slide
-            likewise; of one of no body, which a rod pulls that is not of the slide alone, on the point.
-        thrusts: of both points of a hinge along its line, from the first point, which names it, to the
-            second, as the body lists them.
-        left_out: why, by quantity.
-    """
-
-    rods: Mapping[str, arb]
-    joints: Mapping[str, Vector]
-    thrusts: Mapping[str, arb]
-    left_out: Mapping[str, str]
+FORCES = ROD, JOINT, THRUST = ("rod_force", "joint_force", "hinge_thrust")
+Forces = dict[str, dict[str, Any]]
 
 
-def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: int) -> Statics:
-    """The forces at a pose in balls, to so many digits of the loads; none where no load is given.
+def forces_at(
+    design: Design, known: Known, enclosure: Sequence[arb], digits: int
+) -> tuple[Forces, Mapping[str, str]]:
+    """The forces at a pose, N, in balls, to so many digits of the loads; none where no load is given.
 
     Args:
         known: its rates are not looked at.
         enclosure: of the unknowns.
+    Returns:
+        By quantity and name, and why there are none by quantity. Of `FORCES`
+
+        rod_force, tension: of every rod by its name and of every damper that holds, `left.damper`.
+        joint_force, in the scene's axes: of every point that is a ball joint of just two bodies, or one of
+            both points of their hinge, and is on no slide: on the body of a role knuckle if it is one of
+            them, else on the one that the mechanism's file names first and that is not the chassis. Of a
+            hinge, which no input turns, what is across its line. Of every point of one body that is on one
+            slide likewise; of one of no body, which a rod pulls that is not of the slide alone, on the point.
+        hinge_thrust: of both points of a hinge along its line, from the first point, which names it, to the
+            second, as the body lists them.
     """
+    forces: Forces = {quantity: {} for quantity in FORCES}
     if not design.loads:
-        return Statics({}, {}, {}, {})
+        return forces, {}
     lack = _lacking(design)
     if lack:
-        return _none(f"needs {lack}")
+        return forces, dict.fromkeys(FORCES, f"needs {lack}")
     mechanism, equations, chassis = _held(design), _equations(design, ctx.prec), known.chassis.still()
     places = known.equations.points_of(enclosure)
     numbers = [jet.value for jet in known.numbers]
@@ -96,15 +89,14 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
     try:
         solved = equations.matrix(unknown, numbers).transpose().solve(column(work)).entries()
     except ZeroDivisionError:
-        return _none("cannot be proven in this pose: what holds the wheel does not hold it here")
+        why = "cannot be proven in this pose: what holds the wheel does not hold it here"
+        return forces, dict.fromkeys(FORCES, why)
 
     rods = {name: (mechanism.rods[name], ends) for name, ends in design.plain["rods"].items()}
     rods |= {f"{prefix}{DAMPER}": one for prefix, one in _dampers(design, mechanism).items()}
-    tension = {
-        name: 2 * length(minus(places[ends[0]], places[ends[1]])) * solved[row]
-        for name, (row, ends) in rods.items()
-    }
-    pulls, thrusts = dict[str, Vector](), dict[str, arb]()
+    for name, (row, ends) in rods.items():
+        forces[ROD][name] = 2 * length(minus(places[ends[0]], places[ends[1]])) * solved[row]
+    pulls = forces[JOINT]
     for point, of_line in _sliding(design).items():
         row = mechanism.sliding[point]
         pull = solved[row], solved[row + 1], solved[row + 2]
@@ -123,18 +115,15 @@ def forces_at(design: Design, known: Known, enclosure: Sequence[arb], digits: in
             )
             line = minus(places[points[1]], places[points[0]])
             along = dot(pull, line)
-            thrusts[points[0]] = along / length(line)
+            forces[THRUST][points[0]] = along / length(line)
             pull = minus(pull, times(line, along / dot(line, line)))
         pulls[met] = chassis.turned(pull)
     within = scale * as_ball(Fraction(1, 10**digits))
-    every = [*tension.values(), *thrusts.values(), *(x for pull in pulls.values() for x in pull)]
+    every = [*forces[ROD].values(), *forces[THRUST].values(), *(x for pull in pulls.values() for x in pull)]
     if not all(x.is_finite() and x.rad() <= within for x in every):
-        return _none("cannot be proven in this pose, which is all but singular under its loads")
-    return Statics(tension, pulls, thrusts, {})
-
-
-def _none(why: str) -> Statics:
-    return Statics({}, {}, {}, dict.fromkeys((ROD_FORCE, JOINT_FORCE, HINGE_THRUST), why))
+        why = "cannot be proven in this pose, which is all but singular under its loads"
+        return {quantity: {} for quantity in FORCES}, dict.fromkeys(FORCES, why)
+    return forces, {}
 
 
 def _lacking(design: Design) -> str:
