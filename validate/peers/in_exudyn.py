@@ -74,19 +74,15 @@ class InExudyn(Program):
 
     @property
     def coordinates(self) -> Array:
-        """Angles and travels."""
         return np.array(self.system.systemData.GetODE2Coordinates())
 
     def put(self, coordinates: Array) -> None:
-        """Set all joints."""
         self.system.systemData.SetODE2Coordinates(coordinates)
 
     def move(self, step: Array) -> None:
-        """Move all joints."""
         self.put(self.coordinates + step)
 
     def misses(self) -> tuple[Array, Array]:
-        """What the loops miss, and its Jacobian."""
         solver, size = self.solver, self.size
         solver.ComputeAlgebraicEquations(self.system)
         solver.SetSystemJacobian(self.nothing)
@@ -95,22 +91,18 @@ class InExudyn(Program):
         return np.asarray(solver.GetSystemResidual())[size:], jacobian[size:, :size]
 
     def places(self) -> Array:
-        """Where the points are."""
         return self._read(self.places_of)
 
     def set_rates(self, rates: Array) -> None:
-        """Set the joints' rates."""
         self.system.systemData.SetODE2Coordinates_t(rates)
 
     def apart(self, accelerations: Array) -> Array:
-        """How the sides of the loops accelerate apart."""
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
         parts = [self._read([two])[0] - self._read([one])[0] for one, two in self.ends]
         # There is no loop where each joint is driven.
         return np.concatenate([np.zeros(0), *parts])
 
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Rates and accelerations of the points and of the reported bodies' turns."""
         self.system.systemData.SetODE2Coordinates_tt(accelerations)
         first, second = (self._read(sensors) for sensors in self.moves_of)
         return first, second

@@ -52,19 +52,15 @@ class InMujoco(Program):
 
     @property
     def coordinates(self) -> Array:
-        """Angles, travels and quaternions."""
         return np.array(self.data.qpos)
 
     def put(self, coordinates: Array) -> None:
-        """Set all joints."""
         self.data.qpos[:] = coordinates
 
     def move(self, step: Array) -> None:
-        """Move all joints."""
         mujoco.mj_integratePos(self.model, self.data.qpos, step, 1.0)
 
     def misses(self) -> tuple[Array, Array]:
-        """What the loops miss, and its Jacobian."""
         model, data = self.model, self.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -72,24 +68,20 @@ class InMujoco(Program):
         return data.efc_pos, data.efc_J.reshape(data.nefc, model.nv)
 
     def places(self) -> Array:
-        """Where the points are."""
         mujoco.mj_kinematics(self.model, self.data)
         return np.asarray(self.data.site_xpos[self.sites])
 
     def set_rates(self, rates: Array) -> None:
-        """Set the joints' rates."""
         self.data.qvel[:] = rates
         mujoco.mj_comVel(self.model, self.data)
 
     def apart(self, accelerations: Array) -> Array:
-        """How the sides of the loops accelerate apart."""
         self._accelerate(accelerations)
         parts = [self._acceleration(one)[3:] - self._acceleration(two)[3:] for one, two in self.ends]
         # There is no loop where each joint is driven.
         return np.concatenate([np.zeros(0), *parts])
 
     def moving(self, accelerations: Array) -> tuple[Array, Array]:
-        """Rates and accelerations of the points and of the reported bodies' turns."""
         self._accelerate(accelerations)
         first, second = (
             [*(of(site)[3:] for site in self.sites), *(of(site)[:3] for site in self.turns)]
