@@ -1,10 +1,10 @@
 r"""How many assemblies a knuckle on its legs has, each certified, and which of them is the drawing's.
 
-Ends of paths are candidates. Of each, in balls of many digits, Newton's method finds the solution z in the
-chart where its largest number is 1, and Krawczyk's operator (see `reference.krawczyk`) proves that a box of
-complex numbers around it holds one solution and no other:
+Ends of paths are candidates. Of each, in balls of many digits, Newton's method finds the solution x + i y in
+the chart where its largest number is 1, and Krawczyk's operator (see `reference.krawczyk`) proves that a box
+around it holds one solution of the forms' real and imaginary parts and no other:
 
-    |A F(z)| + |I - A F'(box)| r < r.
+    x . Q x - y . Q y = 0,      2 x . Q y = 0.
 
 Two boxes are two solutions where x_i y_j - x_j y_i is not zero for some i, j. A box about a real middle is
 its own mirror image, and so is its one solution: it is real. That there are no other assemblies is not
@@ -13,7 +13,7 @@ proven: it rests on the paths, which are followed again from other starts until 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -26,7 +26,10 @@ from validate.assemblies.legs import forms
 from validate.extras import MissingPackage
 
 try:
-    from flint import acb, acb_mat, arb, ctx
+    from flint import acb, arb, arb_mat, ctx
+
+    from validate.reference.errors import NotDecidedError
+    from validate.reference.krawczyk import Contraction, System, column, less, middle_inverse, newton, within
 except ImportError as error:
     raise MissingPackage("validate.assemblies", error) from None
 
@@ -37,7 +40,6 @@ BITS = 300
 # Half widths of boxes: one that Newton's method in so many bits ends far inside, and one that holds the pose
 # as drawn too, which solves the forms to the rounding of their entries.
 NARROW, WIDE = "1e-40", "1e-9"
-STEPS = 8  # of Newton's method; from 1e-11 four would do
 # Runs from other starts that must find the same, and how many are tried.
 RUNS, MOST_RUNS = 2, 5
 # <e, e> of a solution that is no pose is at rounding level; of a unit vector.
@@ -106,7 +108,7 @@ def count_assemblies(mechanism: Mapping[str, Any], places: Mapping[str, Array]) 
     quadratic = forms(mechanism, places)
     found = Counted(0, (), (), ())
     with ctx.workprec(BITS):
-        matrices = [acb_mat([[acb(float(x)) for x in row] for row in form]) for form in quadratic]
+        matrices = [arb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
         while not found.agreed and len(found.candidates) < MOST_RUNS:
             ends = _poses(solve_quadratic(quadratic, len(found.candidates)))
             proven = [one for one in (_certified(matrices, end) for end in ends) if one is not None]
@@ -128,67 +130,58 @@ def _poses(ends: Complex) -> Complex:
     return np.asarray(ends[np.abs((ends[:, :4] ** 2).sum(axis=1)) > NO_TURN])
 
 
-def _certified(matrices: Sequence[acb_mat], end: Complex) -> Assembly | None:
+def _certified(matrices: Sequence[arb_mat], end: Complex) -> Assembly | None:
     """The assembly near an end of a path; None where nothing is proven."""
-    chart = int(np.argmax(np.abs(end)))
-    z = [acb(complex(number)) for number in end / end[chart]]
-    z[chart] = acb(1)
+    chart, size = int(np.argmax(np.abs(end))), len(matrices)
+    parts, near = _parts(matrices, chart), np.delete(end / end[chart], chart)
     try:
-        for _ in range(STEPS):
-            z = _stepped(matrices, z, chart)
-        mirrored = [acb(number.real) for number in z]
-        real = all(abs(number.imag) < arb(NARROW) for number in z) and _holds_one(
-            matrices, mirrored, chart, NARROW
-        )
-        centre = mirrored if real else z
-        if not (real or _holds_one(matrices, centre, chart, NARROW)):
+        centre, _ = newton(parts, [arb(float(number)) for number in (*near.real, *near.imag)])
+        mirrored = [*centre[:size], *[arb(0)] * size]
+        real = within(centre, mirrored, [arb(NARROW)] * 2 * size) and _holds_one(parts, mirrored, NARROW)
+        centre = mirrored if real else centre
+        if not (real or _holds_one(parts, centre, NARROW)):
             return None
-        box = _box(centre, chart, NARROW)
-        near = all(abs(number - (1 if i == 0 else 0)) < arb(WIDE) for i, number in enumerate(box))
-        drawn = chart == 0 and near and _holds_one(matrices, centre, chart, WIDE)
-    except ZeroDivisionError:
+        at_drawing = chart == 0 and less([abs(x) for x in centre], [arb(WIDE)] * 2 * size)
+        drawn = at_drawing and _holds_one(parts, centre, WIDE)
+    except NotDecidedError:
         return None
-    return Assembly(tuple(box), real, drawn)
+    balls = [x + arb(0, arb(NARROW)) for x in centre]
+    box = [acb(x, y) for x, y in zip(balls[:size], balls[size:], strict=True)]
+    return Assembly((*box[:chart], acb(1), *box[chart:]), real, drawn)
 
 
-def _stepped(matrices: Sequence[acb_mat], z: Sequence[acb], chart: int) -> list[acb]:
-    """A step of Newton's method in a chart, of middles."""
-    values, rows = _at(matrices, z, chart)
-    change = rows.solve(values).entries()
-    change.insert(chart, acb(0))
-    return [(number - part).mid() for number, part in zip(z, change, strict=True)]
+def _parts(matrices: Sequence[arb_mat], chart: int) -> System:
+    """The parts of the forms, in those x and then y of all numbers but the chart's, which is 1."""
+
+    def halves(values: Sequence[arb], one: int) -> Iterator[tuple[arb_mat, arb_mat, arb_mat, arb_mat]]:
+        x, y = list(values[: len(matrices)]), list(values[len(matrices) :])
+        x.insert(chart, arb(one))
+        y.insert(chart, arb(0))
+        for matrix in matrices:
+            yield column(x), column(y), matrix * column(x), matrix * column(y)
+
+    def residual(values: Sequence[arb]) -> list[arb]:
+        found = [
+            ((x.transpose() * p - y.transpose() * q)[0, 0], 2 * (x.transpose() * q)[0, 0])
+            for x, y, p, q in halves(values, 1)
+        ]
+        return [*(real for real, _ in found), *(imaginary for _, imaginary in found)]
+
+    def derivative(values: Sequence[arb], one: int = 1) -> arb_mat:
+        rows: tuple[list[list[arb]], list[list[arb]]] = ([], [])
+        for _, _, p, q in halves(values, one):
+            a, b = ([2 * x for i, x in enumerate(half.entries()) if i != chart] for half in (p, q))
+            rows[0].append([*a, *(-x for x in b)])
+            rows[1].append([*b, *a])
+        return arb_mat([*rows[0], *rows[1]])
+
+    return System(residual, derivative, lambda change: derivative(change, 0))
 
 
-def _at(matrices: Sequence[acb_mat], z: Sequence[acb], chart: int) -> tuple[acb_mat, acb_mat]:
-    """The forms, a column, and their derivatives by all numbers but the chart's."""
-    column = acb_mat([[number] for number in z])
-    halves = [(matrix * column).entries() for matrix in matrices]
-    values = [[sum((a * b for a, b in zip(z, half, strict=True)), acb(0))] for half in halves]
-    rows = [[2 * number for i, number in enumerate(half) if i != chart] for half in halves]
-    return acb_mat(values), acb_mat(rows)
-
-
-def _box(centre: Sequence[acb], chart: int, radius: str) -> list[acb]:
-    side = arb(0, arb(radius))
-    return [number if i == chart else number + acb(side, side) for i, number in enumerate(centre)]
-
-
-def _holds_one(matrices: Sequence[acb_mat], centre: Sequence[acb], chart: int, radius: str) -> bool:
+def _holds_one(parts: System, centre: Sequence[arb], radius: str) -> bool:
     """Whether a box is proven to hold one solution and no other."""
-    values, rows = _at(matrices, centre, chart)
-    inverse = acb_mat([[entry.mid() for entry in line] for line in rows.inv().tolist()])
-    _, around = _at(matrices, _box(centre, chart, radius), chart)
-    size = len(matrices)
-    unit = acb_mat([[int(i == j) for j in range(size)] for i in range(size)])
-    missed = (inverse * values).entries()
-    defect = (unit - inverse * around).tolist()
-    # A box has sides of this radius in both parts: its numbers are within the root of 2 of its centre.
-    width = arb(radius)
-    reach = 2 ** arb(0.5) * width
-    return all(
-        abs(miss).upper() + sum((abs(entry).upper() for entry in line), arb(0)) * reach < width
-        for miss, line in zip(missed, defect, strict=True)
-    )
+    width = [arb(radius)] * len(centre)
+    return less(Contraction.at(parts, centre, middle_inverse(parts.matrix(centre))).image(width), width)
 
 
 def _apart(one: Sequence[acb], other: Sequence[acb]) -> bool:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flint import acb, acb_mat, ctx
+from flint import acb, arb, arb_mat, ctx
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -118,9 +118,9 @@ def test_what_is_no_solution_is_not_certified() -> None:
     quadratic = forms(mechanism, places)
     drawn = np.eye(8)[0]
     with ctx.workprec(count.BITS):
-        matrices = [acb_mat([[acb(float(x)) for x in row] for row in form]) for form in quadratic]
-        beside = [acb(complex(x)) for x in drawn + 1e-6 * np.arange(8) * (drawn == 0.0)]
-        assert not count._holds_one(matrices, beside, 0, count.WIDE)
+        matrices = [arb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
+        beside = [*(arb(1e-6 * k) for k in range(1, 8)), *[arb(0)] * 7]
+        assert not count._holds_one(count._parts(matrices, 0), beside, count.WIDE)
         certified = count._certified(matrices, drawn.astype(complex))
         assert certified is not None
         assert certified.real
