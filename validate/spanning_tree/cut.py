@@ -30,10 +30,10 @@ from `origin` in `unit`, in which the car has a size between one and two.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations, count
+from itertools import combinations, count, repeat
 from typing import Any, Literal
 
 import numpy as np
@@ -46,7 +46,8 @@ NO_AXIS = np.zeros(3)
 TINIEST = 1e-250  # mm: the square of a smaller car is no normal number
 # Of the car: points that miss a line by this many roundings are drawn on it.
 ON_LINE = 16.0 * float(np.finfo(float).eps)
-COORDINATES = {"hinge": 1, "slide": 1, "ball": 3}
+Kind = Literal["hinge", "ball", "slide"]
+COORDINATES: Mapping[Kind, int] = {"hinge": 1, "slide": 1, "ball": 3}
 
 
 class CutError(Exception):
@@ -83,7 +84,7 @@ class Joint:
 
     body: str
     parent: str
-    kind: Literal["hinge", "ball", "slide"]
+    kind: Kind
     at: Array
     axis: Array = field(default_factory=lambda: np.zeros(3))
 
@@ -168,17 +169,21 @@ class SpanningTree:
 
 @dataclass(frozen=True)
 class _Edge:
-    """A possible joint of the tree."""
+    """A possible joint of the tree, or two in a row.
+
+    Attributes:
+        slide: whose it is, if it is one's.
+    """
 
     bodies: tuple[str, str]
-    joint: Literal["hinge", "ball", "sliding", "sliding and turning"]
+    kinds: tuple[Kind, ...]
     points: tuple[str, ...]
     axis: Array
     slide: str = ""
 
     @property
     def coordinates(self) -> int:
-        return {"hinge": 1, "sliding": 1, "sliding and turning": 2, "ball": 3}[self.joint]
+        return sum(COORDINATES[kind] for kind in self.kinds)
 
 
 class _Groups:
@@ -294,8 +299,9 @@ class _Cutter:
 
     def tree(self) -> SpanningTree:
         edges = self._edges()
-        taken = self._taken(edges)
-        self.joints = self._joints(taken)
+        self.taken = self._taken(edges)
+        self.hung = self._joints()
+        self.joints = list(self.hung)
         depth = {CHASSIS: 0}
         for joint in self.joints:
             depth[joint.body] = depth[joint.parent] + COORDINATES[joint.kind]
@@ -304,10 +310,9 @@ class _Cutter:
             for name in self.drawn
             if name in self.holders
         }
-        hung = tuple(self.joints)
-        self._close(edges, taken)
+        self._close(edges)
         for number, (name, given) in enumerate(self._drives()):
-            self._drive(f"drive {number} {name}", name, given, hung, taken)
+            self._drive(f"drive {number} {name}", name, given)
         return SpanningTree(
             joints=tuple(self.joints),
             rods=self.rods_made,
@@ -361,17 +366,18 @@ class _Cutter:
                 axis = unit_vector(self.drawn[q] - self.drawn[p], p, q)
                 for body in (one, other):
                     self._require_width(body, p, axis)
-                found.append(_Edge((one, other), "hinge", shared, axis))
+                found.append(_Edge((one, other), ("hinge",), shared, axis))
             elif shared:
-                found.append(_Edge((one, other), "ball", shared, NO_AXIS))
+                found.append(_Edge((one, other), ("ball",), shared, NO_AXIS))
         for name, slide in self.slides.items():
             axis = self._line(slide)[1]
             for body, points in self._sliding(slide).items():
-                if body in self.free.values():
-                    found.append(_Edge((slide["body"], body), "sliding", tuple(points), axis, name))
-                elif len(points) > 1 and not any(self._off(slide, p) for p in points):
-                    kind: Any = "sliding and turning" if slide["turns"] else "sliding"
-                    found.append(_Edge((slide["body"], body), kind, tuple(points), axis, name))
+                is_point = body in self.free.values()
+                kinds: tuple[Kind, ...] = (
+                    ("slide", "hinge") if slide["turns"] and not is_point else ("slide",)
+                )
+                if is_point or (len(points) > 1 and not any(self._off(slide, p) for p in points)):
+                    found.append(_Edge((slide["body"], body), kinds, tuple(points), axis, name))
         return found
 
     def _require_width(self, body: str, start: str, axis: Array) -> None:
@@ -391,24 +397,24 @@ class _Cutter:
             for drive in self.inputs.values()
             if drive.get("from") == "drawing"
         ]
-        groups, taken = _Groups(), []
-        for edge in sorted(
+        ways = sorted(
             edges, key=lambda e: (set(e.bodies) not in turning, e.coordinates, CHASSIS not in e.bodies)
-        ):
-            if groups.join(*edge.bodies):
-                taken.append(edge)
-        return taken
+        )
+        groups = _Groups()
+        return [edge for edge in ways if groups.join(*edge.bodies)]
 
-    def _joints(self, taken: list[_Edge]) -> list[Joint]:
+    def _joints(self) -> list[Joint]:
         """Joints from the chassis outwards."""
         joints: list[Joint] = []
         reached = [CHASSIS]
         while True:
             for parent in reached:
-                for edge in taken:
+                for edge in self.taken:
                     child = {edge.bodies[0]: edge.bodies[1], edge.bodies[1]: edge.bodies[0]}.get(parent)
                     if child is not None and child not in reached:
-                        joints += self._hung(edge, parent, child)
+                        names = [*(f"{child} slide" for _ in edge.kinds[1:]), child]
+                        links = zip(names, edge.kinds, repeat(edge.axis))  # as many as names
+                        joints += _in_a_row(parent, self.at[edge.points[0]], links)
                         reached.append(child)
             left = [body for body in self.bodies if body not in reached]
             if not left:
@@ -418,39 +424,20 @@ class _Cutter:
             joints += self._floating(root)
             reached.append(root)
 
-    def _hung(self, edge: _Edge, parent: str, child: str) -> list[Joint]:
-        at = self.at[edge.points[0]]
-        if edge.joint == "ball":
-            return [Joint(child, parent, "ball", at)]
-        if edge.joint == "hinge":
-            return [Joint(child, parent, "hinge", at, edge.axis)]
-        if edge.joint == "sliding":
-            return [Joint(child, parent, "slide", at, edge.axis)]
-        between = f"{child} slide"
-        return [
-            Joint(between, parent, "slide", at, edge.axis),
-            Joint(child, between, "hinge", at, edge.axis),
-        ]
-
     def _floating(self, body: str) -> list[Joint]:
-        at, parent, joints = self.at[self.bodies[body][0]], CHASSIS, []
         names = [f"{body} {axis}" for axis in "xyz"]
-        if body in self.free.values():
-            names[-1] = body
-        for name, axis in zip(names, np.eye(3), strict=True):
-            joints.append(Joint(name, parent, "slide", at, axis))
-            parent = name
-        if parent != body:
-            joints.append(Joint(body, parent, "ball", at))
-        return joints
+        names[2:] = [body] if body in self.free.values() else [names[2], body]
+        axes = [*np.eye(3), NO_AXIS][: len(names)]
+        kinds: list[Kind] = ["slide", "slide", "slide", "ball"]
+        return _in_a_row(CHASSIS, self.at[self.bodies[body][0]], zip(names, kinds, axes, strict=False))
 
     def _place(self, body: str, point: str) -> Place:
         return Place(body, self.at[point])
 
-    def _close(self, edges: list[_Edge], taken: list[_Edge]) -> None:
+    def _close(self, edges: list[_Edge]) -> None:
         """Close what the tree's joints leave open."""
         met, numbers = _Groups(), count()
-        for edge in taken:
+        for edge in self.taken:
             if not edge.slide:
                 for p in edge.points:
                     met.join((p, edge.bodies[0]), (p, edge.bodies[1]))
@@ -471,7 +458,7 @@ class _Cutter:
             axis = self._line(slide)[1]
             through = Place(slide["body"], self.at[slide["through"]])
             for body, points in self._sliding(slide).items():
-                if any(edge.slide == name and body in edge.bodies for edge in taken):
+                if self._hangs_by(name, body):
                     continue
                 for p in points[:2]:
                     if (name, p) not in on_rods:
@@ -544,15 +531,13 @@ class _Cutter:
             elif not given.keys().isdisjoint(("angle", "height", "contact", "distance")):
                 yield name, given
 
-    def _drive(
-        self, label: str, name: str, given: Mapping[str, Any], hung: Sequence[Joint], taken: list[_Edge]
-    ) -> None:
+    def _drive(self, label: str, name: str, given: Mapping[str, Any]) -> None:
         if given.get("from") == "drawing":
-            self._turn(name, given, hung)
+            self._turn(name, given)
         elif "angle" in given:
             self._angle(label, name, given)
         elif "travel" in given:
-            self._travel(label, name, given["travel"], given["per_input"], hung, taken)
+            self._travel(label, name, given["travel"], given["per_input"])
         elif "height" in given:
             p, axis = given["height"], self.directions[given.get("along", "up")]
             still = Place(CHASSIS, self.drawn[p])
@@ -566,18 +551,27 @@ class _Cutter:
             length = self._distance(q, p, f"{name} has no direction")
             self._rod(label, name, self.points[p], self.points[q], length, True)
 
-    def _turn(self, name: str, given: Mapping[str, Any], hung: Sequence[Joint]) -> None:
+    def _hangs_by(self, slide: str, body: str) -> bool:
+        """Whether a body's joint on a slide is one of the tree's."""
+        return any(edge.slide == slide and body in edge.bodies for edge in self.taken)
+
+    def _between(self, kind: Kind, one: str, other: str) -> Joint | None:
+        """The joint of the tree between two bodies, of a kind."""
+        for joint in self.hung:
+            if joint.kind == kind and {joint.body.removesuffix(" slide"), joint.parent} == {one, other}:
+                return joint
+        return None
+
+    def _turn(self, name: str, given: Mapping[str, Any]) -> None:
         body, on = given["angle"], given.get("on", CHASSIS)
-        for joint in hung:
-            if joint.kind == "hinge" and {joint.body, joint.parent} == {body, on}:
-                p, q = (p for p in self.bodies[body] if p in self.bodies[on])
-                along = float(np.sign(joint.axis @ (self.drawn[q] - self.drawn[p])))
-                sign = along if joint.body == body else -along
-                self.driven.append(Driven(name, "turn", 0.0, joint.body, sign, 0.0))
-                return
-        raise CutError(
-            name, f"turns {body} on {on}, which is no hinge of the tree", "a hinge in no closed loop"
-        )
+        joint = self._between("hinge", body, on)
+        if joint is None:
+            words = f"turns {body} on {on}, which is no hinge of the tree"
+            raise CutError(name, words, "a hinge in no closed loop")
+        p, q = (p for p in self.bodies[body] if p in self.bodies[on])
+        along = float(np.sign(joint.axis @ (self.drawn[q] - self.drawn[p])))
+        sign = along if joint.body == body else -along
+        self.driven.append(Driven(name, "turn", 0.0, joint.body, sign, 0.0))
 
     def _angle(self, label: str, name: str, given: Mapping[str, Any]) -> None:
         of, about, axis = given["of"], given["about"], self.directions[given["from"]]
@@ -586,34 +580,21 @@ class _Cutter:
         ends = self.points[of], self.points[about]
         self._height(label, name, "angle", ends, axis, CHASSIS, size, drawn)
 
-    def _travel(
-        self,
-        label: str,
-        name: str,
-        slide_name: str,
-        per_input: float,
-        hung: Sequence[Joint],
-        taken: list[_Edge],
-    ) -> None:
+    def _travel(self, label: str, name: str, slide_name: str, per_input: float) -> None:
         slide = self.slides[slide_name]
         body, p, axis = slide["body"], slide["points"][0], self._line(slide)[0]
         through, size = self.drawn[slide["through"]], float(axis @ axis)
         drawn = float((self.drawn[p] - through) @ axis) / size
         holder = next(iter(self._sliding(slide)))
-        ends = self._place(holder, p), Place(body, through)
-        if any(edge.slide == slide_name and holder in edge.bodies for edge in taken):
-            for joint in hung:
-                if joint.kind == "slide" and {joint.body.removesuffix(" slide"), joint.parent} == {
-                    holder,
-                    body,
-                }:
-                    # Its coordinate counts from the reference pose.
-                    scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
-                    start = float((ends[0].at - through) @ axis)
-                    along = scale * size, -scale * start
-                    self.driven.append(Driven(name, "length", drawn, joint.body, *along, per_input))
-                    return
-        self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
+        joint = self._between("slide", holder, body) if self._hangs_by(slide_name, holder) else None
+        if joint is None:
+            ends = self._place(holder, p), Place(body, through)
+            self._height(label, name, "length", ends, axis, body, size, drawn, per_input)
+            return
+        # Its coordinate counts from the reference pose.
+        scale = (1.0 if joint.parent == body else -1.0) / float(np.linalg.norm(axis))
+        start = float((self.at[p] - through) @ axis)
+        self.driven.append(Driven(name, "length", drawn, joint.body, scale * size, -scale * start, per_input))
 
     def _height(
         self,
@@ -680,6 +661,15 @@ class _Cutter:
         tip = Place(rim, hub + np.cross(axle, down))
         self._level(f"{label} level", name, base, up, Place(rim, hub), tip)
         return Place(rim, hub + self.radius * down)
+
+
+def _in_a_row(parent: str, at: Array, links: Iterable[tuple[str, Kind, Array]]) -> list[Joint]:
+    """Joints at one place, each on the one before it."""
+    joints: list[Joint] = []
+    for name, kind, axis in links:
+        joints.append(Joint(name, parent, kind, at, axis))
+        parent = name
+    return joints
 
 
 def car_directions(plain: Mapping[str, Any]) -> dict[str, Array]:
