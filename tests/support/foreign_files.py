@@ -67,10 +67,11 @@ FOUR_BAR = """
       <geom size="0.1"/>
       <body name="coupler" pos="0.1 0 0" euler="0 40 0">
         <joint name="knee"/>
+        <geom size="0.1"/>
         <site name="end" pos="0.3 0 0"/>
       </body>
     </body>
-    <body name="rocker" pos="0.35 0 0"><joint class="pin"/></body>
+    <body name="rocker" pos="0.35 0 0"><joint class="pin"/><geom size="0.1"/></body>
   </worldbody>
   <equality><connect body1="coupler" body2="rocker" anchor="0.3 0 0"/></equality>
   <actuator><position name="motor" joint="crank"/></actuator>

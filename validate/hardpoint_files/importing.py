@@ -120,7 +120,7 @@ def import_hardpoints(path: str | Path, **said: Any) -> Imported:
     own = NO_NAMES if choices.names is None else read_names(choices.names)
     found, text = _opened(source, choices)
     if found.form == MJCF:
-        return _whole_mechanism(source, choices, found, text)
+        return _whole_mechanism(source, choices, found)
     return _Import(source, choices, found, found.read(text, source, own.table), own).result()
 
 
@@ -158,7 +158,7 @@ def _takes_no(source: str, option: str) -> FileError:
     return FileError(source, 0, f"is a whole mechanism, for which --{option} means nothing", allowed)
 
 
-def _whole_mechanism(source: str, choices: Choices, found: Format, text: str) -> Imported:
+def _whole_mechanism(source: str, choices: Choices, found: Format) -> Imported:
     """A scene of a file that has bodies and joints of its own."""
     for one in fields(choices):
         if one.name not in ("format", "axes") and getattr(choices, one.name) != one.default:
@@ -167,7 +167,7 @@ def _whole_mechanism(source: str, choices: Choices, found: Format, text: str) ->
     by = "ours unless --axes says others" if choices.axes is None else "by --axes"
     if not axes.right_handed:
         raise FileError(source, 0, f"has left-handed axes {axes.words}", "right-handed ones")
-    made = mechanism_of(read_mjcf(text, source, axes.matrix), source)
+    made = mechanism_of(read_mjcf(source, axes.matrix), source)
     points = []
     for name, (at, words) in made.points.items():
         x, y, z = (Decimal(repr(round(float(number), DIGITS))) * LENGTHS[found.unit] for number in at)

@@ -1,39 +1,31 @@
-"""A MuJoCo model (MJCF): what of it makes a mechanism, its bodies, joints, sites, connects and welds.
+"""A MuJoCo model (MJCF), read by MuJoCo: its bodies, joints, sites, connects and welds in the home pose.
 
-Everything is placed in the scene's axes as it is in the home pose. What changes no motion (geoms, masses,
-forces, contacts, sensors, pictures, ranges of joints) is passed over; what may change it and is not known
-here is refused.
+Everything is placed in the scene's axes. What changes no motion (geoms, masses, forces, contacts, sensors,
+pictures, ranges of joints) is passed over; other equalities and bodies moved from outside are refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from xml.etree import ElementTree
-from xml.parsers import expat
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
+from validate.extras import needed
 from validate.hardpoint_files.contents import FARTHEST, short
+from validate.plain_text import shown
 from validate.tables.errors import FileError
 
 Array = NDArray[np.float64]
-Element = ElementTree.Element
-Attributes = Mapping[str, str]
 
 WORLD = "world"
 # A car has some thirty, and time grows with the third power.
 MOST_BODIES = 100
-# Elements without a say in where bodies can go, of the model and of a body.
-SECTIONS = {
-    *("compiler", "option", "size", "statistic", "visual", "default", "asset", "worldbody", "contact"),
-    *("equality", "tendon", "actuator", "sensor", "keyframe", "custom"),
-}
-IN_BODY = {"body", "joint", "freejoint", "site", "geom", "inertial", "camera", "light"}
-KINDS = ("hinge", "slide", "ball", "free")
-TURNS, OTHER_TURNS = ("quat", "axisangle", "euler"), ("xyaxes", "zaxis")
+# m and rad: a weld that is drawn apart by more is no weld as drawn; MuJoCo saves models with six digits.
+APART = 1e-5
+KINDS = ("free", "ball", "slide", "hinge")  # in the order of mjtJoint
 
 
 @dataclass(frozen=True)
@@ -64,7 +56,6 @@ class Connect:
     """Two bodies that meet at one place: where it is of each, (3,), m, and the sites that say so, if any."""
 
     name: str
-    line: int
     bodies: tuple[str, str]
     places: tuple[Array, Array]
     sites: tuple[str, ...] = ()
@@ -91,241 +82,123 @@ class Mjcf:
     facts: tuple[str, ...]
 
 
-def read_mjcf(text: str, source: str, axes: Array) -> Mjcf:
-    """Read a model.
+def read_mjcf(path: str, axes: Array) -> Mjcf:
+    """Read a model, with the files that it includes.
 
     Args:
         axes: the scene's coordinates from the file's, (3, 3).
     Raises:
-        FileError: it is no MJCF, or has what changes its motion and is not known.
+        FileError: MuJoCo does not take it, or it has what changes its motion and is not known here.
+        MissingPackage: MuJoCo is not installed.
     """
-    return _Reader(source, *_parsed(text, source)).model(axes)
-
-
-def _parsed(text: str, source: str) -> tuple[Element, dict[Element, int]]:
-    """The root of a file, and the line of each element."""
-    parser, builder, lines = expat.ParserCreate(), ElementTree.TreeBuilder(), dict[Element, int]()
-
-    def start(tag: str, attributes: dict[str, str]) -> None:
-        lines[builder.start(tag, attributes)] = parser.CurrentLineNumber
-
-    def doctype(*_: object) -> None:
-        # Its entities could be longer than any memory.
-        raise FileError(source, parser.CurrentLineNumber, "has a DOCTYPE", "MJCF without one")
-
-    parser.StartElementHandler, parser.EndElementHandler = start, builder.end
-    parser.StartDoctypeDeclHandler = doctype
+    mujoco = needed("import", "mujoco", "peers")
     try:
-        parser.Parse(text, True)
-    except expat.ExpatError as error:
-        raise FileError(source, error.lineno, f"is no XML: {expat.ErrorString(error.code)}", "MJCF") from None
-    return builder.close(), lines
+        spec = mujoco.MjSpec.from_file(path)
+        model, texts = spec.compile(), {one.name: one.data for one in spec.texts}
+    except ValueError as error:
+        problem = f"is no model that MuJoCo takes ({' '.join(str(error).split())})"
+        raise FileError(path, "", problem, "MJCF, as MuJoCo reads it") from None
+    if model.nbody > MOST_BODIES:
+        raise FileError(path, "", f"has {model.nbody - 1} bodies", f"fewer than {MOST_BODIES}")
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mujoco.mj_makeConstraint(model, data)
+    if not (np.abs([*data.site_xpos.flat, *data.xanchor.flat]) <= float(FARTHEST)).all():
+        raise FileError(path, "", "has places that are farther off than any car", f"at most {FARTHEST:g} m")
+    return _Reader(mujoco, path, model, data, axes).read(texts)
 
 
 @dataclass(frozen=True)
-class _Frame:
-    """Where a body's frame is, (3,), and its axes as columns, (3, 3)."""
+class _Reader:
+    """A compiled model with its home pose."""
 
-    at: Array
+    mujoco: Any
+    path: str
+    model: Any
+    data: Any
     axes: Array
 
-    def place(self, local: Array) -> Array:
-        return np.asarray(self.at + self.axes @ local)
+    def refuse(self, what: str, name: str, problem: str, allowed: str) -> FileError:
+        return FileError(self.path, f"{what} {short(name)}", problem, allowed)
 
+    def name(self, kind: str, number: int) -> str:
+        """An element's name, or its kind and number."""
+        own = self.mujoco.mj_id2name(self.model, getattr(self.mujoco.mjtObj, f"mjOBJ_{kind.upper()}"), number)
+        return own or f"{kind}_{number}"
 
-class _Reader:
-    """A file while it is read."""
-
-    def __init__(self, source: str, root: Element, lines: Mapping[Element, int]) -> None:
-        self.source, self.root, self.lines = source, root, lines
-        if root.tag != "mujoco":
-            raise self.refuse(root, f"is <{root.tag}>", "a whole model, <mujoco>")
-        for section in root:
-            if section.tag not in SECTIONS:
-                raise self.refuse(section, "is not known here", f"none, or {', '.join(sorted(SECTIONS))}")
-        self.compiler = {key: value for one in root.findall("compiler") for key, value in one.items()}
-        for one in root.findall("compiler"):
-            if one.get("coordinate", "local") != "local":
-                raise self.refuse(one, "has global coordinates", "local ones; MuJoCo 2.3.3 converts")
-        self.defaults = self._defaults()
-        self.bodies: dict[str, MjcfBody] = {}
-        self.frames: dict[str, _Frame] = {}
-        self.sites: dict[str, tuple[str, Array]] = {}
-        self.facts: list[str] = []
-
-    def refuse(self, element: Element, problem: str, allowed: str) -> FileError:
-        name = element.get("name")
-        called = f"<{element.tag}>" + (f" {short(name)}" if name else "")
-        return FileError(self.source, self.lines[element], f"{called} {problem}", allowed)
-
-    def model(self, axes: Array) -> Mjcf:
-        self.frames[WORLD] = _Frame(np.zeros(3), axes)
-        waiting = [
-            (world, WORLD, world.get("childclass", "main")) for world in self.root.findall("worldbody")
-        ]
-        # A list and no recursion: bodies may be nested deeper than calls may be.
-        for element, body, of_class in waiting:
-            for child in element:
-                if child.tag not in IN_BODY:
-                    raise self.refuse(child, "is not known in a body", ", ".join(sorted(IN_BODY)))
-                if child.tag == "site":
-                    given = self._given(child, of_class)
-                    if "fromto" in given:
-                        raise self.refuse(child, "has fromto", "pos")
-                    at = self.frames[body].place(self._numbers(child, given, "pos", (0.0, 0.0, 0.0)))
-                    self.sites[child.get("name", f"site_{len(self.sites)}")] = body, at
-                if child.tag == "body":
-                    inner = child.get("childclass", of_class)
-                    waiting.append((child, self._body(child, body, inner), inner))
-        connects, welds = self._equalities()
-        actuated = {
-            one.attrib["joint"]: one.get("name", one.attrib["joint"])
-            for section in self.root.findall("actuator")
-            for one in section
-            if "joint" in one.attrib
+    def read(self, texts: Mapping[str, str]) -> Mjcf:
+        model, facts = self.model, list[str]()
+        for one in range(1, model.nbody):
+            if model.body_mocapid[one] >= 0:
+                raise self.refuse("body", self.name("body", one), "is moved from outside (mocap)", "joints")
+        sites = {
+            self.name("site", one): (self.name("body", model.site_bodyid[one]), self._turned(place))
+            for one, place in enumerate(self.data.site_xpos)
         }
-        texts = {one.get("name", ""): one.get("data", "") for one in self.root.findall("custom/text")}
-        return Mjcf(self.bodies, self.sites, connects, welds, actuated, texts, tuple(self.facts))
-
-    def _defaults(self) -> dict[str, dict[str, Attributes]]:
-        """Attributes by class and element, each class with those of the classes around it."""
-        found: dict[str, dict[str, Attributes]] = {"main": {}}
-        waiting = [(one, "main", "main") for one in self.root.findall("default")]
-        for element, name, around in waiting:
-            own = {child.tag: child.attrib for child in element if child.tag != "default"}
-            base = found[around]
-            found[name] = base | {tag: {**base.get(tag, {}), **given} for tag, given in own.items()}
-            for inner in element.findall("default"):
-                waiting.append((inner, inner.get("class", ""), name))
-        return found
-
-    def _given(self, element: Element, of_class: str, tag: str = "") -> Attributes:
-        """An element's attributes, with those of its class."""
-        name = element.get("class", of_class)
-        if name not in self.defaults:
-            raise self.refuse(element, f"is of class {short(name)}", ", ".join(self.defaults))
-        return {**self.defaults[name].get(tag or element.tag, {}), **element.attrib}
-
-    def _numbers(self, element: Element, given: Attributes, key: str, default: Sequence[float]) -> Array:
-        """As many numbers as the default has."""
-        words = given[key].split() if key in given else default
-        try:
-            found = np.array([float(word) for word in words])
-        except ValueError:
-            found = np.array([np.nan])
-        if len(found) != len(default) or not (np.abs(found) <= float(FARTHEST)).all():
-            told = f"has {key} {short(given.get(key, ''))}"
-            raise self.refuse(element, told, f"{len(default)} numbers up to {FARTHEST:g}")
-        return found
-
-    def _direction(self, element: Element, given: Attributes, key: str, default: Sequence[float]) -> Array:
-        """A vector as a unit vector."""
-        found = self._numbers(element, given, key, default)
-        if not np.any(found):
-            raise self.refuse(element, f"has {key} {short(given[key])}", "a direction")
-        return _unit(found)
-
-    def _turn(self, element: Element, given: Attributes) -> Array:
-        """The axes of a frame as columns."""
-        keys = [key for key in (*TURNS, *OTHER_TURNS) if key in given]
-        if len(keys) > 1 or not {*keys} <= {*TURNS}:
-            raise self.refuse(element, f"has {' and '.join(keys)}", f"one of {', '.join(TURNS)}")
-        key = keys[0] if keys else "quat"
-        unit = 1.0 if self.compiler.get("angle", "degree") == "radian" else np.pi / 180.0
-        if key == "axisangle":
-            x, y, z, angle = self._numbers(element, given, key, (0.0, 0.0, 1.0, 0.0))
-            return np.asarray(Rotation.from_rotvec(angle * unit * _unit(np.array([x, y, z]))).as_matrix())
-        if key == "euler":
-            # Small letters are axes that turn along, for which scipy has capitals.
-            order = self.compiler.get("eulerseq", "xyz").swapcase()
-            if sorted(order.lower()) != ["x", "y", "z"] or not (order.isupper() or order.islower()):
-                raise self.refuse(element, f"turns by eulerseq {order.swapcase()}", "such as xyz or XYZ")
-            angles = self._numbers(element, given, key, (0.0, 0.0, 0.0)) * unit
-            return np.asarray(Rotation.from_euler(order, angles).as_matrix())
-        w, x, y, z = self._direction(element, given, key, (1.0, 0.0, 0.0, 0.0))
-        return np.asarray(Rotation.from_quat([x, y, z, w]).as_matrix())
-
-    def _body(self, element: Element, parent: str, of_class: str) -> str:
-        """A body with its joints; its name."""
-        name = element.get("name") or f"body_{len(self.bodies)}"
-        if element.get("mocap") == "true":
-            raise self.refuse(element, "is moved from outside (mocap)", "bodies on joints")
-        if len(self.bodies) == MOST_BODIES:
-            raise self.refuse(element, f"is one body more than {MOST_BODIES}", "fewer")
-        if name in self.frames:
-            raise self.refuse(element, "has the name of another one", "a name of its own")
-        base = self.frames[parent]
-        at = base.place(self._numbers(element, element.attrib, "pos", (0.0, 0.0, 0.0)))
-        self.frames[name] = frame = _Frame(at, base.axes @ self._turn(element, element.attrib))
-        joints = [child for child in element if child.tag in ("joint", "freejoint")]
-        found = tuple(self._joint(one, name, number, frame, of_class) for number, one in enumerate(joints))
-        self.bodies[name] = MjcfBody(name, parent, found)
-        return name
-
-    def _joint(self, element: Element, body: str, number: int, frame: _Frame, of_class: str) -> MjcfJoint:
-        free = element.tag == "freejoint"
-        given = {**element.attrib, "type": "free"} if free else self._given(element, of_class)
-        kind, name = given.get("type", "hinge"), given.get("name", f"{body}_joint_{number}")
-        if kind not in KINDS:
-            raise self.refuse(element, f"is of type {short(kind)}", ", ".join(KINDS))
-        axis = self._direction(element, given, "axis", (0.0, 0.0, 1.0)) if kind in KINDS[:2] else np.zeros(3)
-        if np.any(self._numbers(element, given, "ref", (0.0,))):
-            self.facts.append(f"joint {name} is counted from the home pose, and not from its ref")
-        at = frame.place(self._numbers(element, given, "pos", (0.0, 0.0, 0.0)))
-        return MjcfJoint(name, kind, at, frame.axes @ axis)
-
-    def _equalities(self) -> tuple[tuple[Connect, ...], tuple[tuple[str, str], ...]]:
         connects, welds = [], []
-        for number, one in enumerate(one for section in self.root.findall("equality") for one in section):
-            given = self._given(one, "main", "equality")
-            if given.get("active", "true") == "false":
-                self.facts.append(f"<{one.tag}> on line {self.lines[one]} is not active and left out")
-            elif one.tag == "connect":
-                connects.append(self._connect(one, given, number))
-            elif one.tag == "weld":
-                welds.append(self._weld(one, given))
+        for one, active in enumerate(model.eq_active0):
+            if not active:
+                facts.append(f"equality {self.name('equality', one)} is not active and left out")
+            elif model.eq_type[one] == self.mujoco.mjtEq.mjEQ_CONNECT:
+                connects.append(self._connect(one))
+            elif model.eq_type[one] == self.mujoco.mjtEq.mjEQ_WELD:
+                self._require_as_drawn(one)
+                welds.append(self._connect(one).bodies)
             else:
-                raise self.refuse(one, "is an equality that is not known here", "connect or weld")
-        return tuple(connects), tuple(welds)
+                raise self.refuse("equality", self.name("equality", one), "is not known", "connect or weld")
+        joints = [self._joint(one) for one in range(model.njnt)]
+        facts += [
+            f"joint {joint.name} is counted from the home pose, and not from its ref"
+            for joint, at in zip(joints, model.jnt_qposadr, strict=True)
+            if joint.kind in ("hinge", "slide") and model.qpos0[at]
+        ]
+        bodies_of = [
+            MjcfBody(
+                self.name("body", one),
+                self.name("body", model.body_parentid[one]),
+                tuple(joint for joint, of in zip(joints, model.jnt_bodyid, strict=True) if of == one),
+            )
+            for one in range(1, model.nbody)
+        ]
+        actuated = {
+            joints[model.actuator_trnid[one, 0]].name: self.name("actuator", one)
+            for one in range(model.nu)
+            if model.actuator_trntype[one] == self.mujoco.mjtTrn.mjTRN_JOINT
+        }
+        by_name = {body.name: body for body in bodies_of}
+        return Mjcf(by_name, sites, tuple(connects), tuple(welds), actuated, texts, tuple(map(shown, facts)))
 
-    def _connect(self, element: Element, given: Attributes, number: int) -> Connect:
-        name, line = given.get("name", ""), self.lines[element]
-        if "site1" in given:
-            sites = given["site1"], given.get("site2", "")
-            (one, first), (other, second) = (self._site(element, site) for site in sites)
-            return Connect(name or sites[0], line, (one, other), (first, second), sites)
-        one, other = self._pair(element, given)
-        if "anchor" not in given:
-            raise self.refuse(element, "has no anchor", "an anchor, or two sites")
-        at = self.frames[one].place(self._numbers(element, given, "anchor", (0.0, 0.0, 0.0)))
-        return Connect(name or f"connect_{number}", line, (one, other), (at, at))
+    def _turned(self, vector: Array) -> Array:
+        return np.asarray(self.axes @ vector)
 
-    def _site(self, element: Element, name: str) -> tuple[str, Array]:
-        if name not in self.sites:
-            raise self.refuse(element, f"names no site {short(name)}", "site1 and site2 of the model")
-        return self.sites[name]
+    def _joint(self, one: int) -> MjcfJoint:
+        kind = KINDS[self.model.jnt_type[one]]
+        axis = self._turned(self.data.xaxis[one]) if kind in ("hinge", "slide") else np.zeros(3)
+        return MjcfJoint(self.name("joint", one), kind, self._turned(self.data.xanchor[one]), axis)
 
-    def _weld(self, element: Element, given: Attributes) -> tuple[str, str]:
-        # Zeros for a quaternion stand for the home pose.
-        if np.any(self._numbers(element, given, "relpose", (0.0,) * 7)[3:]):
-            raise self.refuse(element, "has a relpose", "none: welded as in the home pose")
-        for key in ("site1", "torquescale"):
-            if key in given:
-                raise self.refuse(element, f"has {key}", "body1 and body2")
-        return self._pair(element, given)
+    def _connect(self, one: int) -> Connect:
+        """What an equality joins, and where it holds either body."""
+        model, data, name = self.model, self.data, self.name("equality", one)
+        ends = int(model.eq_obj1id[one]), int(model.eq_obj2id[one])
+        if model.eq_objtype[one] == self.mujoco.mjtObj.mjOBJ_SITE:
+            sites = [self.name("site", end) for end in ends]
+            bodies = [model.site_bodyid[end] for end in ends]
+            here, there = (self._turned(data.site_xpos[end]) for end in ends)
+            name = sites[0] if name.startswith("equality_") else name
+        else:
+            sites, bodies, anchors = [], [*ends], model.eq_data[one, :6].reshape(2, 3)
+            here, there = (
+                self._turned(data.xpos[end] + data.xmat[end].reshape(3, 3) @ anchor)
+                for end, anchor in zip(ends, anchors, strict=True)
+            )
+        first, second = (self.name("body", body) for body in bodies)
+        return Connect(name, (first, second), (here, there), tuple(sites))
 
-    def _pair(self, element: Element, given: Attributes) -> tuple[str, str]:
-        """The two bodies of an equality; the second may be left out."""
-        one, other = given.get("body1", ""), given.get("body2", WORLD)
-        for body in (one, other):
-            if body != WORLD and body not in self.bodies:
-                known = ", ".join((WORLD, *self.bodies))
-                raise self.refuse(element, f"names no body {short(body)}", f"body1 and body2 of {known}")
-        return one, other
-
-
-def _unit(vector: Array) -> Array:
-    """A vector of length 1; of one that is zero, zero. The largest component first: squares can vanish."""
-    largest = float(np.abs(vector).max())
-    scaled = vector / (largest or 1.0)
-    return np.asarray(scaled / (np.linalg.norm(scaled) or 1.0))
+    def _require_as_drawn(self, one: int) -> None:
+        """Refuse a weld that would move its bodies, or lets them turn."""
+        data, equality = self.data, self.mujoco.mjtConstraint.mjCNSTR_EQUALITY
+        apart = data.efc_pos[(data.efc_type == equality) & (data.efc_id == one)]
+        if np.abs(apart).max(initial=0.0) > APART or not self.model.eq_data[one, 10] > 0.0:
+            name = self.name("equality", one)
+            raise self.refuse("weld", name, "does not hold its bodies as drawn", "one without relpose")

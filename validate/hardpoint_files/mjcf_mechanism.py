@@ -205,10 +205,10 @@ class _Builder:
         first, second = connect.places
         apart = float(np.linalg.norm(second - first))
         if apart > NEAR * self.size:
-            told = f"connect {connect.name} joins places that are {1e3 * apart:.4g} mm apart in the home pose"
-            raise FileError(self.source, connect.line, told, "places that meet as drawn")
+            told = f"joins places that are {1e3 * apart:.4g} mm apart in the home pose"
+            raise FileError(self.source, f"connect {connect.name}", told, "places that meet as drawn")
         if one != other:
-            self._shared(connect.name, first, {one, other}, f"connect on line {connect.line}")
+            self._shared(connect.name, first, {one, other}, f"connect {connect.name}")
 
     def _slide(self, joint: MjcfJoint, body: str, parent: str) -> None:
         source, own = f"joint {joint.name}", self._of(body)
