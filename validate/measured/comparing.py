@@ -22,7 +22,7 @@ from validate.formulations.protocol import Accuracy, Solution
 from validate.measured.mapping import ARCSINE, Measured
 from validate.measured.meanings import PLACES, TIME
 from validate.measured.poses import Driven, poses_of
-from validate.measured.supposed import meant, meant_otherwise
+from validate.measured.supposed import meant_otherwise, suppositions
 from validate.measured.tolerances import NO_NUMBERS, OURS, Held, held_of, rounded
 from validate.plain_text import shown
 from validate.tables.errors import FileError
@@ -89,9 +89,9 @@ def compare_results(
     try:
         held, ours, notes = held_of(measured, scene, accuracy, poses)
     except FileError as error:
-        if not (words := meant(measured, poses.driven)):
+        if not (likely := next(suppositions(scene, measured, poses.driven), None)):
             raise
-        allowed = f"{error.allowed}; they nearly are if {words}"
+        allowed = f"{error.allowed}; they nearly are if {likely.words}"
         raise FileError(error.source, error.place, error.problem, allowed) from None
     by_row: dict[Row, list[Held]] = {}
     # What neither has anywhere, such as Ackermann of wheels that are not steered, is no difference.
@@ -103,7 +103,7 @@ def compare_results(
     rows = tuple(_judged(name, measured, *row, columns, factor) for row, columns in by_row.items())
     lacking, absent = _lacking(scene, measured)
     compared = int(np.any([np.isfinite(h.share) for h in held], axis=0).sum())
-    faults = _too_few(measured, poses.driven, held, compared)
+    faults = _too_few(scene, measured, poses.driven, held, compared)
     solutions = _solution(measured, by_row), ours
     coarse = ", ".join(row.name for row in rows if row.why == TOO_COARSE)
     notes = (*notes, *([f"{coarse} is not tested: {TOO_COARSE}"] if coarse else []), *faults)
@@ -164,12 +164,14 @@ def _judged(
     )
 
 
-def _too_few(measured: Measured, driven: Driven, held: Sequence[Held], compared: int) -> tuple[str, ...]:
+def _too_few(
+    scene: Scene, measured: Measured, driven: Driven, held: Sequence[Held], compared: int
+) -> tuple[str, ...]:
     """That most of what is given cannot be compared, and what the file may be meant as, if that is so."""
     there = int(np.any([np.isfinite(h.series.values) for h in held], axis=0).sum())
     if 2 * compared < there:
-        words = meant(measured, driven)
-        more = f"; nearly all can if {words}" if words else ""
+        one = next(suppositions(scene, measured, driven), None)
+        more = f"; nearly all can if {one.words}" if one else ""
         return (f"only {compared} of {there} rows that hold numbers can be compared{more}",)
     return tuple(
         f"only {h.counts[0]} of {h.counts[1]} numbers of {shown(h.series.column)} can be compared"

@@ -72,7 +72,7 @@ PROJECTED: Definition = "projected"
 ARCSINE: Definition = "arcsine"
 # Values in even steps that are taken as set exactly: two always are.
 FEWEST = 3
-BY_CHANCE = 1e-3  # of a step: what is even to less is hardly so by chance
+BY_CHANCE = 1e-3  # of a step or a last digit: what is even to less is hardly so by chance
 # No length, time, angle or rate of a car is larger in our units; the square of what is may be no number. Of a
 # higher derivative the limit is this for every two seconds that it is divided by.
 FARTHEST = 1e12
@@ -155,27 +155,19 @@ class Series:
     def even(self) -> bool:
         """Whether its values go in even steps, as those do that are set and not measured.
 
-        Digits that are cut off come out even by chance only, and less and less so the more there are.
+        To its last digit, or to as many digits as some of its values have, for programs leave zeros off:
+        -30 is -30.0000000000 beside -26.6666666667. Digits that are cut off come out so by chance only.
         """
         values = np.unique(self.values[np.isfinite(self.values)])
-        # Reading rounds far below the last digit.
-        return len(values) >= FEWEST and bool(np.ptp(np.diff(values)) <= 1e-3 * np.min(self.off))
-
-    @property
-    def with_zeros(self) -> Series:
-        """With the zeros that programs leave off: among -26.6666666667 and so on -30 is -30.0000000000.
-
-        Where its steps are even to as many digits as some of its values have, all of them have so many.
-        """
-        values, size = np.unique(self.values[np.isfinite(self.values)]), np.abs(self.values)
-        if len(values) < FEWEST or not self.off.all():
-            return self
+        if len(values) < FEWEST:
+            return False
+        steps, there = np.diff(values), values != 0.0
         # Of as many digits one may be ten times as fine, in parts of itself, as another.
-        relative = 10.0 * float(np.min(self.off[size > 0.0] / size[size > 0.0]))
-        fine = np.fmin(self.off, np.fmax(self.off.min(), relative * size))
-        steps, rounded = np.diff(values), 4.0 * float(fine.max())
-        even = np.ptp(steps) <= rounded <= BY_CHANCE * np.min(steps)
-        return replace(self, off=fine) if even else self
+        off, size = self.off[np.isfinite(self.values)].min(), np.abs(self.values)
+        digits = np.divide(self.off, size, out=np.full(size.shape, np.inf), where=size > 0.0)
+        rounded = 40.0 * float(np.nanmin(digits)) * float(np.abs(values[there]).max(initial=0.0))
+        enough = max(BY_CHANCE * float(off), rounded if rounded <= BY_CHANCE * steps.min() else 0.0)
+        return bool(np.ptp(steps) <= enough)
 
     def apart(self, ours: Array, theirs: Array) -> Array:
         """Ours less theirs; whole turns apart is the same angle."""
@@ -269,10 +261,7 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     found = map.series()
     independent = map.independent(found)
     even = [s.column for s in independent if not s.said and s.off.any() and s.even]
-    independent = tuple(
-        replace(s, off=0.0 * s.off) if s.column in even else s if s.said else s.with_zeros
-        for s in independent
-    )
+    independent = tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in independent)
     over_time = independent[0].meaning.kind == TIME
     rates = () if over_time else tuple(s for s in found if s.meaning.kind == "rate")
     taken = {s.column for s in (*independent, *rates)}

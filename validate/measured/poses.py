@@ -27,6 +27,7 @@ from pointcoord.effects.registry import EFFECTS, QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mapping.kinematic_map import mapped_instead_of
 from pointcoord.mechanism.file import MECHANISMS, read_tables
+from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 from validate.diagnosis.evidence import axes_of
@@ -86,6 +87,7 @@ class Driven:
         as_drawn: those of which nothing is said.
         drawn: the inputs of the closed drawing, from which a travel counts.
         by_scene: those that the scene holds.
+        home: where the points of the closed drawing are, mm.
     """
 
     scene: Scene
@@ -94,6 +96,7 @@ class Driven:
     as_drawn: tuple[str, ...]
     drawn: Mapping[str, float] = field(default_factory=dict)
     by_scene: tuple[str, ...] = ()
+    home: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(cls, scene: Scene, measured: Measured) -> Driven:
@@ -132,11 +135,13 @@ class Driven:
             return replace(self, scene=driven)
         inputs, home = _closed(drawn)
         known = {name: inputs.get(name, 0.0) for name in driven.mechanism.topology.required_inputs}
+        part = driven.mechanism
+        there = {point: np.array(place) for point, place in part.points.items()}
         for name in known.keys() - inputs.keys():
             # As an input it counts from the drawing as it stands, which need not close.
-            there = {point: np.array(place) for point, place in driven.mechanism.points.items()}
-            known[name] = _height(driven, name, home) - _height(driven, name, there)
-        return replace(self, scene=driven, drawn=known)
+            rises = (height_of(part, name.partition(".")[2], part.wheel_radius, at) for at in (home, there))
+            known[name] = float(next(rises) - next(rises))
+        return replace(self, scene=driven, drawn=known, home=home)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -161,12 +166,11 @@ class Driven:
             told = f"is outside the scene's time, {start:.10g} to {stop:.10g} s"
             return found, {int(i): f"t = {times[i]:.10g} s {told}" for i in outside}
         count = len(values[0])
-        level = {name: self.drawn[name] for name in self.drawn if name.startswith(f"{TRAVEL}.")}
         found = {name: np.full(count, self.drawn[name]) for name in self.as_drawn}
-        found |= {name: np.full(count, value) + level.get(name, 0.0) for name, value in self.said.items()}
-        found |= {n: v + level.get(n, 0.0) for n, v in zip(self.columns, values, strict=True)}
+        found |= {name: np.full(count, value) + self.level(name) for name, value in self.said.items()}
+        found |= {n: v + self.level(n) for n, v in zip(self.columns, values, strict=True)}
         reasons: dict[int, str] = {}
-        for name, (low, high) in self._sensible.items():
+        for name, (low, high) in self.sensible.items():
             value = found[name]
             inside = (value >= low) & (value <= high)
             told = f"is out of reach, {low:.6g} to {high:.6g} being looked at"
@@ -174,8 +178,12 @@ class Driven:
             found[name] = np.where(inside, value, self.drawn[name])
         return found, reasons
 
+    def level(self, name: str) -> float:
+        """From where an input's column counts: a travel from the closed drawing."""
+        return self.drawn.get(name, 0.0) if name.startswith(f"{TRAVEL}.") else 0.0
+
     @cached_property
-    def _sensible(self) -> dict[str, tuple[float, float]]:
+    def sensible(self) -> dict[str, tuple[float, float]]:
         """Between which values inputs have a meaning and are no slip."""
         mechanism, found = scene_mechanism(self.scene), {}
         for drive in mechanism.topology.drives:
@@ -190,9 +198,19 @@ class Driven:
         self, values: Sequence[Array], asked: Sequence[Series] = (), tolerance: float | None = None
     ) -> Found:
         """Places, and the angles that columns ask for, of poses solved one by one; without bounds."""
-        inputs, reasons = self.inputs(values)
+        return self.solved(*self.inputs(values), asked, tolerance)
+
+    def solved(
+        self,
+        inputs: Mapping[str, Array],
+        reasons: Mapping[int, str],
+        asked: Sequence[Series],
+        tolerance: float | None = None,
+    ) -> Found:
+        """The same at inputs; where there is a reason there is no pose."""
         poses = solve_poses(self.scene, inputs, tolerance)
-        reasons = {row: f"is out of reach: {error}" for row, error in poses.failures.items()} | reasons
+        failed = {row: f"is out of reach: {error}" for row, error in poses.failures.items()}
+        reasons = {**failed, **reasons}
         reached = poses.solved
         reached[[*reasons]] = False
         places = {name: np.where(reached[:, None], place, np.nan) for name, place in poses.position.items()}
@@ -327,19 +345,15 @@ def _closed(scene: Scene) -> tuple[dict[str, float], dict[str, Array]]:
     return inputs, {name: place * unit + mechanism.origin for name, place in mechanism.places(y).items()}
 
 
-def _height(scene: Scene, travel: str, places: Mapping[str, Array]) -> float:
-    """How high the point that travels is, mm."""
-    part, point = scene.mechanism, travel.partition(".")[2]
+def height_of(part: MechanismPart, point: str, radius: float | None, places: Mapping[str, Array]) -> Array:
+    """How high a point is, or the contact: the lowest point of a thin disc about the wheel's centre, mm."""
     up = np.array(part.up)
     if point != CONTACT:
-        return float(places[point] @ up)
+        return np.asarray(places[point] @ up)
     inner, outer = part.topology.wheel_axis
     spin = places[outer] - places[inner]
-    lean = (spin @ up) / np.linalg.norm(spin)
-    # The lowest point of a thin disc is R sqrt(1 - lean^2) below its centre.
-    return float(
-        places[part.topology.wheel_centre] @ up - (part.wheel_radius or 0.0) * np.sqrt(1.0 - lean**2)
-    )
+    lean = (spin @ up) / np.linalg.norm(spin, axis=-1)
+    return np.asarray(places[part.topology.wheel_centre] @ up - (radius or 0.0) * np.sqrt(1.0 - lean**2))
 
 
 def _strongest(scene: Scene, point: str, inputs: Sequence[str]) -> str:

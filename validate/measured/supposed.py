@@ -1,50 +1,44 @@
-"""What a file may be meant as: its independent columns of another sign, unit or zero, or another travel.
+"""What a file may be meant as: a column of another sign, unit, size or zero, another held value or travel.
 
-A column v of an input or a travel is supposed to be x = k v + c in ours, with k 1, -1, or what makes another
-unit of it, and c 0, the drawn input, pi of an angle that counts the other way, or found by least squares of
-the file's places and angles; or the travel of the wheel's centre to be that of the contact, or the other way.
-Poses are solved at some rows; what leaves little there is held to the whole file.
+The numbers of a row say themselves at which input it is: Gauss and Newton's method finds the input whose pose
+has them. Over the rows of the file an input x so found is a straight line x = k v + c over its column v, of
+one that every row has it is a constant, and where the travel of another point was meant the heights of that
+point at these poses are v. What is found at some rows is held to the whole file.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from pointcoord import PointcoordError, Scene
 from pointcoord.mechanism.inputs import CHASSIS
-from validate.diagnosis.least import fitted, roundest
+from pointcoord.simulation import scene_mechanism
+from validate.diagnosis.least import roundest
 from validate.measured.mapping import Measured, Series
-from validate.measured.meanings import CONTACT, INPUT, TIME, Meaning
-from validate.measured.poses import Driven, of_a_pose, ours_of
+from validate.measured.meanings import CONTACT, INPUT, PLACES, TIME, Meaning
+from validate.measured.poses import Driven, Found, height_of, input_of, of_a_pose, ours_of, widest
 from validate.measured.tolerances import Held, held_of
 from validate.plain_text import shown
 from validate.tables.units import ANGLES, KINDS, named
 
 Array = NDArray[np.float64]
 
-ROWS = 16  # that poses are solved at
+ROWS = 16  # that inputs are found at
 NEARLY_ALL = 0.8  # of them must be in reach
-STEP = {"rad": 1e-5, "mm": 1e-3}  # of differences by an offset
-RADII = (50.0, 1500.0)  # mm, of wheels
-# What a supposition may leave of the differences, of the numbers' own spread, to be held to the whole file.
+# Of an input's range: of differences, the longest step, and where steps end.
+STEP, LONGEST, ENDS = 1e-6, 0.1, 1e-9
+STEPS = 25
+# What inputs that are found may leave of the differences, of the numbers' own spread.
 PROMISING = 0.05
-# Suppositions on a column that the whole file is held to; of several columns a map takes long.
-TRIED = 3
-# How much an offset that least squares found may leave: the largest difference is the least near it only.
+# Tolerances that a supposition may leave of the whole file: least squares make no largest difference least.
 NEARLY = 1.5
-# By what a rounded offset may leave more than the found one, which least squares put lowest.
-CLOSE = 1.1
-# Of a found factor: how near to a unit's it is meant to be that one's.
-NEARLY_UNIT = 1e-2
-# Of a found offset: how near to a known one it is meant to be that.
-NEAR = 1e-3
+# By what round numbers may leave more than those that were found, and that in parts of the input's own size.
+CLOSE, ROUNDING = 1.2, 1e-6
 
 
 @dataclass(frozen=True)
@@ -52,56 +46,14 @@ class Supposed:
     """A file that is meant otherwise.
 
     Attributes:
-        kind: travel, of another point, or input. found: whether an offset was fitted to it.
+        kind: travel, of another point, or input.
         leftover: the largest difference that is left of the whole file, in its tolerance.
     """
 
     words: str
     measured: Measured
     kind: str = "input"
-    found: bool = False
     leftover: float = math.inf
-
-
-@dataclass(frozen=True)
-class _Change:
-    """x = factor v + more of a column v; `found` of one of which either was found by least squares."""
-
-    factor: float = 1.0
-    more: float = 0.0
-    found: bool = False
-
-    @property
-    def cost(self) -> float:
-        """How far-fetched it is."""
-        return (abs(self.factor) != 1.0) + (self.factor < 0.0) + 1.1 * (self.more != 0.0) + 2.0 * self.found
-
-    def of(self, s: Series) -> Series:
-        """A column that is changed so."""
-        return replace(s, values=self.factor * s.values + self.more, off=abs(self.factor) * s.off)
-
-    def words(self, s: Series, drawn: float) -> str:
-        """What is said of the column."""
-        if (self.factor, self.more) == (-1.0, math.pi):
-            return f"{shown(s.column)} is pi minus ours"
-        said, turned = _unit_of(s), self.factor < 0.0
-        if self.found and not self.more:
-            return f"{shown(s.column)} is {1.0 / self.factor:.6g} times ours"
-        other = _unit_of(replace(s, factor=abs(self.factor) * s.factor))
-        parts = [] if other == said else [f"is in {other}, not in {said}"]
-        if not self.more:
-            parts += ["has the other sign"] * turned
-        elif abs(self.more - drawn) <= NEAR * abs(drawn):
-            parts.append("counts from the drawing on" + ", the other way" * turned)
-        else:
-            parts += ["counts the other way"] * turned
-            missing = "missing" if self.more > 0.0 else "too many"
-            parts.append(f"counts from another zero: {abs(self.more / s.factor):.5g} {said} are {missing}")
-        return f"{shown(s.column)} {', and '.join(parts)}"
-
-
-Changes = dict[int, _Change]
-"""What some columns are changed by, by their places."""
 
 
 def meant_otherwise(
@@ -112,45 +64,41 @@ def meant_otherwise(
     factor: float,
     driven: Driven,
 ) -> list[Supposed]:
-    """What explains the whole file: another travel, and the likeliest change of its columns, if any does."""
-    likeliest = islice(_likely(driven, measured), TRIED if len(measured.independent) == 1 else 1)
-    found = []
-    suppositions_of = (_other_travel(scene, measured, held), likeliest, _other_held(measured, driven))
-    for suppositions in suppositions_of:
-        for one in suppositions:
-            try:
-                other = held_of(one.measured, scene, accuracy)[0]
-            except PointcoordError:
-                continue
-            shares = np.stack([h.share for h in other])
-            leftover = float(np.nanmax(shares, initial=0.0)) / factor
-            # Fewer rows that agree are no explanation of those that are out of reach then.
-            kept = np.isfinite(shares).any() and (one.kind == "travel" or _reached(other) >= _reached(held))
-            if kept and leftover <= (NEARLY if one.found else 1.0):
-                more = f"; this leaves {leftover:.3g} times what is tolerated" if leftover > 1.0 else ""
-                found.append(replace(one, words=one.words + more, leftover=leftover))
-                break
-    return found
+    """What explains the whole file: another travel, or else a change of its columns or held inputs."""
+    for one in suppositions(scene, measured, driven):
+        try:
+            other = held_of(one.measured, scene, accuracy)[0]
+        except PointcoordError:
+            continue
+        shares = np.stack([h.share for h in other])
+        leftover = float(np.nanmax(shares, initial=0.0)) / factor
+        # Fewer rows that agree are no explanation of those that are out of reach then.
+        kept = np.isfinite(shares).any() and (one.kind == "travel" or _reached(other) >= _reached(held))
+        if kept and leftover <= NEARLY:
+            more = f"; this leaves {leftover:.3g} times what is tolerated" if leftover > 1.0 else ""
+            return [replace(one, words=one.words + more, leftover=leftover)]
+    return []
 
 
-def meant(measured: Measured, driven: Driven) -> str:
-    """What the columns that rows are taken by may be meant as, in words; empty if nothing is likely.
-
-    Where no number tells, a unit that brings nearly all rows within reach, nearest the said one first.
-    """
-    if known := next(_likely(driven, measured), None):
-        return known.words
-    some = _some(measured)
-    for i, s in enumerate(some.independent):
-        for size in sorted(_sizes(s), key=lambda size: abs(math.log(size / s.factor))):
-            change = _Change(size / s.factor)
-            values = [v.values for v in _moved(some, {i: change})]
-            out = len(driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(some.rows)
-            if abs(change.factor - 1.0) <= 1e-9 or out:
-                continue
-            if s.meaning.kind == TIME or driven.poses(values).reached.mean() >= NEARLY_ALL:
-                return change.words(s, 0.0)
-    return ""
+def suppositions(scene: Scene, measured: Measured, driven: Driven) -> Iterator[Supposed]:
+    """What a file may be meant as, by some of its rows; of one over time nothing."""
+    if measured.independent[0].meaning.kind == TIME:
+        return
+    rows = np.zeros(len(measured.rows), dtype=bool)
+    rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).astype(int))] = True
+    numbers = tuple(s for s in measured.numbers if of_a_pose(s.meaning))
+    some = replace(measured, numbers=numbers).taken(rows)
+    yield from _other_travel(scene, measured, driven, some)
+    columns = {input_of(s.meaning.words): i for i, s in enumerate(measured.independent)}
+    held = [n for n in driven.scene.mechanism.topology.inputs if n in driven.said or n in driven.as_drawn]
+    for names in dict.fromkeys([*((name,) for name in (*columns, *held)), tuple(columns)]):
+        if (found := _implied(driven, some, names)) is None:
+            continue
+        if names[0] not in columns:
+            yield from _other_value(measured, driven, names[0], found.inputs[names[0]])
+            continue
+        changes = {columns[n]: _change(some.independent[columns[n]], found.inputs[n], driven) for n in names}
+        yield from _changed(measured, {i: change for i, change in changes.items() if change is not None})
 
 
 def _reached(held: Sequence[Held]) -> int:
@@ -158,207 +106,156 @@ def _reached(held: Sequence[Held]) -> int:
     return int(np.isfinite([h.ours for h in held]).any(axis=0).sum())
 
 
-def _other_travel(scene: Scene, measured: Measured, held: Sequence[Held]) -> Iterator[Supposed]:
+def _implied(driven: Driven, some: Measured, names: Sequence[str]) -> Found | None:
+    """The poses that some rows' numbers come from, the other inputs being as said; None if there are none."""
+    if len(some.numbers) < len(names):
+        return None
+    here, _ = driven.inputs([s.values for s in some.independent])
+    theirs = np.stack([s.values for s in some.numbers])
+    wide = np.nanmax(theirs, axis=1, initial=-np.inf) - np.nanmin(theirs, axis=1, initial=np.inf)
+    wide_of = {name: widest(scene_mechanism(driven.scene), name) for name in names}
+    ends = [driven.sensible.get(name, (-wide, wide)) for name, wide in wide_of.items()]
+    low, high = np.array(ends).T[..., None]
+    size, start = high - low, np.array([[driven.drawn.get(name, 0.0)] for name in names])
+
+    def at(x: Array) -> tuple[Found, Array]:
+        """Our numbers there, and how far they are from theirs, of their spread, (columns, rows)."""
+        found = driven.solved(here | dict(zip(names, x, strict=True)), {}, some.numbers)
+        ours = [np.asarray(ours_of(s, found, driven.scene)[0]) for s in some.numbers]
+        apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True)]
+        return found, np.stack(apart) / np.where(wide > 0.0, wide, 1.0)[:, None]
+
+    x = np.repeat(start, len(some.rows), axis=1)
+    try:
+        for _ in range(STEPS):
+            gap = at(x)[1]
+            moved = [(at(x + one[:, None] * STEP * size)[1] - gap) / STEP for one in np.eye(len(names))]
+            slopes = np.nan_to_num(np.stack(moved, axis=-1)).swapaxes(0, 1)
+            step = np.einsum("ndc,cn->dn", np.linalg.pinv(slopes, rcond=1e-6), np.nan_to_num(gap))
+            x = np.clip(x - size * np.clip(step, -LONGEST, LONGEST), low, high)
+            if np.abs(step).max() <= ENDS:
+                break
+        found, gap = at(x)
+    except PointcoordError:
+        return None
+    there = np.isfinite(gap).any(axis=0)
+    if there.mean() < NEARLY_ALL or np.sqrt(np.nanmean(gap**2)) > PROMISING:
+        return None
+    counted = {n: one - driven.level(n) for n, one in zip(names, x, strict=True)}
+    return replace(found, inputs={n: np.where(there, one, np.nan) for n, one in counted.items()})
+
+
+# A column is a straight line.
+
+
+@dataclass(frozen=True)
+class _Change:
+    """x = factor v + more of a column v."""
+
+    factor: float
+    more: float
+    words: str
+
+
+def _change(s: Series, x: Array, driven: Driven) -> _Change | None:
+    """The simplest line that x follows as well as the best one; None where the column is as it is said."""
+    some = np.isfinite(x) & np.isfinite(s.values)
+    v, x = s.values[some], x[some]
+    if len(v) < 2 or not np.ptp(v):
+        return None
+    slope, more = np.polyfit(v, x, 1).tolist()
+
+    def left(factor: float, more: float) -> float:
+        return float(np.sqrt(np.mean((factor * v + more - x) ** 2)))
+
+    def zero_of(factor: float) -> float:
+        return float(np.mean(x - factor * v))
+
+    enough = CLOSE * left(slope, more) + ROUNDING * float(np.ptp(x))
+    known = [sign * size / s.factor for size in KINDS[s.meaning.unit].values() for sign in (1.0, -1.0)]
+    near = min(known, key=lambda one: abs(one - slope))
+    if left(near, zero_of(near)) > enough:
+        near = 1.0 / _round(1.0 / slope, lambda one: left(1.0 / one, zero_of(1.0 / one)) <= enough)
+    factor = round(near) if math.isclose(abs(near), 1.0) else near
+    drawn = driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
+    unit = ANGLES["deg"] if s.meaning.unit == "rad" else s.factor
+    more = next(
+        (one for one in (0.0, drawn) if left(factor, one) <= enough),
+        _round(zero_of(factor), lambda one: left(factor, one) <= enough, unit),
+    )
+    said, other = named(s.factor, s.meaning.unit), named(abs(factor) * s.factor, s.meaning.unit)
+    parts = [f"is in {other}, not in {said}" if other else f"is {abs(1.0 / factor):.6g} times ours"]
+    parts = [*(parts if other != said else []), *(["has the other sign"] if factor < 0.0 else [])]
+    if more == drawn != 0.0:
+        parts.append("counts from the drawing on")
+    elif more:
+        parts.append(f"counts from another zero: {more / unit:+.5g} {named(unit, s.meaning.unit)} make ours")
+    return _Change(factor, more, f"{shown(s.column)} {', and '.join(parts)}") if parts else None
+
+
+def _round(found: float, fits: Callable[[float], bool], unit: float = 1.0) -> float:
+    """A number as round as may be."""
+    return float(roundest(found, 7, lambda near: bool(near) and fits(float(near)), unit))
+
+
+def _changed(measured: Measured, changes: Mapping[int, _Change]) -> Iterator[Supposed]:
+    """A file whose columns are changed; derivatives by one that counts the other way do so too."""
+    columns = list(measured.independent)
+    for i, change in changes.items():
+        s = columns[i]
+        columns[i] = replace(s, values=change.factor * s.values + change.more, off=abs(change.factor) * s.off)
+    turned = {columns[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
+    numbers = (replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers)
+    if changes:
+        words = ", and ".join(change.words for change in changes.values())
+        yield Supposed(words, replace(measured, independent=tuple(columns), numbers=tuple(numbers)))
+
+
+def _other_value(measured: Measured, driven: Driven, name: str, x: Array) -> Iterator[Supposed]:
+    """An input that is the same in every row, at the value that the numbers come from."""
+    some, unit = x[np.isfinite(x)], driven.scene.mechanism.topology.input_units[name]
+    mean, enough = float(np.mean(some)), CLOSE * float(np.std(some)) + ROUNDING * float(np.abs(some).max())
+    value = _round(mean, lambda one: abs(one - mean) <= enough, ANGLES["deg"] if unit == "rad" else 1.0)
+    was = driven.said.get(name, driven.drawn.get(name, 0.0))
+    words = f"{name} is {value:.6g} {unit} in every row, not {was:.6g}"
+    yield Supposed(words, replace(measured, held={**measured.held, f"{INPUT}.{name}": value}))
+
+
+# The travel of the wheel's centre, or of the contact.
+
+
+def _other_travel(scene: Scene, measured: Measured, driven: Driven, some: Measured) -> Iterator[Supposed]:
     """The travel of the wheel's centre for that of the contact, or the other way.
 
-    Where no rolling radius is said it is the one that leaves least of poses.
+    A contact's travel is v = z - R g, z that of the centre and R g what its lowest point lies less far below.
+    Where no rolling radius R is said it is the one of least squares.
     """
-    centre, heights = scene.mechanism.topology.wheel_centre, _travels(scene)
-    said = next((s for s in measured.independent if s.meaning.name in heights), None)
-    if said is None:
+    centre, part = scene.mechanism.topology.wheel_centre, scene.mechanism
+    of_wheel = {one: one for one in (CONTACT, centre) if one}
+    for name, table in part.plain(tuple(scene.inputs))["inputs"].items():
+        if centre and table.get("height") == centre:
+            of_wheel[name] = centre
+        if table.get("contact") and table.get("over", CHASSIS) == CHASSIS:
+            of_wheel[name] = CONTACT
+    said = next((s for s in some.independent if s.meaning.name in of_wheel), None)
+    found = _implied(driven, some, [input_of(said.meaning.words)]) if said else None
+    if said is None or found is None or not part.topology.wheel_axis:
         return
-    other = Meaning("travel", centre if heights[said.meaning.name] == CONTACT else CONTACT, "mm")
-    independent = tuple(replace(s, meaning=other) if s is said else s for s in measured.independent)
-
-    def by(radius: float) -> Measured:
-        return replace(measured, independent=independent, rolling_radius=radius)
-
-    def left(radius: float) -> float:
-        """The largest difference in its tolerance, of poses alone."""
-        found = Driven.of(scene, by(radius)).poses([s.values for s in independent], measured.numbers)
-        there = (h for h in held if of_a_pose(h.series.meaning))
-        shares = [replace(h, ours=np.asarray(ours_of(h.series, found, scene)[0])).share for h in there]
-        return float(np.max(np.nan_to_num(shares), initial=0.0))
-
+    other = Meaning("travel", CONTACT if of_wheel[said.meaning.name] == centre else centre, "mm")
     radius, of = measured.rolling_radius, ""
     if other.name == CONTACT:
         if not radius > 0.0:
-            try:
-                radius = float(minimize_scalar(left, bounds=RADII, options={"xatol": 0.1}).x)
-            except PointcoordError:
-                return
+            there, home = found.numbers[PLACES], driven.home
+            z, low = (
+                height_of(part, CONTACT, size, there) - height_of(part, CONTACT, size, home)
+                for size in (0.0, 1.0)
+            )
+            some_rows = np.isfinite(z + said.values)
+            v, z, g = said.values[some_rows], z[some_rows], (z - low)[some_rows]
+            best = float((z - v) @ g / (g @ g)) if g.any() else 0.0
+            enough = CLOSE * float(np.linalg.norm(z - best * g - v)) + ROUNDING * float(np.ptp(v))
+            radius = _round(best, lambda one: float(np.linalg.norm(z - one * g - v)) <= enough)
         of = f" with a rolling radius of {radius:.4g} mm"
     words = f"{shown(said.column)} is {other.words}{of}, not {said.meaning.words}"
-    yield Supposed(words, by(radius), "travel")
-
-
-def _other_held(measured: Measured, driven: Driven) -> Iterator[Supposed]:
-    """Each input that is the same in every row, at the value that least squares find."""
-    some, units = _some(measured), driven.scene.mechanism.topology.input_units
-    if measured.independent[0].meaning.kind == TIME or not some.numbers:
-        return
-    held = {name: driven.drawn[name] for name in driven.as_drawn} | dict(driven.said)
-    for name in (name for name in driven.scene.mechanism.topology.inputs if name in held):
-
-        def gaps(value: float, name: str = name) -> Array:
-            return _gaps(replace(driven, said={**driven.said, name: value}), some, {})
-
-        best, least = _least_squares(gaps, [held[name]], STEP[units[name]])
-        if math.isfinite(least):
-            value = _rounded(gaps, best, NEARLY * least, ANGLES["deg"] if units[name] == "rad" else 1.0)
-            words = f"{name} is {value:.6g} {units[name]} in every row, not {held[name]:.6g}"
-            other = replace(measured, held={**measured.held, f"{INPUT}.{name}": value})
-            yield Supposed(words, other, found=True)
-
-
-def _travels(scene: Scene) -> dict[str, str]:
-    """The travels and inputs that are one of the wheel's, with what travels: its centre or the contact."""
-    part = scene.mechanism
-    found = {one: one for one in (CONTACT, part.topology.wheel_centre) if one}
-    for name, table in part.plain(tuple(scene.inputs))["inputs"].items():
-        if table.get("height") == part.topology.wheel_centre and part.topology.wheel_centre:
-            found[name] = part.topology.wheel_centre
-        if table.get("contact") and table.get("over", CHASSIS) == CHASSIS:
-            found[name] = CONTACT
-    return found
-
-
-def _likely(driven: Driven, measured: Measured) -> Iterator[Supposed]:
-    """The likeliest suppositions, what is known beforehand before what is found; none over time."""
-    if measured.independent[0].meaning.kind == TIME or not any(
-        of_a_pose(s.meaning) for s in measured.numbers
-    ):
-        return
-    some = _some(measured)
-    try:
-        before = _rms(_gaps(driven, some, {}))
-        tried = [(_rms(_gaps(driven, some, changes)), changes) for changes in _changes(driven, some)]
-    except PointcoordError:
-        return
-    kept = [(left, changes) for left, changes in tried if left <= PROMISING and left < before]
-    # Simple before far-fetched, where both leave as little as the digits of a file allow.
-    kept.sort(key=lambda one: (math.floor(math.log10(one[0] + 1e-12)), sum(c.cost for c in one[1].values())))
-    for _, changes in kept:
-        said = ((measured.independent[i], change) for i, change in changes.items())
-        words = ", and ".join(change.words(s, _drawn(driven, s)) for s, change in said)
-        independent = _moved(measured, changes)
-        # Derivatives by a column that counts the other way do so too.
-        turned = {independent[i].meaning.words for i, change in changes.items() if change.factor < 0.0}
-        numbers = (replace(s, values=-s.values) if s.meaning.per in turned else s for s in measured.numbers)
-        other = replace(measured, independent=independent, numbers=tuple(numbers))
-        yield Supposed(words, other, found=any(one.found for one in changes.values()))
-
-
-def _changes(driven: Driven, some: Measured) -> Iterator[Changes]:
-    """What each column may be changed by: one alone, all with the other sign, one by another zero."""
-    for i, s in enumerate(some.independent):
-        factors = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
-        zeros = {0.0, _drawn(driven, s)}
-        changes = [_Change(1.0 if math.isclose(f, 1.0) else f, more) for f in factors for more in zeros]
-        changes += [_Change(-1.0, math.pi)] if s.meaning.unit == "rad" else []
-        yield from ({i: change} for change in changes if change != _Change())
-    yield {i: _Change(-1.0) for i in range(len(some.independent))}
-    for i in range(len(some.independent)):
-        for sign in (1.0, -1.0):
-            yield from _other_zero(driven, some, i, sign)
-        yield from _other_size(driven, some, i)
-
-
-def _moved(measured: Measured, changes: Changes) -> tuple[Series, ...]:
-    """The independent columns, some of them changed."""
-    return tuple(changes.get(i, _Change()).of(s) for i, s in enumerate(measured.independent))
-
-
-def _some(measured: Measured) -> Measured:
-    """Some of its rows, evenly, and of its numbers those that a pose has."""
-    rows = np.zeros(len(measured.rows), dtype=bool)
-    rows[np.unique(np.linspace(0, len(rows) - 1, ROWS).astype(int))] = True
-    numbers = tuple(s for s in measured.numbers if of_a_pose(s.meaning))
-    return replace(measured, numbers=numbers).taken(rows)
-
-
-def _drawn(driven: Driven, s: Series) -> float:
-    """An input of the drawing; a travel counts from there by itself."""
-    return driven.drawn.get(s.meaning.name, 0.0) if s.meaning.kind == INPUT else 0.0
-
-
-def _gaps(driven: Driven, some: Measured, changes: Changes) -> Array:
-    """Theirs less ours, of the spread of theirs, (columns, rows); NaN where most rows have no pose."""
-    values = [s.values for s in _moved(some, changes)]
-    gap = np.full((len(some.numbers), len(some.rows)), np.nan)
-    if len(driven.inputs(values)[1]) > (1.0 - NEARLY_ALL) * len(some.rows):
-        return gap
-    found = driven.poses(values, some.numbers)
-    for i, s in enumerate(some.numbers):
-        ours, _ = ours_of(s, found, driven.scene)
-        if ours is not None:
-            wide = np.nanmax(s.values, initial=-np.inf) - np.nanmin(s.values, initial=np.inf)
-            gap[i] = s.apart(ours, s.values) / (wide if wide > 0.0 else 1.0)
-    # A supposition must make sense of nearly all rows.
-    there = np.isfinite([s.values for s in some.numbers])
-    enough = (np.isfinite(gap) | ~there).all(axis=0).mean() >= NEARLY_ALL
-    return gap if enough else np.full_like(gap, np.nan)
-
-
-def _rms(gap: Array) -> float:
-    """What is left of the differences, of their numbers' spread; infinite where rows are out of reach."""
-    return float(np.sqrt(np.nanmean(gap**2))) if np.isfinite(gap).any() else math.inf
-
-
-def _least_squares(
-    gaps: Callable[[float], Array], begins: Iterable[float], step: float
-) -> tuple[float, float]:
-    """The number that makes gaps least, and what it leaves; infinite where that is much of them."""
-
-    def read(sets: Array) -> Array:
-        found = [gaps(float(one)).ravel() for (one,) in sets]
-        # Rows out of reach say nothing of it.
-        return np.stack([np.nan_to_num(gap) if np.isfinite(gap).any() else gap for gap in found])
-
-    ends = (fitted(read, [begin], step, np.zeros(1)) for begin in begins)
-    found = [(float(end[0]), _rms(gaps(float(end[0])))) for end in ends if end is not None]
-    return min(found, key=lambda one: one[1], default=(math.nan, math.inf))
-
-
-def _rounded(gaps: Callable[[float], Array], found: float, enough: float, unit: float) -> float:
-    """A found number as round as it may be."""
-    return float(roundest(found, 7, lambda near: _rms(gaps(float(near))) <= enough, unit))
-
-
-def _other_zero(driven: Driven, some: Measured, i: int, factor: float) -> Iterator[Changes]:
-    """The zero that least squares find for a column, as round as it may be, if one comes near."""
-    s = some.independent[i]
-
-    def gaps(more: float) -> Array:
-        return _gaps(driven, some, {i: _Change(factor, more)})
-
-    best, least = _least_squares(gaps, {0.0, _drawn(driven, s)}, STEP[s.meaning.unit])
-    if least <= PROMISING:
-        yield {i: _Change(factor, _rounded(gaps, best, CLOSE * least, s.factor), found=True)}
-
-
-def _other_size(driven: Driven, some: Measured, i: int) -> Iterator[Changes]:
-    """The factor that least squares find for a column, a unit's own where it is nearly one."""
-    s = some.independent[i]
-
-    def gaps(factor: float) -> Array:
-        return _gaps(driven, some, {i: _Change(factor)})
-
-    best, least = _least_squares(gaps, [1.0], 1e-4)
-    if least <= PROMISING and abs(best) >= 1e-6:
-        times = 1.0 / best
-        ratios = [sign * size / s.factor for size in _sizes(s) for sign in (1.0, -1.0)]
-        near = [one for one in ratios if abs(one - times) <= NEARLY_UNIT * abs(one)]
-        near.append(float(roundest(times, 7, lambda one: abs(float(one) - times) <= NEAR * abs(times))))
-        fitting = (one for one in near if _rms(gaps(1.0 / one)) <= CLOSE * least)
-        yield {i: _Change(1.0 / next(fitting, times), found=True)}
-
-
-def _sizes(s: Series) -> list[float]:
-    """The units that a column can be in, each in ours."""
-    return [*dict.fromkeys(KINDS[s.meaning.unit].values())]
-
-
-def _unit_of(s: Series) -> str:
-    """The unit that a column is said to be in, by its first name."""
-    return named(s.factor, s.meaning.unit) or s.meaning.unit
+    columns = (replace(s, meaning=other) if s.column == said.column else s for s in measured.independent)
+    yield Supposed(words, replace(measured, independent=tuple(columns), rolling_radius=radius), "travel")

@@ -53,7 +53,7 @@ HOME = drawn_angle()
         (
             "rack [mm]",
             lambda s: 4.0 - s,
-            "rack counts the other way, and counts from another zero: 4 mm are missing",
+            "rack has the other sign, and counts from another zero: +4 mm make ours",
         ),
     ],
 )
@@ -71,7 +71,11 @@ def test_a_rack_that_is_meant_otherwise_is_told_first(
 @pytest.mark.parametrize(
     ("head", "change", "words"),
     [
-        ("arm_angle [rad]", lambda a: np.pi - a, "arm_angle is pi minus ours"),
+        (
+            "arm_angle [rad]",
+            lambda a: np.pi - a,
+            "arm_angle has the other sign, and counts from another zero: +180 deg make ours",
+        ),
         (
             "arm_angle [rad]",
             lambda a: np.degrees(a - HOME),
