@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from decimal import Decimal
+from dataclasses import dataclass
 
 from validate.hardpoint_files.axes import DIRECTIONS
 from validate.hardpoint_files.contents import (
@@ -53,18 +52,16 @@ ROW = "a name and three numbers, separated by commas, semicolons or tabs"
 SAY = (
     'a point a line, or [table] in a file of names (--names) with name, x, y, z = "title" or number of column'
 )
-NOWHERE = (Decimal(0), Decimal(0), Decimal(0))
 Row = Sequence[str]
 
 
 @dataclass(frozen=True)
 class _Titles:
-    """What a line of titles says.
+    """Which columns a table has.
 
     Attributes:
         columns: of x, y and z, by wheel. name_at, wheel_at: those of names and wheels, if any.
-        unit: of lengths. axes: where x, y and z point. row: the line itself.
-        said: whether the user says it.
+        unit: of lengths. axes: where x, y and z point. row: the line of titles itself, if there is one.
     """
 
     columns: Mapping[Wheel, Sequence[int]]
@@ -73,16 +70,16 @@ class _Titles:
     unit: str = ""
     axes: tuple[str, ...] = ()
     row: Row = ()
-    said: bool = False
 
-    def unread(self, row: Row) -> list[str]:
-        """Titles of columns with numbers that are not read; what is ahead of a name may count the lines."""
-        own = {at for three in self.columns.values() for at in three}
-        first, read = min(self.name_at, *own), {self.name_at, self.wheel_at, *own}
-        titles = [
-            _cell(self.row, i) for i in range(len(row)) if i > first and i not in read and is_number(row[i])
+    @property
+    def unread(self) -> list[str]:
+        """Titles of columns that are not read, but for numbers of lines."""
+        read = {self.name_at, self.wheel_at, *(at for three in self.columns.values() for at in three)}
+        return [
+            title
+            for at, title in enumerate(self.row)
+            if title and at not in read and not {*words_of(title)} <= OF_LINES
         ]
-        return [title for title in titles if not title or not {*words_of(title)} <= OF_LINES]
 
 
 UNTITLED = _Titles({NO_WHEEL: (1, 2, 3)}, 0)
@@ -102,41 +99,41 @@ def read(text: str, source: str, said: Mapping[str, str | int] | None = None) ->
         raise FileError(source, lines.mixed, told, "one sign before the decimals, none between thousands")
     rows = [(line, row if lines.mark else _named(row)) for line, row in lines.rows]
     titles = _said([row for _, row in rows], said, source) if said else UNTITLED
-    tables, heading, words, section = [titles], NO_WHEEL, (0, ""), ""
+    heading, section, unknown = NO_WHEEL, "", (0, "")
     points: list[FilePoint] = []
-    notes: dict[str, None] = {}
+    others: list[str] = []
+    tables = [titles]
     for line, row in rows:
-        numbers = any(map(is_number, row))
-        if titles.said and row == titles.row:
+        count, words = sum(map(is_number, row)), [cell for cell in row if cell]
+        if said and row == titles.row:
             continue
-        if not titles.said and not numbers and (found := _titles(row, source, line)) is not None:
+        if not said and not count and (found := _titles(row, source, line)) is not None:
             tables.append(titles := found)
-        elif (wheel := _heading(row)) is not None:
+        elif len(words) == 1 and not count:
             # The left wheel under a heading of the front axle is the front left one.
-            heading, section = (wheel[0], wheel[1] or heading[1]), ""
-        elif not numbers and sum(map(bool, row)) == 1:
-            section = next(filter(None, row))
-        elif titles is UNTITLED and not numbers:
-            words = (line, ", ".join(row[1:])) if sum(map(bool, row)) > 3 else words
+            wheel = wheel_of(words_of(words[0]))
+            speaks = any(wheel) and not {*words_of(words[0])} - WHEELS.keys() - HEADING
+            heading, section = ((wheel[0], wheel[1] or heading[1]), "") if speaks else (heading, words[0])
+        elif titles is UNTITLED and not count:
+            unknown = (line, ", ".join(row[1:])) if len(words) > 3 else unknown
         else:
-            if titles is UNTITLED and words[0] and all(one.error for one in points):
-                told = f"has titles that are not known: {short(words[1])}"
+            if titles is UNTITLED and unknown[0] and count >= 3 and not points:
+                told = f"has titles that are not known: {short(unknown[1])}"
                 allowed = f"X, Y, Z; of both wheels Left X, Left Y, Left Z, Right X; {SAY}"
-                raise FileError(source, words[0], told, allowed)
-            new = [replace(one, heading=section) for one in _points_of(row, titles, heading, source, line)]
+                raise FileError(source, unknown[0], told, allowed)
+            new = _points_of(row, titles, heading, section, source, line)
             points += new
-            if any(one.error is None for one in new):
-                notes |= {f"the column {short(one)} is not read": None for one in titles.unread(row)}
-    if all(one.error for one in points):
-        wrong = next((one.error for one in points if one.error), None)
-        raise wrong or FileError(source, 0, "has no points", f"{ROW}; {SAY}")
+            if not new and (name := _cell(row, titles.name_at)):
+                others.append(f"{short(name)} on line {line}")
+    if not points:
+        raise FileError(source, 0, "has no points", f"{ROW}; {SAY}")
     units, ways = {one.unit for one in tables} - {""}, {one.axes for one in tables} - {()}
     for what, several in (("units", len(units) > 1), ("axes", len(ways) > 1)):
         if several:
             raise FileError(source, 0, f"has tables in different {what}", "a file for each")
-    return Contents(
-        tuple(points), {"": Axle(notes=tuple(notes))}, next(iter(units), ""), next(iter(ways), ())
-    )
+    notes = dict.fromkeys(f"the column {short(one)} is not read" for table in tables for one in table.unread)
+    axles = {"": Axle(notes=tuple(notes))}
+    return Contents(tuple(points), axles, "".join(units), next(iter(ways), ()), tuple(others))
 
 
 def _named(words: Row) -> Row:
@@ -154,9 +151,6 @@ def _cell(row: Row, at: int) -> str:
     return row[at] if at < len(row) else ""
 
 
-# Titles, and lines that are no points.
-
-
 def _said(rows: Sequence[Row], said: Mapping[str, str | int], source: str) -> _Titles:
     """The columns that the user names."""
     titles = {plain(one) for one in said.values() if isinstance(one, str)}
@@ -166,7 +160,7 @@ def _said(rows: Sequence[Row], said: Mapping[str, str | int], source: str) -> _T
         raise FileError(source, 0, told, "titles as they stand there, or numbers of columns from 1")
     heads = [*map(plain, row)]
     at = {key: heads.index(plain(one)) if isinstance(one, str) else one - 1 for key, one in said.items()}
-    return _Titles({NO_WHEEL: (at["x"], at["y"], at["z"])}, at["name"], at.get("corner"), row=row, said=True)
+    return _Titles({NO_WHEEL: (at["x"], at["y"], at["z"])}, at["name"], at.get("corner"))
 
 
 def _titles(row: Row, source: str, line: int) -> _Titles | None:
@@ -191,17 +185,13 @@ def _titles(row: Row, source: str, line: int) -> _Titles | None:
         columns[wheel_of(of_wheels)][axis] = at
         units.add(length_called(unit))
         ways |= {axis: way} if way else {}
-    for wheel, three in (columns or {NO_WHEEL: {}}).items():
+    for three in columns.values() or [{}]:
         if missing := [axis for axis in "xyz" if axis not in three]:
-            of = f" of the {' '.join(filter(None, reversed(wheel)))} wheel" if any(wheel) else ""
-            told = f"has no column of {missing[0]}{of} in {short(', '.join(row))}"
+            told = f"has no column of {missing[0]} in {short(', '.join(row))}"
             raise FileError(source, line, told, f"columns x, y and z, such as X (mm), Left X; {SAY}")
-    if len(units) > 1:
-        told = f"has lengths in {', '.join(sorted(unit or 'no unit' for unit in units))}"
-        raise FileError(source, line, told, "one unit in all columns")
-    if len(ways) not in (0, 3):
-        told = f"says where only some of its axes point ({', '.join(ways.values())})"
-        raise FileError(source, line, told, "all three, or none")
+    if len(units) > 1 or len(ways) not in (0, 3):
+        told = f"says units {sorted(units)} and directions {[*ways.values()]}"
+        raise FileError(source, line, told, "one unit in all columns, and directions of all three or none")
     others = [at for at in range(len(row)) if at not in there]
     of_wheel = next((at for at in others if words[at] and words[at] <= OF_WHEELS), None)
     names = [at for at in others if at != of_wheel and not (words[at] and words[at] <= OF_LINES)]
@@ -218,37 +208,25 @@ def wheel_of(words: Iterable[str]) -> Wheel:
     return next((side for side, _ in there if side), ""), next((part for _, part in there if part), "")
 
 
-def _heading(row: Row) -> Wheel | None:
-    """The wheel over whose points a line of words stands."""
-    cells = [cell for cell in row if cell]
-    words = {*words_of(cells[0])} if len(cells) == 1 else set()
-    wheel = wheel_of(words)
-    return wheel if any(wheel) and not words - WHEELS.keys() - HEADING else None
-
-
-def _points_of(row: Row, titles: _Titles, heading: Wheel, source: str, line: int) -> list[FilePoint]:
-    """The points of a line, one for each wheel, or what is said in place of one."""
+def _points_of(
+    row: Row, titles: _Titles, heading: Wheel, section: str, source: str, line: int
+) -> list[FilePoint]:
+    """The points of a line, one for each wheel; none where it has no three numbers for one."""
     name = _cell(row, titles.name_at)
     count = sum(map(is_number, row))
-    if not name or (is_number(name) and not titles.said):
-        if count >= 3:
-            raise FileError(source, line, "has coordinates without a name", ROW)
-        return []
+    said = titles is not UNTITLED and not titles.row
+    if not said and (not name or is_number(name)) and count >= 3:
+        raise FileError(source, line, "has coordinates without a name", ROW)
     of_line = NO_WHEEL if titles.wheel_at is None else wheel_of(words_of(_cell(row, titles.wheel_at)))
     found: list[FilePoint] = []
     for wheel, three in titles.columns.items():
-        side, part = (own or of or over for own, of, over in zip(wheel, of_line, heading, strict=True))
         cells = [_cell(row, at) for at in three]
-        place, error = NOWHERE, None
-        try:
-            if not titles.said and "" in titles.unread(row):
-                told = f"has {count} numbers for {short(name)}, some of them in columns without a title"
-                allowed = f"three, or a line of titles such as Point, Left X, Left Y, Left Z, Right X; {SAY}"
-                raise FileError(source, line, told, allowed)
-            place = place_of(cells, source, line, name)
-        except FileError as fault:
-            error = fault
-        # A line of words alone is a heading; one with numbers elsewhere is a mistake.
-        if error is None or any(cells) or count:
-            found.append(FilePoint(name, place, line, side, part, error))
+        if not name or not all(map(is_number, cells)):
+            continue
+        if titles is UNTITLED and count > 3:
+            told = f"has {count} numbers for {short(name)}, some of them in columns without a title"
+            allowed = f"three, or a line of titles such as Point, Left X, Left Y, Left Z, Right X; {SAY}"
+            raise FileError(source, line, told, allowed)
+        side, part = (own or of or over for own, of, over in zip(wheel, of_line, heading, strict=True))
+        found.append(FilePoint(name, place_of(cells, source, line, name), line, side, part, section))
     return found

@@ -19,7 +19,7 @@ FARTHEST = Decimal("1e9")
 
 @dataclass(frozen=True)
 class FilePoint:
-    """A point as the file has it, or a line that would be one and is none.
+    """A point as the file has it.
 
     Attributes:
         name: what the file calls it.
@@ -27,7 +27,6 @@ class FilePoint:
         line: where it is, counted from 1; 0 where a file has no lines to speak of.
         side: the wheel that the file says it belongs to, left or right; empty if it does not say.
         part: the axle that the file says it belongs to, front or rear; empty if it does not say.
-        error: why it is no point; None of one.
         heading: of the lines among which it stands, such as LOWER A-ARM; empty if there is none.
     """
 
@@ -36,7 +35,6 @@ class FilePoint:
     line: int = 0
     side: str = ""
     part: str = ""
-    error: FileError | None = None
     heading: str = ""
 
     def of(self, part: str, side: str) -> bool:
@@ -84,15 +82,17 @@ class Contents:
     """A file, read.
 
     Attributes:
-        points: in the order of the file, lines that hold none among them.
+        points: in the order of the file.
         axles: by part; what is said of the whole file under the empty one.
         unit: of its lengths, if it says so. axes: where x, y and z point, if it says so.
+        lines: those that name something and are no points, in words.
     """
 
     points: tuple[FilePoint, ...]
     axles: Mapping[str, Axle] = field(default_factory=dict)
     unit: str = ""
     axes: tuple[str, ...] = ()
+    lines: tuple[str, ...] = ()
 
     def axle(self, part: str) -> Axle:
         """What is said of an axle, or else of the whole file."""

@@ -7,10 +7,10 @@ without a name of ours, points of ours that the file lacks.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from decimal import Decimal
-from functools import cached_property
+from functools import cached_property, partial
 from math import radians, tan
 from pathlib import Path
 from typing import Any
@@ -176,11 +176,34 @@ def _whole_mechanism(source: str, choices: Choices, found: Format) -> Imported:
         f"the file's axes are {axes.words}, {by}, in m; here x rearward, y right, z up, in mm",
         *made.facts,
     ]
-    drawn = scene_of(source, "mechanism", made.side, points, made.tables)
+    return _written(source, found, "mechanism", made.side, points, facts, tables=made.tables)
+
+
+def _written(
+    source: str,
+    found: Format,
+    kind: str,
+    side: str,
+    points: Sequence[ScenePoint],
+    facts: Sequence[str],
+    others: Sequence[FilePoint] = (),
+    doubts: Sequence[str] = (),
+    angles: Callable[[Mapping[str, float]], Iterable[AngleCheck]] = lambda drawn: (),
+    tables: Mapping[str, Any] | None = None,
+) -> Imported:
+    """A scene of points, and its file.
+
+    Args:
+        angles: holds those that the file prints to the drawing's. tables: of a mechanism of its own.
+    """
+    drawn = scene_of(source, kind, side, points, tables)
     stands = standing(drawn)
     laws, scene = travel_of(drawn, stands)
-    written = scene_text(source, found.words, drawn, points, laws, facts, ())
-    return Imported(found, scene, written, tuple(points), (), (), stands, tuple(facts), ())
+    text = scene_text(source, found.words, drawn, points, laws, facts, others)
+    checks = tuple(angles(stands.angles))
+    return Imported(
+        found, scene, text, tuple(points), tuple(others), checks, stands, tuple(facts), tuple(doubts)
+    )
 
 
 @dataclass(frozen=True)
@@ -188,13 +211,12 @@ class _Wheel:
     """The points of one wheel.
 
     Attributes:
-        ours: by our names. others: the file's others. lines: those without a point, in words.
+        ours: by our names. others: the file's others.
         part, side: its axle and side, by the file; empty where that does not say.
     """
 
     ours: Mapping[str, FilePoint]
     others: tuple[FilePoint, ...]
-    lines: str
     part: str
     side: str
 
@@ -233,9 +255,9 @@ class _Import:
         axle = self.contents.axle(wheel.part)
         axis = self.spin_axis(axle)
         self.require_all(wheel, axis)
-        axes, axes_by, doubted = self.axes(wheel)
+        axes, axes_by, doubts = self.axes(wheel)
         unit, unit_by = self.unit()
-        doubts = [*doubted, *self.against_unit(unit, wheel)]
+        doubts += self.against_unit(unit, wheel)
         if not axes.right_handed:
             doubts.append(f"axes {axes.words} are left-handed: is one of them turned round?")
         turned = {name: axes.to_scene(place, unit) for name, place in wheel.places.items()}
@@ -246,7 +268,7 @@ class _Import:
             "here x rearward, y right, z up, in mm",
             *axle.notes,
             *([self.format.notes[kind]] if kind in self.format.notes else []),
-            *([f"lines without a point: {wheel.lines}"] if wheel.lines else []),
+            *([f"lines without a point: {lines}"] if (lines := self.lines) else []),
         ]
         if choices.mirror:
             facts.append(f"the file's wheel is a {side} one; here it is mirrored in the middle of the car")
@@ -257,22 +279,15 @@ class _Import:
             for name, other in topology.stand_ins.items()
             if name not in points
         ]
-        drawn = scene_of(self.source, kind, side, points.values())
-        stands = standing(drawn)
-        laws, scene = travel_of(drawn, stands)
-        words = self.format.words, drawn, points.values(), laws, facts, wheel.others
-        angles = check_angles(self.format.angles, axle.angles, stands.angles, wheel.places, topology)
-        return Imported(
-            format=self.format,
-            scene=scene,
-            text=scene_text(self.source, *words),
-            points=tuple(points.values()),
-            others=wheel.others,
-            angles=tuple(angles),
-            stands=stands,
-            facts=tuple(facts),
-            doubts=tuple(doubts),
+        angles = partial(check_angles, self.format.angles, axle.angles, wheel.places, topology)
+        return _written(
+            self.source, self.format, kind, side, [*points.values()], facts, wheel.others, doubts, angles
         )
+
+    @property
+    def lines(self) -> str:
+        """Lines that name something and are no points, in words."""
+        return some_of(self.contents.lines, NAMED)
 
     # Which suspension, and which of the file's points are which of ours.
 
@@ -287,10 +302,9 @@ class _Import:
             if kind := self.format.kind_called(said):
                 return kind
             known = ", ".join(f"{theirs} ({ours})" for theirs, ours in self.format.called.items())
-            raise self.refuse(
-                f"holds a suspension called {short(said)}" + (f" at its axle {part}" if part else ""),
-                f"{known}; a like one by another name: say so with --suspension",
-            )
+            at = f" at its axle {part}" if part else ""
+            allowed = f"{known}; a like one by another name: say so with --suspension"
+            raise self.refuse(f"holds a suspension called {short(said)}{at}", allowed)
         best = self.closest()
         if len(best) > 1:
             told = f"could be a {' or a '.join(best)}"
@@ -319,8 +333,8 @@ class _Import:
         needed = dict.fromkeys((*topology.required_points, *topology.wheel_axis))
         return [name for name in needed if name not in there]
 
-    def lookup(self, kind: str) -> Callable[[FilePoint], tuple[str, FilePoint]]:
-        """From a point of the file to our name, empty if it has none, with the side and axle of its name."""
+    def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
+        """The file's points that are ours, by our names and with the wheels of theirs, and the others."""
         ours = {plain(their): our for our, names in self.format.names_of(kind).items() for their in names}
         if self.format.our_own_names:
             ours |= {plain(name): name for name in mechanism_file(kind).points}
@@ -330,8 +344,8 @@ class _Import:
         ours |= {plain(their): our for our, their in self.own.names.items()}
         in_words = self.format.in_our_words
         worded = {in_words(their): our for their, our in ours.items()} if self.format.vocabulary else {}
-
-        def found(point: FilePoint) -> tuple[str, FilePoint]:
+        known, others = [], []
+        for point in self.contents.points:
             # Under a heading a name may be half of one: LOWER A-ARM over Front inboard.
             names = [point.name, *([f"{point.heading} {point.name}"] if point.heading else [])]
             for name, (base, (side, part)) in ((n, reading) for n in names for reading in self.readings(n)):
@@ -339,10 +353,12 @@ class _Import:
                     if side and point.side and side != point.side:
                         told = f"has {short(name)} for the {point.side} wheel"
                         raise self.refuse(told, "one side", point.line)
-                    return our, replace(point, name=name, side=side or point.side, part=part or point.part)
-            return "", point
-
-        return found
+                    side, part = side or point.side, part or point.part
+                    known.append((our, replace(point, name=name, side=side, part=part)))
+                    break
+            else:
+                others.append(point)
+        return known, others
 
     def readings(self, name: str) -> Iterator[tuple[str, Wheel]]:
         """A name whole, and without words of a wheel that it begins or ends with, and the wheel."""
@@ -354,11 +370,6 @@ class _Import:
             edge = [plain(word) for word in (*words[:ahead], *words[len(words) - behind :])]
             if base and all(word in WHEELS for word in edge):
                 yield " ".join(base), wheel_of(edge)
-
-    def named(self, kind: str) -> tuple[list[tuple[str, FilePoint]], list[FilePoint]]:
-        """The file's points that are ours, by our names, and the others."""
-        found = [self.lookup(kind)(point) for point in self.contents.points if not point.error]
-        return [(ours, point) for ours, point in found if ours], [point for ours, point in found if not ours]
 
     def chosen(self) -> _Wheel:
         """The points of the wheel that is asked for."""
@@ -378,17 +389,11 @@ class _Import:
         for ours, point in known:
             other = found.setdefault(ours, point) if point.of(part, side) else point
             if other.place != point.place:
-                told = f"has {ours} twice, {other.told} and {short(point.name)} "
-                more = "; the points of one wheel of one axle"
-                more = more if other.name == point.name else ", or a file of names (--names) that says which"
-                raise self.refuse(f"{told}elsewhere", f"one of them{more}", point.line)
-        spoilt = [point for point in self.contents.points if point.error and point.of(part, side)]
-        for our, point in map(self.lookup(self.kind), spoilt):
-            if our and point.error and point.of(part, side) and our not in {*found, *self.own.points}:
-                raise point.error
+                told = f"has {ours} twice, {other.told} and {short(point.name)} elsewhere"
+                allowed = "one of them; the points of one wheel of one axle, or a file of names (--names)"
+                raise self.refuse(told, allowed, point.line)
         others = [point for point in others if point.of(part, side)]
-        lines = some_of([*dict.fromkeys(point.told for point in spoilt)], NAMED)
-        return _Wheel(found | dict(self.own.points), tuple(others), lines, part, side)
+        return _Wheel(found | dict(self.own.points), tuple(others), part, side)
 
     def one_of(self, option: str, what: str, chosen: str | None, there: set[str]) -> str:
         """The part or side of a file that may hold several."""
@@ -415,14 +420,13 @@ class _Import:
         if not lost:
             return
         looked = (f"{n} (looked for: {', '.join(map(short, names[n]))})" if n in names else n for n in lost)
-        listed = some_of([point.told for point in wheel.others], NAMED)
+        told = f"lacks {', '.join(looked)} of a {self.kind}"
+        told += f"; not known in it: {some_of([p.told for p in wheel.others], NAMED)}" if wheel.others else ""
+        told += f"; without three numbers: {self.lines}" if self.lines else ""
         advice = f'a file of names (--names; a new one is written) with {lost[0]} = "its name"'
         advice += f" or {lost[0]} = [x, y, z]"
         if self.topology.wheel_axis[0] in lost:
             advice += "; for the spin axis --camber and --toe will do, + leaning out at the top and + toe in"
-        told = f"lacks {', '.join(looked)} of a {self.kind}"
-        told += f"; not known in it: {listed}" if listed else ""
-        told += f"; no points: {wheel.lines}" if wheel.lines else ""
         raise self.refuse(told, advice)
 
     def spin_axis(self, axle: Axle) -> SpinAxis | None:
@@ -432,11 +436,9 @@ class _Import:
             return axle.spin_axis
         if axle.spin_axis is not None:
             raise self.refuse("says where its spin axis points", "neither --camber nor --toe")
-        if camber is None or toe is None:
-            raise self.refuse("has one static angle said of it", "both --camber and --toe, or neither")
-        for option, angle in (("--camber", camber), ("--toe", toe)):
-            if not abs(angle) < 45.0:
-                raise self.refuse(f"has {option} {angle:g} said of it", "an angle of less than 45 deg")
+        if camber is None or toe is None or not max(abs(camber), abs(toe)) < 45.0:
+            allowed = "both --camber and --toe, each of less than 45 deg, or neither"
+            raise self.refuse(f"has --camber {camber} and --toe {toe} said of it", allowed)
         # Projected angles: tan(toe) = forward / outboard, tan(camber) = -up / outboard.
         direction = (tan(radians(toe)), 1.0, -tan(radians(camber)))
         return SpinAxis(direction, f"--camber {camber:g} and --toe {toe:g}, deg")
@@ -449,31 +451,28 @@ class _Import:
         Axes that nobody said and the car's points speak against are refused; those of the user are doubted.
         Which way is left no point shows: it decides which wheel this is.
         """
-        topology, seen, words = self.topology, None, ""
+        topology, both, words = self.topology, list[Axes](), ""
         # The mechanism need not say which of its points lie ahead of and above others.
         if topology.front_and_rear and topology.steering_axis:
             (front, rear), (low, high) = topology.front_and_rear, topology.steering_axis
             words = f"{front} seen from {rear} and {high} from {low}"
             seen = axes_seen(wheel.difference(rear, front), wheel.difference(low, high))
+            both = [] if seen is None else [seen, seen.other_handed]
         outboard = wheel.difference(topology.inboard, topology.wheel_centre)
-        both = [] if seen is None else [seen, seen.other_handed]
-        ways = [(one.option, SIDES[one.to_scene(outboard, "mm")[1] > 0]) for one in both]
-        every = [f"--axes {option} of a {side} wheel" for option, side in ways]
+        ways = {SIDES[one.to_scene(outboard, "mm")[1] > 0]: one.option for one in both}
         said, by = self.axes_said(wheel)
+        # A wheel of a known side shows which of both.
+        known = self.choices.side or wheel.side if said is None else ""
+        fit = " or ".join(f"--axes {option} of a {s} wheel" for s, option in ways.items() if known in ("", s))
         if said is None:
-            # A wheel of a known side shows it.
-            known = self.choices.side or wheel.side
-            some = [one for one, (_, side) in zip(every, ways, strict=True) if known in ("", side)]
-            fit = f"{' or '.join(some)}, as {words} lie; or others, if they are so"
-            raise self.refuse(
-                "does not say where x, y and z point", fit if some else f"--axes with {ALLOWED}"
-            )
-        if seen is None or said in both:
+            fit = f"{fit}, as {words} lie; or others, if they are so" if fit else f"--axes with {ALLOWED}"
+            raise self.refuse("does not say where x, y and z point", fit)
+        if not both or said in both:
             return said, by, []
-        told = f"has axes {said.words} by {by}, but {words} lie as in {seen.words}"
+        told = f"has axes {said.words} by {by}, but {words} lie as in {both[0].words}"
         if self.choices.axes is not None:
             return said, by, [f"{told}: are these the right axes and names?"]
-        raise self.refuse(told, f"{' or '.join(every)} if that is so, --axes {said.option} if not")
+        raise self.refuse(told, f"{fit} if that is so, --axes {said.option} if not")
 
     def axes_said(self, wheel: _Wheel) -> tuple[Axes | None, str]:
         """The axes that somebody says, and who; points under our own names have our own axes."""
@@ -530,13 +529,9 @@ class _Import:
                     allowed += f"; or --side {seen} --mirror makes the {said} wheel of it"
                 raise self.refuse(f"has a {said} wheel by {by}, but {where}", allowed)
         if (lies > 0) != (out > 0) and not any(by_whom.values()):
-            raise self.refuse(
-                f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car",
-                f"--side {seen} if y is not counted from the middle, or other --axes",
-            )
+            told = f"has {where}, but {abs(lies):.6g} mm to the {SIDES[lies > 0]} of the middle of the car"
+            raise self.refuse(told, f"--side {seen} if y is not counted from the middle, or other --axes")
         return seen
-
-    # The scene's points.
 
     def placed(
         self, wheel: _Wheel, turned: Mapping[str, Place], axis: SpinAxis | None, side: str

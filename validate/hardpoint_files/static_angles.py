@@ -40,9 +40,9 @@ class AngleCheck:
 def check_angles(
     patterns: Mapping[str, str],
     printed: Mapping[str, tuple[Decimal, int]],
-    drawn: Mapping[str, float],
     places: Mapping[str, Place],
     topology: Topology,
+    drawn: Mapping[str, float],
 ) -> Iterator[AngleCheck]:
     """Each angle that the file prints and the drawing has.
 
@@ -51,7 +51,7 @@ def check_angles(
     plane is seen at least 1 / sqrt(2) of its length L long: by 4 h / L.
 
     Args:
-        patterns: of the file's words, for our names. drawn: our angles, rad. places: as the file has them.
+        patterns: of the file's words, for our names. places: as the file has them. drawn: our angles, rad.
     """
     axes = [ends for ends in (topology.wheel_axis, topology.steering_axis) if ends and {*ends} <= {*places}]
     left_open = 0.0
