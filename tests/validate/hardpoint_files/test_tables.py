@@ -257,14 +257,6 @@ wheel_centre WC|Wheel Center|wheelCentre|Wheel centre point
 """
 
 
-def test_numbers_under_other_titles_are_told(tmp_path: Path) -> None:
-    others = "RX,Mass,MIN X"
-    text = "\n".join([f"Point,X,Y,Z,{others}", *(f"{row},1.5,2.5,3.5" for row in rows(str))])
-    found = imported(tmp_path, text, axes=OURS)
-    assert drawn(found) == CAR
-    assert {f"the column '{title}' is not read" for title in others.split(",")} <= {*found.facts}
-
-
 def test_a_point_is_known_by_many_names() -> None:
     csv = formats()["csv"]
     theirs = {csv.in_our_words(name): our for our, names in csv.names.items() for name in names}
@@ -298,39 +290,56 @@ def test_a_strut_is_known_by_its_words(tmp_path: Path) -> None:
     assert {name: drawn(found)[name] for name in points} == points
 
 
-def test_axes_that_nobody_says_are_asked_for_with_those_that_fit(tmp_path: Path) -> None:
-    text = "\n".join(["Point,X,Y,Z", *rows(str)])
+SPELT = [f"{name.replace('_', ' ').title()},{cells(place)}" for name, place in CAR.items()]
+
+
+@pytest.mark.parametrize(
+    ("lines", "side", "words", "others"),
+    [
+        (rows(str), None, ("--axes rearward,right,up of a right", "--axes rearward,left,up of a left"), ()),
+        (rows(str), "right", ("of a right wheel",), ("of a left wheel",)),
+        # Our own words in another's spelling are not our own names.
+        (SPELT, None, ("does not say where",), ()),
+    ],
+)
+def test_axes_that_nobody_says_are_asked_for_with_those_that_fit(
+    lines: Sequence[str], side: str | None, words: Sequence[str], others: Sequence[str], tmp_path: Path
+) -> None:
     with pytest.raises(FileError, match="does not say where x, y and z point") as caught:
-        imported(tmp_path, text)
-    for words in ("--axes rearward,right,up of a right wheel", "--axes rearward,left,up of a left wheel"):
-        assert words in str(caught.value)
-    with pytest.raises(FileError) as caught:
-        imported(tmp_path, text, side="right")
-    assert "of a left wheel" not in str(caught.value)
-    # Our own words in another's spelling are not our own names.
-    spelt = "\n".join(["Point,X,Y,Z", *(f"{n.replace('_', ' ').title()},{cells(p)}" for n, p in CAR.items())])
-    with pytest.raises(FileError, match="does not say where"):
-        imported(tmp_path, spelt)
+        imported(tmp_path, "\n".join(["Point,X,Y,Z", *lines]), side=side)
+    assert [word for word in words if word not in str(caught.value)] == []
+    assert [word for word in others if word in str(caught.value)] == []
 
 
-def test_titles_or_names_may_say_where_axes_point(tmp_path: Path) -> None:
-    text = "\n".join(["Point,X (rearward),Y [right],Z (up)", *rows(str)])
-    found = imported(tmp_path, text)
+METRES = {name: tuple(n / 1000 for n in place) for name, place in CAR.items()}
+NUMBERED = (f"{z!r},{i},{x!r},{WORDS[n]},{y!r}" for i, (n, (x, y, z)) in enumerate(CAR.items(), 1))
+
+
+@pytest.mark.parametrize(
+    ("text", "choices", "facts"),
+    [
+        (table(), {}, ("by names such as 'CHAS_LowFor'",)),
+        (table(per_unit="1000", titles="Point Name,X (m),Y (m),Z (m)\n"), {}, ("in m, by the file",)),
+        (table(ending="_FR"), {}, ()),
+        (table(order=(2, 1, 0), signs=(1, -1, 1)), {"axes": "up,left,rearward"}, ("by --axes",)),
+        ("\n".join(["Point,X (rearward),Y [right],Z (up)", *rows(str)]), {}, ("by its titles",)),
+        ("\n".join(["Point,x_m,y_m,z_m", *rows(str, METRES)]), {"axes": OURS}, ()),
+        ("\n".join(["Point,X metres,Y metres,Z metres", *rows(str, METRES)]), {"axes": OURS}, ()),
+        ("\n".join(["Z,No.,X,Name,Y", *NUMBERED]), {"axes": OURS}, ()),
+        (
+            "\n".join(["Point,X,Y,Z,RX,Mass", *(f"{row},1.5,2.5" for row in rows(str))]),
+            {"axes": OURS},
+            ("the column 'RX' is not read", "the column 'Mass' is not read"),
+        ),
+    ],
+)
+def test_a_table_is_the_car_however_it_is_written(
+    text: str, choices: Mapping[str, str], facts: Sequence[str], tmp_path: Path
+) -> None:
+    found = imported(tmp_path, text, **choices)
     assert drawn(found) == CAR
-    assert any("by its titles" in fact for fact in found.facts)
-    by_names = imported(tmp_path, table())
-    assert any("by names such as 'CHAS_LowFor'" in fact for fact in by_names.facts)
-
-
-@pytest.mark.parametrize("titles", ["Point,x_m,y_m,z_m", "Point,X in metres,Y in metres,Z in metres"])
-def test_a_unit_is_read_wherever_the_titles_have_it(titles: str, tmp_path: Path) -> None:
-    metres = {name: tuple(n / 1000 for n in place) for name, place in CAR.items()}
-    if "in metres" in titles:
-        # Two units stand there, of which one is a word.
-        titles = titles.replace(" in ", " ")
-    found = imported(tmp_path, "\n".join([titles, *rows(str, metres)]), axes=OURS)
-    for name, place in drawn(found).items():
-        assert place == pytest.approx(CAR[name], rel=1e-15, abs=1e-12)
+    assert found.scene.mechanism.side == "right"
+    assert [fact for fact in facts if not any(fact in said for said in found.facts)] == []
 
 
 # Other forms of a table.
@@ -361,11 +370,6 @@ $---------------------------------------------------------------------PARAMETER
 {{parameter_name               symmetry      type            value}}
  'kinematic_flag'             'single'      'integer'       0
 """
-
-
-def test_columns_in_another_order_and_numbers_of_lines_make_the_same_car(tmp_path: Path) -> None:
-    lines = (f"{z!r},{i},{x!r},{WORDS[n]},{y!r}" for i, (n, (x, y, z)) in enumerate(CAR.items(), 1))
-    assert drawn(imported(tmp_path, "\n".join(["Z,No.,X,Name,Y", *lines]), axes=OURS)) == CAR
 
 
 def test_hardpoints_of_adams_car_are_known_by_their_names_with_their_axes_and_sides(tmp_path: Path) -> None:
