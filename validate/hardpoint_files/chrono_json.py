@@ -38,11 +38,6 @@ STEERED = "the tie rod's inner end runs along a straight rack across the car, wh
 _COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*[\s\S]*?\*/')
 
 
-def _without_comment(found: re.Match[str]) -> str:
-    """Texts as they are; comments as the line breaks in them."""
-    return found[0] if found[0].startswith('"') else "\n" * found[0].count("\n") + " "
-
-
 @dataclass(frozen=True)
 class _Json:
     """A file, and what it holds."""
@@ -57,34 +52,35 @@ class _Json:
         Raises:
             FileError: it is no JSON, or no table.
         """
-        clean = _COMMENT.sub(_without_comment, text)
+        # Comments leave the line breaks in them.
+        clean = _COMMENT.sub(lambda f: f[0] if f[0][0] == '"' else "\n" * f[0].count("\n") + " ", text)
         try:
             data = json.loads(clean, parse_float=Decimal, parse_int=Decimal, parse_constant=Decimal)
-        except json.JSONDecodeError as error:
-            raise FileError(source, error.lineno, f"is no JSON: {error.msg}", FORM) from None
         except (ValueError, RecursionError, DecimalException) as error:
-            raise FileError(source, 0, f"is no JSON: {error}", FORM) from None
+            line = getattr(error, "lineno", 0)
+            raise FileError(source, line, f"is no JSON: {getattr(error, 'msg', error)}", FORM) from None
         if not isinstance(data, dict):
             raise FileError(source, 1, f"is a {type(data).__name__}", FORM)
         return cls(source, data)
 
     @property
-    def template(self) -> Any:
-        """What kind it is of its type; anything."""
-        return self.data.get("Template")
+    def kind(self) -> str:
+        """Its type and template, in words."""
+        kind, template = (short(str(self.data.get(key))) for key in ("Type", "Template"))
+        return f"is a file of Chrono's of Type {kind} and Template {template}"
 
     @property
     def is_suspension(self) -> bool:
         """Whether it is a suspension of some kind."""
-        return self.data.get("Type") == "Suspension" and bool(self.template)
+        return self.data.get("Type") == "Suspension" and bool(self.data.get("Template"))
 
     def refuse(self, told: str, allowed: str) -> FileError:
         return FileError(self.source, 0, told, allowed)
 
-    def named(self, name: object, place: str) -> _Json:
-        """The file that it names at a place, from the nearest folder above it that has one of that name."""
+    def named(self, name: object) -> _Json:
+        """The suspension that it names, from the nearest folder above it that has a file of that name."""
         if not isinstance(name, str):
-            raise self.refuse(f"has no {place}", "the name of a file")
+            raise self.refuse(f"has no {SUSPENSION} of an axle", "the name of a file")
         paths = (folder / name for folder in Path(self.source).absolute().parents)
         path = next((path for path in paths if path.is_file()), None)
         if path is None:
@@ -92,7 +88,10 @@ class _Json:
             allowed = "a vehicle in Chrono's folder of data with the files that it names"
             raise self.refuse(told, f"{allowed}, or a suspension's own file")
         data = read_file(path, f"the path of a file that {self.source} names")
-        return _Json.of(data.decode("utf-8-sig", "replace"), str(path))
+        found = _Json.of(data.decode("utf-8-sig", "replace"), str(path))
+        if not found.is_suspension:
+            raise found.refuse(f"{found.kind}, and {self.source} has it as a suspension", KINDS)
+        return found
 
     def place(self, value: object, name: str) -> Place:
         """Three coordinates."""
@@ -119,12 +118,12 @@ def read(text: str, source: str) -> Contents:
     file = _Json.of(text, source)
     if not file.is_suspension:
         return _vehicle(file)
-    points, axle = _suspension(file)
     framed = "points are in the frame of the suspension, which the car's own file puts somewhere"
-    return Contents(tuple(points), {"": replace(axle, notes=(framed, STEERED))})
+    points, axle = _suspension(file, framed)
+    return Contents(tuple(points), {"": axle})
 
 
-def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
+def _suspension(file: _Json, note: str) -> tuple[list[FilePoint], Axle]:
     """The points of a suspension, and its spin axis."""
     points = [
         FilePoint(f"{part}: {key}", file.place(value, f"{part}: {key}"))
@@ -136,22 +135,15 @@ def _suspension(file: _Json) -> tuple[list[FilePoint], Axle]:
     camber, toe = (file.angle(key) for key in (CAMBER, TOE))
     # The left spindle's own y axis: R_z(-toe) R_x(-camber) e_y in Chrono's axes (ChDoubleWishbone.cpp).
     axis = (sin(toe) * cos(camber), cos(toe) * cos(camber), -sin(camber))
-    taken = (
-        f"{key} {file.data[key]}" if key in file.data else f"no {key}, which is 0 then"
-        for key in (CAMBER, TOE)
-    )
-    return points, Axle(str(file.template), {}, SpinAxis(axis, " and ".join(taken)))
-
-
-# A vehicle, and the files that it names.
+    taken = " and ".join(f"{key} {file.data.get(key, 'not given, which is 0')}" for key in (CAMBER, TOE))
+    return points, Axle(str(file.data["Template"]), {}, SpinAxis(axis, taken), (note, STEERED))
 
 
 def _vehicle(file: _Json) -> Contents:
     """The suspensions of a vehicle, each in the frame of its chassis, by axle."""
-    kind, axles = file.data.get("Type"), file.data.get(AXLES)
-    if kind != "Vehicle" or not isinstance(axles, list):
-        told = f"is a file of Chrono's of Type {short(str(kind))} and Template {short(str(file.template))}"
-        raise file.refuse(told, KINDS)
+    axles = file.data.get(AXLES)
+    if file.data.get("Type") != "Vehicle" or not isinstance(axles, list):
+        raise file.refuse(file.kind, KINDS)
     if not axles or not all(isinstance(axle, dict) for axle in axles):
         raise file.refuse(f"has no {AXLES}", f"one with {SUSPENSION} each")
     places = [file.place(axle.get(PLACE), f"{PLACE} of axle {i}") for i, axle in enumerate(axles, 1)]
@@ -161,19 +153,12 @@ def _vehicle(file: _Json) -> Contents:
         if place[1]:
             told = f"{PLACE} of its {label} axle has y {place[1]}, beside the middle of the car"
             raise file.refuse(told, "y 0")
-        own = file.named(axle.get(SUSPENSION), f"{SUSPENSION} of an axle")
-        if not own.is_suspension:
-            told = f"is of Type {short(str(own.data.get('Type')))}, and {file.source} has it as a suspension"
-            raise own.refuse(told, "Type Suspension with a Template")
-        theirs, alone = _suspension(own)
+        own = file.named(axle.get(SUSPENSION))
+        into = f"moved by its {PLACE} {[float(n) for n in place]} m into the frame of the chassis"
+        theirs, read[label] = _suspension(own, f"points are those of {own.source}, {into}")
         for point in theirs:
             x, y, z = (a + b for a, b in zip(point.place, place, strict=True))
             points.append(replace(point, part=label, place=(x, y, z)))
-        moved = (
-            f"points are those of {own.source}, moved by its {PLACE} "
-            f"{[float(n) for n in place]} m into the frame of the chassis"
-        )
-        read[label] = replace(alone, notes=(moved, STEERED))
     return Contents(tuple(points), read)
 
 

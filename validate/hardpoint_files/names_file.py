@@ -61,29 +61,25 @@ def read_names(path: str) -> NamesFile:
         data = tomllib.loads(text, parse_float=Decimal)
     except (ValueError, RecursionError, DecimalException) as error:
         raise FileError(path, 0, f"is not TOML: {error}", FORM) from None
-    table, said = data.pop("table", {}), data.pop("names", {})
-    if data or not isinstance(said, dict):
-        told = f"has the key {short(next(iter(data)))}" if data else "has no table [names]"
-        raise FileError(path, 0, told, FORM)
-    if table and (
-        not isinstance(table, dict)
-        or not COLUMNS <= table.keys() <= COLUMNS | {"corner"}
-        or not all(isinstance(one, str) or (type(one) is int and one > 0) for one in table.values())
+    table, said = data.get("table", {}), data.get("names", {})
+    if data.keys() - {"table", "names"} or not isinstance(said, dict) or not isinstance(table, dict):
+        raise FileError(path, 0, f"has {short(', '.join(data))}", FORM)
+    known = COLUMNS <= table.keys() <= COLUMNS | {"corner"}
+    if table and not (
+        known and all(isinstance(n, str) or (type(n) is int and n > 0) for n in table.values())
     ):
-        told = f"[table] is {short(str(table))}"
-        raise FileError(path, 0, told, "name, x, y, z and corner, each a title or a number from 1")
+        allowed = "name, x, y, z and corner, each a title or a number from 1"
+        raise FileError(path, 0, f"[table] is {short(str(table))}", allowed)
     ours = tuple(dict.fromkeys(point for kind in shipped() for point in mechanism_file(kind).points))
-    names: dict[str, str] = {}
-    points: dict[str, FilePoint] = {}
+    if wrong := next((name for name in said if name not in ours), None):
+        raise UnknownName(f"point of ours in {path}", wrong, ours)
     for name, value in said.items():
-        if name not in ours:
-            raise UnknownName(f"point of ours in {path}", name, ours)
-        if isinstance(value, str):
-            names[name] = value
-        elif not isinstance(value, list) or not all(type(one) in (int, Decimal) for one in value):
+        if not isinstance(value, str | list):
             raise FileError(path, 0, f"{name} is {short(str(value))}", FORM)
-        else:
-            points[name] = FilePoint(f"given in {path}", place_of(value, path, 0, name))
+    names = {name: value for name, value in said.items() if isinstance(value, str)}
+    points = {
+        n: FilePoint(f"given in {path}", place_of(v, path, 0, n)) for n, v in said.items() if n not in names
+    }
     return NamesFile(names, points, table)
 
 

@@ -21,7 +21,7 @@ from pointcoord.mechanism.inputs import Height
 from pointcoord.mechanism.structure import CLOSING
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
-from validate.toml_written import key_of, value_of
+from validate.toml_written import key_of, value_of, written
 
 # mm of wheel travel up and down, where both ends are far enough: far from where links lie in line.
 TRAVEL, FAR_ENOUGH = 30.0, 40.0
@@ -177,32 +177,24 @@ def scene_text(
         f"# Imported from {shown(Path(source).name)}, a {format_words}.",
         *(f"# {shown(fact)}." for fact in facts),
         f"title = {value_of(drawn.title)}",
-        f"effects = [{', '.join(map(value_of, drawn.effects))}]",
+        f"effects = {value_of(drawn.effects)}",
         f"tolerance = {drawn.tolerance:g}",
-        "",
-        "[mechanism]",
+        *("", "[mechanism]"),
         *([f"type = {value_of(part.type)}"] if part.type else []),
         f"side = {value_of(part.side)}",
-        "",
-        "[mechanism.points]    # mm",
+        *("", "[mechanism.points]    # mm"),
         *(f"{name.ljust(first)} = {place.ljust(second)}    # {shown(words)}" for name, place, words in rows),
         *(f"# not used: {shown(point.source)}" for point in others),
-        *(
-            line
-            for name, table in tables.items()
-            for line in (
-                "",
-                f"[mechanism.{name}]",
-                *(f"{key_of(entry)} = {value_of(value)}" for entry, value in table.items()),
-            )
-        ),
+    ]
+    for name, table in tables.items():
+        lines += [
+            "",
+            f"[mechanism.{name}]",
+            *(f"{key_of(key)} = {value_of(one)}" for key, one in table.items()),
+        ]
+    lines += [
         "",
         "[inputs]",
         *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),
-        *(
-            line
-            for table in _times(laws).values()
-            for line in ("", "[time]    # s", *(f"{key} = {value}" for key, value in table.items()))
-        ),
     ]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *written(_times(laws))]) + "\n"

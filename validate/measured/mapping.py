@@ -42,7 +42,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from pointcoord import Scene, SceneError
-from pointcoord.effects.conventions import CONVENTIONS, Convention, ConventionName
+from pointcoord.effects.conventions import CONVENTIONS, ConventionName
 from pointcoord.mechanism.faults import fault_of
 from pointcoord.toml_text import parsed, read_file
 from pointcoord.wording import meant
@@ -262,28 +262,24 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
     independent = map.independent(found)
     even = [s.column for s in independent if not s.said and s.off.any() and s.even]
     independent = tuple(replace(s, off=0.0 * s.off) if s.column in even else s for s in independent)
-    over_time = independent[0].meaning.kind == TIME
-    rates = () if over_time else tuple(s for s in found if s.meaning.kind == "rate")
+    rates = tuple(s for s in found if s.meaning.kind == "rate" and independent[0].meaning.kind != TIME)
     taken = {s.column for s in (*independent, *rates)}
     numbers = tuple(s for s in found if s.meaning.kind == "number" and s.column not in taken)
     if not numbers:
         allowed = f"columns such as {', '.join(map.known[:4])}"
         raise FileError(columns.source, "", "holds nothing to compare", allowed)
-    beside = [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]
-    notes = list(map.ignored)
+    notes = []
+    if out := [name for name, one in map.filled.items() if one is None]:
+        notes.append(f"ignored: {listed(out)} (name not recognised, without a unit, or as the map says)")
     if even:
         names = listed(even, " and ")
         notes.append(f"{names}: in even steps, taken as exact; if rounded, say printed = STEP of it in a map")
-    if beside:
+    if beside := [s.column for s in found if s.meaning.kind != "number" and s.column not in taken]:
         over = listed((s.column for s in independent), " and ")
         notes.append(f"{listed(beside)} is not compared: rows are taken by {over}")
     for s in numbers:
         if lacking := int(np.isnan(s.values).sum()):
             notes.append(f"{shown(s.column)} has no number in {lacking} of {len(s.values)} rows")
-    held, held_rates = (
-        {name: value for name, value in map.held.items() if (map.meanings[name].kind == "rate") is rate}
-        for rate in (False, True)
-    )
     lost: NDArray[np.bool_] = np.asarray(np.isnan([s.values for s in independent]).any(axis=0))
     if lost.all():
         raise FileError(columns.source, "", "no row says at which pose it is", "at least one")
@@ -294,13 +290,13 @@ def understood(columns: Columns, content: Mapping[str, Any], scene: Scene, where
         source=columns.source,
         independent=independent,
         numbers=numbers,
-        held=held,
+        held=map.held(rates=False),
         rolling_radius=map.said.rolling_radius,
-        solve_for=map.solve_for,
+        solve_for=map.said.solve_for,
         rows=columns.rows,
         notes=tuple(notes),
         rates=rates,
-        held_rates=held_rates,
+        held_rates=map.held(rates=True),
     ).taken(~lost)
 
 
@@ -325,17 +321,32 @@ def map_to_fill_in(file: str, scene: Scene) -> str:
         "",
         "[columns]",
     ]
-    for name in columns.names:
-        meaning, unit = map.meant_by[name], map.unit_of(name)
-        off = "" if meaning and unit else "# "
-        words = value_of({"is": meaning.words if meaning else "", "unit": shown(unit)})
-        lines.append(f"{off}{key_of(shown(name))} = {words}")
+    for (name, one), unit in zip(map.filled.items(), columns.units, strict=True):
+        said = {"is": one.meaning.words if one else "", "unit": shown(one.unit if one else unit)}
+        lines.append(f"{'' if all(said.values()) else '# '}{key_of(shown(name))} = {value_of(said)}")
     return "\n".join(lines) + "\n"
 
 
 def listed(names: Iterable[str], by: str = ", ") -> str:
     """Names of a file as they can be shown."""
     return by.join(map(shown, names))
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a column is, by a map that says everything of it.
+
+    Attributes:
+        name, at: in the file. unit: as the map or the file says it; empty where neither does.
+        sign: of the map, of a minus before its name, or of the convention. said: what else the map says.
+    """
+
+    name: str
+    at: int
+    meaning: Meaning
+    unit: str
+    sign: int
+    said: ColumnSaid
 
 
 @dataclass(frozen=True)
@@ -348,15 +359,17 @@ class _Map:
     scene: Scene
 
     def __post_init__(self) -> None:
-        for name in self.said.columns:
-            if name not in self.columns.names:
-                hint = meant(name, self.columns.names)
-                problem = f"no column of {self.columns.source} is called {shown(name)!r}{hint}"
-                raise self._wrong("columns", problem, ", ".join(self.columns.names))
+        self._require("columns", self.said.columns, self.columns.names, f"column of {self.columns.source}")
+        self._require("held", self.said.held, self._may_be_held, "input or travel")
+        if self.said.solve_for:
+            inputs = self.scene.mechanism.topology.required_inputs
+            self._require("solve_for", [self.said.solve_for], inputs, "input that a travel is reached by")
 
-    def _part(self, column: str) -> ColumnSaid:
-        """What is said of a column."""
-        return self.said.columns.get(column) or ColumnSaid()
+    def _require(self, place: str, names: Iterable[str], known: Sequence[str], what: str) -> None:
+        for name in names:
+            if name not in known:
+                problem = f"no {what} is called {shown(name)!r}{meant(name, known)}"
+                raise self._wrong(place, problem, ", ".join(known))
 
     def _wrong(self, place: str, problem: str, allowed: str) -> FileError:
         """The map is at fault."""
@@ -366,28 +379,19 @@ class _Map:
         """A column of the file is at fault."""
         return FileError(self.columns.source, f"column {shown(column)!r}", problem, allowed)
 
-    @property
-    def solve_for(self) -> str:
-        """The input that a travel is reached by; empty if the map does not say it."""
-        value, inputs = self.said.solve_for, self.scene.mechanism.topology.required_inputs
-        if value and value not in inputs:
-            raise self._wrong("solve_for", f"is {value!r}", ", ".join(inputs))
-        return value
-
-    @property
-    def held(self) -> dict[str, float]:
-        """Inputs and travels that every row has, by their names here: input.NAME and travel.POINT."""
-        whole = tuple(words for words, one in self.meanings.items() if one.kind in (TRAVEL, "rate"))
-        every = (*self.scene.mechanism.topology.inputs, *whole)
-        for name in self.said.held:
-            if name not in every:
-                problem = f"no input or travel is called {shown(name)!r}{meant(name, every)}"
-                raise self._wrong("held", problem, ", ".join(every))
-        return {n if n in whole else f"{INPUT}.{n}": value for n, value in self.said.held.items()}
-
     @cached_property
     def meanings(self) -> dict[str, Meaning]:
         return meanings_of(self.scene.mechanism.topology)
+
+    @property
+    def _may_be_held(self) -> tuple[str, ...]:
+        whole = tuple(words for words, one in self.meanings.items() if one.kind in (TRAVEL, "rate"))
+        return (*self.scene.mechanism.topology.inputs, *whole)
+
+    def held(self, rates: bool) -> dict[str, float]:
+        """Inputs and travels that every row has, or rates of these, by their whole names."""
+        whole = {n if n in self.meanings else f"{INPUT}.{n}": value for n, value in self.said.held.items()}
+        return {n: value for n, value in whole.items() if (self.meanings[n].kind == "rate") is rates}
 
     @property
     def known(self) -> tuple[str, ...]:
@@ -395,79 +399,73 @@ class _Map:
         numbers = [one for one in self.meanings.values() if one.kind == "number"]
         return tuple(one.words for one in sorted(numbers, key=lambda one: one.axis is not None))
 
-    @cached_property
-    def meant_by(self) -> dict[str, Meaning | None]:
-        """What each column of numbers is; None what is to be left out."""
-        return {column: self.meaning(column) for column in self.columns.names}
+    # The map as it would be if it said everything.
 
-    @property
-    def ignored(self) -> tuple[str, ...]:
-        """Columns that are left out, in words."""
-        out = [name for name, one in self.meant_by.items() if one is None]
-        why = "name not recognised, without a unit, or as the map says"
-        return (f"ignored: {listed(out)} ({why})",) if out else ()
-
-    def meaning(self, column: str) -> Meaning | None:
-        """What a column is; None for what is to be left out.
-
-        Raises:
-            FileError: the map gives it a name that there is not.
-        """
-        said = self._part(column).is_
-        if said is None:
-            name = column.removeprefix("-")
-            found = self._named(name) or self._named(name.removesuffix(f"_{_unit_at_the_end(name)}"))
-            if self.said.columns and column not in self.said.columns:
-                return found if column in self.meanings or self._goes_along(column, found) else None
-            return found
-        if said == IGNORE:
-            return None
-        found = self._named(said)
-        if found is None:
-            every = (*self.meanings, IGNORE)
-            hint = meant(said, (*every, *{n.partition(".")[2]: n for n in every if "." in n}))
-            allowed = (
-                f"{TIME}, {INPUT}.NAME, {TRAVEL}.POINT, {TRAVEL}.{CONTACT}, QUANTITY.NAME[.AXIS] such as "
-            )
-            allowed += f"{', '.join(self.known[:5])}, or {IGNORE}"
-            raise self._wrong(f"columns.{column}.is", f"nothing is called {shown(said)!r}{hint}", allowed)
-        return found
-
-    def _goes_along(self, column: str, found: Meaning | None) -> bool:
-        """Whether a column that a map does not name is a number of ours beside those that it names."""
-        said = [name if part.is_ is None else part.is_ for name, part in self.said.columns.items()]
-        taken = any(self._named(name) == found for name in said)
-        return found is not None and found.kind == "number" and not taken and bool(self.unit_of(column))
-
-    def _named(self, name: str) -> Meaning | None:
-        """Its meaning; of a name that is no whole one of ours, by the convention."""
+    def _lookup(self, name: str) -> tuple[Meaning | None, int]:
+        """Its meaning and sign; of a name that is no whole one of ours, by the convention."""
         found = named(name, self.meanings)
         if found is None or found.kind != "number" or name in self.meanings:
-            return found
-        meant_by, _ = self._convention.number(found.name)
-        return found if meant_by == found.name else named(meant_by, self.meanings)
+            return found, 1
+        meant_by, sign = CONVENTIONS[self.said.convention or self.scene.convention].number(found.name)
+        return (found if meant_by == found.name else named(meant_by, self.meanings)), sign
 
-    @property
-    def _convention(self) -> Convention:
-        return CONVENTIONS[self.said.convention or self.scene.convention]
+    @cached_property
+    def filled(self) -> dict[str, Column | None]:
+        """What each column is; None what is left out.
+
+        Raises:
+            FileError: the map gives a column a name that there is not.
+        """
+        every = self.said.columns
+        taken = [self._lookup(name if part.is_ is None else part.is_)[0] for name, part in every.items()]
+        found: dict[str, Column | None] = {}
+        for at, name in enumerate(self.columns.names):
+            part, own, base = every.get(name) or ColumnSaid(), _unit_at_the_end(name), name.removeprefix("-")
+            unit = (self.columns.units[at] or own) if part.unit is None else part.unit
+            meaning, sign = self._lookup(base if part.is_ is None else part.is_)
+            if part.is_ is None and meaning is None:
+                meaning, sign = self._lookup(base.removesuffix(f"_{own}"))
+            if part.is_ not in (None, IGNORE) and meaning is None:
+                raise self._unknown(name, part.is_)
+            if every and name not in every and name not in self.meanings and meaning is not None:
+                # Beside columns that a map names, a number goes along that no other is said to be.
+                along = meaning.kind == "number" and meaning not in taken and unit
+                meaning = meaning if along else None
+            sign = -1 if name.startswith("-") and part.is_ is None else sign
+            sign = part.sign if "sign" in part.model_fields_set else sign
+            found[name] = None if meaning is None else Column(name, at, meaning, unit, sign, part)
+        return found
+
+    def _unknown(self, column: str, said: str | None) -> FileError:
+        every, name = (*self.meanings, IGNORE), said or ""
+        hint = meant(name, (*every, *{n.partition(".")[2]: n for n in every if "." in n}))
+        allowed = f"{TIME}, {INPUT}.NAME, {TRAVEL}.POINT, {TRAVEL}.{CONTACT}, QUANTITY.NAME[.AXIS] such as "
+        allowed += f"{', '.join(self.known[:5])}, or {IGNORE}"
+        return self._wrong(f"columns.{column}.is", f"nothing is called {shown(name)!r}{hint}", allowed)
+
+    # Columns in our units.
 
     def series(self) -> list[Series]:
         """Every column that means something, in our units; derivatives after what they are by."""
         found: dict[str, Series] = {}
-        by_column = {column: one for column, one in self.meant_by.items() if one is not None}
-        slopes = [
-            column
-            for column, one in by_column.items()
-            if one.kind == "number" and (one.per or below_of(self.unit_of(column), one.unit))
-        ]
-        for column in sorted(by_column, key=lambda column: column in slopes):
-            meaning = by_column[column]
-            if column in slopes:
-                meaning = self._derivative(column, meaning, self.independent([*found.values()]))
-            if meaning.words in found:
-                both = f"columns {shown(found[meaning.words].column)!r} and {shown(column)!r}"
-                raise self._wrong("columns", f"{both} are both {meaning.words}", "one column for each")
-            found[meaning.words] = self._one(column, meaning)
+        there = [one for one in self.filled.values() if one is not None]
+        slopes = {
+            one.name
+            for one in there
+            if one.meaning.kind == "number" and (one.meaning.per or below_of(one.unit, one.meaning.unit))
+        }
+        signs = {one.meaning.words: one.sign for one in there}
+        for one in sorted(there, key=lambda one: one.name in slopes):
+            column = one
+            if one.name in slopes:
+                column = replace(one, meaning=self._derivative(one, self.independent([*found.values()])))
+                # A derivative is by its own column, which goes the other way than ours where the map says so.
+                column = replace(column, sign=column.sign * signs.get(column.meaning.per, 1))
+            words = column.meaning.words
+            if words in found:
+                both = f"columns {shown(found[words].column)!r} and {shown(column.name)!r}"
+                raise self._wrong("columns", f"{both} are both {words}", "one column for each")
+            found[words] = self._in_ours(column)
         if not found:
             near = next((h for n in self.columns.names if (h := meant(n, self.known))), "")
             problem = f"none of {listed(self.columns.names)} is a name that we know{near}"
@@ -475,19 +473,13 @@ class _Map:
             raise FileError(self.columns.source, "names of the columns", problem, allowed)
         return list(found.values())
 
-    def unit_of(self, column: str) -> str:
-        """The unit of a column as the map or the file says it; empty where neither does."""
-        said = self._part(column).unit
-        if said is not None:
-            return said
-        return self.columns.units[self.columns.names.index(column)] or _unit_at_the_end(column)
-
-    def _derivative(self, column: str, meaning: Meaning, independent: Sequence[Series]) -> Meaning:
+    def _derivative(self, column: Column, independent: Sequence[Series]) -> Meaning:
         """What a derivative is by, of the columns that rows are taken by."""
-        unit, of = self.unit_of(column), replace(meaning, per="")
+        meaning, unit = column.meaning, column.unit
+        of = replace(meaning, per="")
         if "/" in meaning.unit or (meaning.quantity != PLACES and angle_of(meaning) is None):
             problem, allowed = f"is a derivative of {of.words}", "one of a coordinate or an angle of a line"
-            raise self._column(column, problem, allowed)
+            raise self._column(column.name, problem, allowed)
         below, by = below_of(unit, meaning.unit), meaning.per
         fitting = [
             s
@@ -497,63 +489,47 @@ class _Map:
         if len(fitting) > 1:
             problem = f"{shown(unit)!r} may be by {listed((s.column for s in fitting), ' or by ')}"
             say = f'is = "d({of.words})/d({shown(fitting[0].column)})" in a map'
-            raise self._column(column, problem, say)
+            raise self._column(column.name, problem, say)
         if not fitting:
             what = f"a derivative of {of.words}" + (f" by {shown(by)!r}" if by else "")
             problem = f"{shown(unit)!r} is no unit of {what}" if unit else f"{what} has no unit"
             every = ", ".join(f"{meaning.unit}/{s.meaning.unit} by {shown(s.column)}" for s in independent)
-            raise self._column(column, problem, f"{every}, or deg/m and the like, as rows are taken")
+            raise self._column(column.name, problem, f"{every}, or deg/m and the like, as rows are taken")
         found = fitting[0].meaning
         return replace(meaning, per=found.words, unit=f"{meaning.unit}/{found.unit}")
 
-    def _one(self, column: str, meaning: Meaning) -> Series:
-        i, part = self.columns.names.index(column), self._part(column)
-        if holds := self.columns.words.get(column):
-            raise self._column(column, f"holds {holds}", f'columns of numbers, or is = "{IGNORE}" in a map')
-        factor = self._factor(column, meaning)
-        # A derivative is by its own column, which goes the other way than ours where the map says so.
-        by = {one.words: self._part(name).sign for name, one in self.meant_by.items() if one is not None}
-        sign = part.sign * by.get(meaning.per, 1) * self._counted(column, meaning)
-        theirs, steps = self.columns.values[i], self.columns.steps[i]
+    def _in_ours(self, column: Column) -> Series:
+        name, meaning, part = column.name, column.meaning, column.said
+        if holds := self.columns.words.get(name):
+            raise self._column(name, f"holds {holds}", f'columns of numbers, or is = "{IGNORE}" in a map')
+        factor = self._factor(column)
+        theirs, steps = self.columns.values[column.at], self.columns.steps[column.at]
         with np.errstate(over="ignore"):
-            values = factor * (sign * theirs + part.offset)
+            values = factor * (column.sign * theirs + part.offset)
         seconds = per_second(meaning.quantity) if meaning.quantity else 0
         farthest = FARTHEST ** max(1.0, seconds / 2.0)
         for row in np.flatnonzero(np.abs(values) > farthest)[:1].tolist():
-            where = f"{self.columns.rows[row]}, column {shown(column)!r}"
+            where = f"{self.columns.rows[row]}, column {shown(name)!r}"
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
             allowed = f"at most {farthest:g} {meaning.unit}, or nothing or nan for none"
             raise FileError(self.columns.source, where, problem, allowed)
         if part.definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
             allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"
-            raise self._wrong(f"columns.{column}.definition", f"is {part.definition!r}", allowed)
-        printed = steps if part.printed is None else part.printed
+            raise self._wrong(f"columns.{name}.definition", f"is {part.definition!r}", allowed)
+        printed = steps if part.printed is None else np.asarray(part.printed)
         off = 0.5 * factor * np.broadcast_to(printed, values.shape)
         told = part.printed is not None
-        return Series(column, meaning, values, off, part.definition, factor, part.accuracy, told)
+        return Series(name, meaning, values, off, part.definition, factor, part.accuracy, told)
 
-    def _counted(self, column: str, meaning: Meaning) -> int:
-        """-1 of what the convention counts the other way, where the map says no sign or whole name.
-
-        So does a minus before a column's own name, as our tables have it.
-        """
-        part = self._part(column)
-        if column.startswith("-") and part.is_ is None and "sign" not in part.model_fields_set:
-            return -1
-        if part.is_ in self.meanings or column in self.meanings or "sign" in part.model_fields_set:
-            return 1
-        signs = dict(map(self._convention.number, self._convention.means))
-        return signs.get(meaning.name, 1)
-
-    def _factor(self, column: str, meaning: Meaning) -> float:
-        allowed, said = allowed_units(meaning.unit), self.unit_of(column)
-        factor = factor_of(said, meaning.unit) if said else None
+    def _factor(self, column: Column) -> float:
+        meaning = column.meaning
+        factor = factor_of(column.unit, meaning.unit) if column.unit else None
         if factor is None:
-            problem = f"{shown(said)!r} is no unit of {meaning.words}"
-            problem = problem if said else "its unit is not said, neither behind its name nor in a map"
-            if self._part(column).unit is not None:
-                raise self._wrong(f"columns.{column}.unit", problem, allowed)
-            raise self._column(column, problem, allowed)
+            problem = f"{shown(column.unit)!r} is no unit of {meaning.words}"
+            problem = problem if column.unit else "its unit is not said, neither behind its name nor in a map"
+            if column.said.unit is not None:
+                raise self._wrong(f"columns.{column.name}.unit", problem, allowed_units(meaning.unit))
+            raise self._column(column.name, problem, allowed_units(meaning.unit))
         return factor
 
     def independent(self, found: list[Series]) -> tuple[Series, ...]:
