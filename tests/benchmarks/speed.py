@@ -34,7 +34,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from pointcoord import Scene, kinematic_map, simulate, solve_poses, sweep_blocks
 from pointcoord.results.named_columns import number_columns
 from validate.cost.chain import TOLERANCE as OF_CHAIN
-from validate.cost.chain import FourBarChain
+from validate.cost.chain import chain_scene
 from validate.cost.growth import CHAIN_INSTANTS
 from validate.cost.scenes import study_instants
 from validate.cost.ways.absolute import in_bodies
@@ -206,7 +206,7 @@ def chain() -> Race:
     (series,) = ways_named(["series"])
 
     def made_ready(unknowns: int) -> Work:
-        scene = FourBarChain.with_unknowns(unknowns).scene()
+        scene = chain_scene(unknowns)
         return partial(series.prepare(scene, OF_CHAIN), CHAIN_INSTANTS)
 
     return Race(made_ready(size(1500, 600)), made_ready(size(150, 60)), 10.0)

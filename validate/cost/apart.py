@@ -1,15 +1,14 @@
 """A size of something that grows, timed with its peak of memory in a fresh process: none hurts another.
 
-The least size runs first, so that what loading takes is held before; then the system's record of the peak is
-started anew. A process that dies is a failed row with the reason.
+The least size runs first, so that what loading takes is held before; then the system's record of the peak
+is started anew. A process that dies is a failed row with the reason. Memory is measured and limited on
+Linux only.
 """
 
 from __future__ import annotations
 
 import os
 import resource
-import signal
-import sys
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -55,8 +54,7 @@ def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]
     child = spawn.Process(target=_answer, args=(theirs, make, least, row, limits), daemon=True)
     child.start()
     theirs.close()
-    # One run may take some times what was foreseen.
-    patience = 5.0 * limits.seconds + GRACE
+    patience = 5.0 * limits.seconds + GRACE  # one run may take some times what was foreseen
     how = f"was ended after {patience:.0f} s"
     try:
         if ours.poll(patience):
@@ -64,7 +62,7 @@ def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]
             return rows
     except EOFError:
         child.join()
-        how = _ended(child.exitcode or 0)
+        how = f"ended with status {child.exitcode}; -9 is that of a system out of memory"
     finally:
         child.kill()
         child.join()
@@ -72,44 +70,26 @@ def measure_apart(make: Make, least: int, row: Row, limits: Limits) -> list[Row]
     return [replace(row, **absent("failed", f"its process {how}"))]
 
 
-def _ended(status: int) -> str:
-    """How a process ended that gave no answer."""
-    if status >= 0:
-        return f"ended with status {status}"
-    name = signal.Signals(-status).name
-    return f"was ended by the signal {name}{', as a system out of memory does' * (name == 'SIGKILL')}"
-
-
 def _answer(answer: Connection, make: Make, least: int, row: Row, limits: Limits) -> None:
     # What libraries print must not come among what this program prints.
     os.dup2(2, 1)
-    held = _of_status("VmSize")
-    if held is not None:  # beyond this the process gets a MemoryError
+    if (held := _of_status("VmSize")) is not None:  # beyond this the process gets a MemoryError
         _, hard = resource.getrlimit(resource.RLIMIT_AS)
         resource.setrlimit(resource.RLIMIT_AS, (held + limits.memory, hard))
-    answer.send(_measured(make, least, row, limits))
-
-
-def _measured(make: Make, least: int, row: Row, limits: Limits) -> list[Row]:
-    """The rows in this process, with the peak of the first run."""
     race([make(row, least)], Effort(repeats=0))
-    runner = make(row, row.size or 0)
+    runner, peaks = make(row, row.size or 0), list[int]()
     with suppress(OSError):
         CLEAR.write_text(RESTART_PEAK)
-    held, most = _peak(), [0]
+    held = _of_status("VmHWM")
 
     def found(one: Any) -> Found:
-        most[0] = max(_peak() - held, 0)
+        if held is not None:
+            peaks.append(max((_of_status("VmHWM") or 0) - held, 0))
         return runner.found(one)
 
     rows = race([replace(runner, found=found)], Effort(repeats=7, least=0.01, most=limits.seconds))
-    return [replace(one, peak_bytes=most[0]) if one.verdict == "measured" else one for one in rows]
-
-
-def _peak() -> int:
-    """The most memory that was resident since the peak was started anew, bytes."""
-    largest = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return _of_status("VmHWM") or (largest if sys.platform == "darwin" else 1024 * largest)
+    peak = peaks[0] if peaks else None
+    answer.send([replace(one, peak_bytes=peak) if one.verdict == "measured" else one for one in rows])
 
 
 def _of_status(name: str) -> int | None:

@@ -14,19 +14,13 @@ one intersection of two circles. Every drawn number is an integer: nothing of th
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.time_functions import Sine
-from validate.extras import MissingPackage
-
-try:
-    from mpmath import mp, mpf
-except ModuleNotFoundError as error:
-    raise MissingPackage("validate.cost.chain", error) from None
 
 Array = NDArray[np.float64]
 
@@ -38,97 +32,58 @@ SWING = Sine(amplitude=0.35, angular_frequency=2.0 * np.pi, phase=0.0, offset=0.
 """The driven angle, rad: about the horizontal, where it is drawn; there the height tells it best."""
 STOP = 0.25  # s: a quarter of the swing
 TOLERANCE = 1e-9  # mm
-DIGITS = 40
 
 
-@dataclass(frozen=True)
-class FourBarChain:
-    """A chain of `rockers` rockers, which has three unknown coordinates for each: those of its tip."""
+def chain_scene(unknowns: int) -> Scene:
+    """The chain over a quarter of the swing, for its positions alone.
 
-    rockers: int
-
-    @classmethod
-    def with_unknowns(cls, unknowns: int) -> FourBarChain:
-        """The chain of so many unknowns, a multiple of three.
-
-        Raises:
-            ValueError: it is none.
-        """
-        if unknowns < 3 or unknowns % 3:
-            raise ValueError(f"a chain of {unknowns} unknowns; allowed: 3, 6, 9, ...")
-        return cls(unknowns // 3)
-
-    @property
-    def tips(self) -> tuple[str, ...]:
-        """Names of the rockers' tips, in order."""
-        return tuple(f"tip_{j}" for j in range(self.rockers))
-
-    @property
-    def points(self) -> dict[str, Array]:
-        """Where every point is drawn, mm: all rockers level."""
-        found = {}
-        for j in range(self.rockers):
-            pivot = np.array([LANE * j, 0.0, RISE * (j % 2)])
-            found[f"pivot_{j}"] = pivot
-            found[f"axis_{j}"] = pivot + np.array([AXIS, 0.0, 0.0])
-            found[f"tip_{j}"] = pivot + np.array([0.0, ROCKERS[j % 2], 0.0])
-        return found
-
-    @property
-    def rods(self) -> dict[str, tuple[str, str]]:
-        """From each tip to the next."""
-        return {f"rod_{j}": (f"tip_{j - 1}", f"tip_{j}") for j in range(1, self.rockers)}
-
-    def scene(self) -> Scene:
-        """The chain over a quarter of the swing, for its positions alone."""
-        axes = {j: (f"pivot_{j}", f"axis_{j}") for j in range(self.rockers)}
-        rockers = {f"rocker_{j}": [*axis, f"tip_{j}"] for j, axis in axes.items()}
-        mechanism = {
-            "bodies": {"chassis": [name for axis in axes.values() for name in axis], **rockers},
-            "rods": {name: list(ends) for name, ends in self.rods.items()},
-            "inputs": {"arm_angle": {"angle": "rocker_0", "of": "tip_0", "about": "pivot_0", "from": "up"}},
-            "side": "right",
-            "points": {name: place.tolist() for name, place in self.points.items()},
-        }
-        content = {
-            "title": f"chain of {self.rockers} rockers",
-            "tolerance": TOLERANCE,
-            "mechanism": mechanism,
-            "inputs": {"arm_angle": {"sine": asdict(SWING)}},
-            "time": {"start": 0.0, "stop": STOP, "samples": 6},
-        }
-        return Scene.from_mapping(content, "chain of four-bars")
-
-    def closed_form(self, instants: Array) -> Array:
-        """Tips at instants of shape (N,) in many digits, each rounded once: (N, rockers, 3), mm."""
-        found = np.empty((len(instants), self.rockers, 3))
-        found[..., 0] = LANE * np.arange(self.rockers)
-        for place, t in zip(found, instants.tolist(), strict=True):
-            for parity, tip in enumerate(_two_tips(t)):
-                place[parity::2, 1:] = tip
-        return found
+    Args:
+        unknowns: a multiple of three: the coordinates of the tip of each rocker.
+    """
+    points, rods = dict[str, list[float]](), dict[str, list[str]]()
+    bodies: dict[str, list[str]] = {"chassis": []}
+    for j in range(unknowns // 3):
+        pivot, names = np.array([LANE * j, 0.0, RISE * (j % 2)]), [f"pivot_{j}", f"axis_{j}", f"tip_{j}"]
+        places = pivot + np.array([[0.0, 0.0, 0.0], [AXIS, 0.0, 0.0], [0.0, ROCKERS[j % 2], 0.0]])
+        points |= dict(zip(names, places.tolist(), strict=True))
+        bodies["chassis"] += names[:2]
+        bodies[f"rocker_{j}"] = names
+        if j:
+            rods[f"rod_{j}"] = [f"tip_{j - 1}", f"tip_{j}"]
+    mechanism = {
+        "bodies": bodies,
+        "rods": rods,
+        "inputs": {"arm_angle": {"angle": "rocker_0", "of": "tip_0", "about": "pivot_0", "from": "up"}},
+        "side": "right",
+        "points": points,
+    }
+    content = {
+        "title": f"chain of {unknowns // 3} rockers",
+        "tolerance": TOLERANCE,
+        "mechanism": mechanism,
+        "inputs": {"arm_angle": {"sine": asdict(SWING)}},
+        "time": {"start": 0.0, "stop": STOP, "samples": 6},
+    }
+    return Scene.from_mapping(content, "chain of four-bars")
 
 
-def _two_tips(t: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """(y, z) of an even tip and of an odd one at an instant.
+def closed_form(unknowns: int, instants: Array) -> dict[str, Array]:
+    """The place of every tip at instants of shape (N,), (N, 3), mm, in long doubles and rounded once.
 
     With d the vector from the even tip to the odd pivot, the odd tip is the intersection of the circles of
     radius c (the rod's drawn length in the plane) and r_1 about its ends, on the side where it is drawn.
     """
-    even, odd = (mpf(length) for length in ROCKERS)
-    with mp.workdps(DIGITS):
-        law = SWING
-        angle = mpf(law.offset) + mpf(law.amplitude) * mp.sin(
-            mpf(law.angular_frequency) * mpf(t) + mpf(law.phase)
-        )
-        y, z = even * mp.sin(angle), even * mp.cos(angle)
-        dy, dz = -y, mpf(RISE) - z
-        square = dy * dy + dz * dz
-        rod = (even - odd) ** 2 + mpf(RISE) ** 2
-        # Share of d from the even tip to the foot of the odd one, and the height over d in parts of d.
-        share = (square + rod - odd * odd) / (2 * square)
-        height = mp.sqrt(rod / square - share * share)
-        return (float(y), float(z)), (
-            float(y + share * dy + height * dz),
-            float(z + share * dz - height * dy),
-        )
+    even, odd, rise = (np.longdouble(length) for length in (*ROCKERS, RISE))
+    t, law = np.asarray(instants, np.longdouble), SWING
+    angle = law.offset + law.amplitude * np.sin(law.angular_frequency * t + law.phase)
+    y, z = even * np.sin(angle), even * np.cos(angle)
+    dy, dz = -y, rise - z
+    square, rod = dy * dy + dz * dz, (even - odd) ** 2 + rise * rise
+    # Share of d from the even tip to the foot of the odd one, and the height over d in parts of d.
+    share = (square + rod - odd * odd) / (2 * square)
+    height = np.sqrt(rod / square - share * share)
+    tips = (y, z), (y + share * dy + height * dz, z + share * dz - height * dy)
+    return {
+        f"tip_{j}": np.stack([np.full(t.shape, LANE * j), *tips[j % 2]], axis=-1).astype(float)
+        for j in range(unknowns // 3)
+    }

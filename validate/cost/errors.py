@@ -15,10 +15,10 @@ what anybody can be given: half a unit in the last place of an angle is no error
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,6 @@ from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import shape_of
 from validate.formulations.reference_solution import DIGITS, reference_motion
-from validate.reference import NoReferenceError
 
 try:
     from mpmath import mp, mpf
@@ -41,8 +40,7 @@ except ModuleNotFoundError as error:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Exact:
+class Exact(NamedTuple):
     """The reference of one point, body or angle at the instants: the sum of two arrays of doubles."""
 
     high: Array
@@ -62,40 +60,23 @@ class Truth:
     radius: Mapping[str, float]
 
 
-@dataclass(frozen=True)
-class Judge:
-    """Tells errors of answers at instants, (N,), s; the reference is solved once, for the first answer.
+def judge(
+    scene: Scene, instants: Array, places: Sequence[int] | None = None, positions: bool | None = None
+) -> Callable[[Answer], Found]:
+    """What tells the errors of answers at instants, (N,), s; the reference is solved once, when it is needed.
 
-    Attributes:
+    Args:
         places: numbers of the instants that are looked at; all if None.
+        positions: whether only positions are looked at, or all else; everything if None.
     """
+    some = slice(None) if places is None else [*places]
+    truth = cache(lambda: truth_of(scene, instants[some]))
 
-    scene: Scene
-    instants: Array
-    places: Sequence[int] | None = None
+    def found(answer: Answer) -> Found:
+        numbers = {q: {n: x[some] for n, x in of.items()} for q, of in answer.numbers.items()}
+        return errors_of(Answer(numbers, answer.work), truth(), positions)
 
-    @cached_property
-    def truth(self) -> Truth | NoReferenceError:
-        """The reference, or why there is none."""
-        try:
-            return truth_of(self.scene, self.instants if self.places is None else self.instants[self.places])
-        except NoReferenceError as error:
-            return error
-
-    def __call__(self, answer: Answer, positions: bool | None = None) -> Found:
-        """Errors, see `errors_of`; of positions alone, or of all else, where that is said.
-
-        Raises:
-            NoNumbers: it is no answer, or there is no reference.
-        """
-        if isinstance(self.truth, NoReferenceError):
-            raise NoNumbers(f"there is no reference to compare it with: {self.truth}")
-        if self.places is not None:
-            some = {q: {n: x[self.places] for n, x in of.items()} for q, of in answer.numbers.items()}
-            answer = Answer(some, answer.work)
-        exact = self.truth.exact
-        asked = {q: names for q, names in exact.items() if positions in (None, q == "position")}
-        return errors_of(answer, Truth(asked, self.truth.radius))
+    return found
 
 
 def truth_of(scene: Scene, instants: Array) -> Truth:
@@ -126,7 +107,7 @@ def truth_of(scene: Scene, instants: Array) -> Truth:
     return Truth(exact, radius)
 
 
-def errors_of(answer: Answer, truth: Truth) -> Found:
+def errors_of(answer: Answer, truth: Truth, positions: bool | None = None) -> Found:
     """Columns of a row for each quantity that the scene asks for; one that is not given is left out.
 
     A quantity that is given at all must be given whole.
@@ -137,15 +118,14 @@ def errors_of(answer: Answer, truth: Truth) -> Found:
     found: Found = {}
     work = ", ".join(f"{name} {count}" for name, count in answer.work.items())
     for quantity, names in truth.exact.items():
+        if positions not in (None, quantity == "position"):
+            continue
         given = answer.numbers.get(quantity) or {}
-        if not any(name in given for name in names):
-            if quantity == "position":
-                raise NoNumbers("gives no positions")
+        if quantity != "position" and not any(name in given for name in names):
             found[quantity] = absent("left out", f"gives no {QUANTITIES[quantity].words}")
             continue
-        parts = [_error(quantity, name, given, exact) for name, exact in names.items()]
-        errors = np.abs(np.concatenate([part.ravel() for part in parts]))
-        found[quantity] = {**summed_up(errors), "radius": truth.radius[quantity], "work": work}
+        errors = np.concatenate([_error(quantity, n, given, exact).ravel() for n, exact in names.items()])
+        found[quantity] = {**summed_up(np.abs(errors)), "radius": truth.radius[quantity], "work": work}
     return found
 
 
@@ -162,23 +142,15 @@ def _error(quantity: str, name: str, given: Mapping[str, Array], exact: Exact) -
     what = f"{QUANTITIES[quantity].words} of {name}"
     if name not in given:
         raise NoNumbers(f"gives no {what}")
-    array = np.asarray(given[name])
-    if array.shape != exact.high.shape or array.dtype.kind != "f":
-        raise NoNumbers(
-            f"gives the {what} as {array.dtype} numbers of shape {array.shape}, not {exact.high.shape}"
-        )
-    bad = ~np.isfinite(array)
+    if given[name].shape != exact.high.shape:
+        raise NoNumbers(f"gives the {what} in the shape {given[name].shape}, not {exact.high.shape}")
+    with np.errstate(over="ignore", invalid="ignore"):
+        off = np.asarray((given[name] - exact.high) - exact.low)
+    bad = ~np.isfinite(off).reshape(len(off), -1).all(axis=-1)
     if bad.any():
-        at = int(np.argwhere(bad)[0][0])
-        count = int(np.count_nonzero(bad.reshape(len(array), -1).any(axis=-1)))
-        raise NoNumbers(
-            f"the {what} is {array[bad][0]} at {count} of {len(array)} instants, first at number {at}"
-        )
-    with np.errstate(over="ignore"):
-        off = (array.astype(float) - exact.high) - exact.low
-    if not np.isfinite(off).all():
-        raise NoNumbers(f"the {what} is off by more than a double can tell")
-    return np.asarray(off)
+        where = f"{np.count_nonzero(bad)} of {len(off)} instants, first at number {int(np.argmax(bad))}"
+        raise NoNumbers(f"the {what} is no finite number at {where}")
+    return off
 
 
 def _split(numbers: list[Any], shape: tuple[int, ...]) -> Exact:

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from pointcoord import Designs, Scene, designs_of, sweep
 from validate.cost.apart import Limits, Make, measure_apart
-from validate.cost.chain import STOP, FourBarChain
-from validate.cost.errors import Judge, summed_up
+from validate.cost.chain import ROCKERS, STOP, chain_scene, closed_form
+from validate.cost.errors import judge, summed_up
 from validate.cost.race import Found, NoNumbers, Runner
 from validate.cost.scenes import StudyScene, study_instants
 from validate.cost.table import Row
@@ -95,35 +95,31 @@ def lines_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> lis
     """All that grows, for one scene: how costs grow is a matter of the way, and of the scene hardly."""
     plan = QUICK if quick else FULL
     alone = StudyScene(f"{study.name}, positions alone", study.positions_only())
+    cars = [alone, *([study] if study.scene.effects and not quick else [])]
     lines = []
-
-    def add(way: Way, against: str, poses: int, make: Make, least: int, **columns: Any) -> None:
-        sizes, names = plan[against]
-        if way.name in names:
-            value = nearest(way.values)
-            row = Row("growth", "", way.name, way.says(value), value, way.dense, against, quick=quick)
-            row = replace(row, **columns)
-            lines.append(Line(row, sizes, poses, make, least))
-
     for way in ways:
-        for one in [alone, *([study] if study.scene.effects and not quick else [])]:
-            make = partial(many_instants, one.scene)
-            add(way, "instants", 1, make, 2, scene=one.name, digest=one.digest)
-        for words, together in (("together", True), ("one by one", False)):
-            if way.name == "series" or not together:
-                setting = ", ".join(filter(None, (way.says(nearest(way.values)), words)))
-                make = partial(designs_together if together else designs_one_by_one, alone.scene)
-                of = {"scene": alone.name, "digest": alone.digest, "setting": setting}
-                add(way, "designs", INSTANTS, make, 1, **of)
-        add(way, "unknowns", 0, long_chain, 6, scene=CHAIN)
-    return lines
+        value = nearest(way.values)
+        words, row = way.says(value), Row("growth", "", way.name, value=value, dense=way.dense, quick=quick)
+        kinds: list[tuple[str, StudyScene, str, Make, int, int]] = [
+            ("instants", car, words, partial(many_instants, car.scene), 1, 2) for car in cars
+        ]
+        for told, make in (("together", designs_together), ("one by one", designs_one_by_one)):
+            if make is designs_one_by_one or way.name == "series":
+                setting = ", ".join(filter(None, (words, told)))
+                kinds.append(("designs", alone, setting, partial(make, alone.scene), INSTANTS, 1))
+        for against, car, setting, work, poses, least in kinds:
+            row_of = replace(row, scene=car.name, digest=car.digest, setting=setting, against=against)
+            lines.append(Line(row_of, plan[against][0], poses, work, least))
+        of_chain = replace(row, scene=CHAIN, setting=words, against="unknowns")
+        lines.append(Line(of_chain, plan["unknowns"][0], 0, long_chain, 6))
+    return [line for line in lines if line.row.way in plan[line.row.against][1]]
 
 
 def many_instants(scene: Scene, row: Row, size: int) -> Runner:
     """A way at so many instants of a scene, and its errors at some, the first and the last among them."""
     instants = study_instants(scene, size)
-    judge = Judge(scene, instants, some_of(size, CHECKED))
-    return Runner(row, partial(_way(row).ready, scene, row.value, instants), judge)
+    ready = partial(_way(row).ready, scene, row.value, instants)
+    return Runner(row, ready, judge(scene, instants, some_of(size, CHECKED)))
 
 
 def designs_together(scene: Scene, row: Row, size: int) -> Runner:
@@ -156,16 +152,14 @@ def worst_design(designs: Designs, size: int, answers: Callable[[int], Answer]) 
     founds = []
     for k in some_of(size, CHECKED // 4):
         scene = designs.design(k)
-        founds.append(Judge(scene, scene.instants, some_of(INSTANTS, CHECKED // 4))(answers(k)))
+        founds.append(judge(scene, scene.instants, some_of(INSTANTS, CHECKED // 4))(answers(k)))
     return max(founds, key=lambda one: float(one["position"]["error"]))
 
 
 def long_chain(row: Row, size: int) -> Runner:
     """A chain of four-bars of so many unknowns, and its errors against the closed form."""
-    scene = FourBarChain.with_unknowns(size).scene()
-    return Runner(
-        row, partial(_way(row).ready, scene, row.value, CHAIN_INSTANTS), partial(chain_errors, size)
-    )
+    ready = partial(_way(row).ready, chain_scene(size), row.value, CHAIN_INSTANTS)
+    return Runner(row, ready, partial(chain_errors, size))
 
 
 def chain_errors(unknowns: int, answer: Answer) -> Found:
@@ -174,13 +168,13 @@ def chain_errors(unknowns: int, answer: Answer) -> Found:
     Raises:
         NoNumbers: this is another assembly, or none.
     """
-    chain = FourBarChain.with_unknowns(unknowns)
-    right, places = chain.closed_form(CHAIN_INSTANTS), answer.numbers["position"]
-    off = np.abs(np.stack([places[name] for name in chain.tips], axis=1) - right)
-    if not (off <= NOT_RIGHT * np.min(np.abs(right[..., 1:]).max(axis=-1))).all():
+    tips, places = closed_form(unknowns, CHAIN_INSTANTS), answer.numbers["position"]
+    off = np.abs([places[name] - right for name, right in tips.items()])
+    if not (off <= NOT_RIGHT * min(ROCKERS)).all():
         worst = np.unravel_index(int(np.argmax(np.where(np.isnan(off), np.inf, off))), off.shape)
-        raise NoNumbers(f"tip_{worst[1]} is {off[worst]:.3g} mm from the closed form")
-    return {"position": {**summed_up(off), "radius": 0.5 * float(np.spacing(np.abs(right)).max())}}
+        raise NoNumbers(f"tip_{worst[0]} is {off[worst]:.3g} mm from the closed form")
+    largest = max(float(np.abs(right).max()) for right in tips.values())
+    return {"position": {**summed_up(off), "radius": 0.5 * float(np.spacing(largest))}}
 
 
 def drawn_at_random(scene: Scene, count: int, tolerance: float | None) -> Designs:

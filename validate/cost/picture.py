@@ -6,7 +6,7 @@ import pandas as pd
 
 from validate.cost.findings import ACCURACIES, heights, timed, unit_of, words_of
 from validate.cost.looks import KEY, looks
-from validate.cost.words import power
+from validate.cost.way import power
 from validate.extras import MissingPackage
 from validate.output.figure import GREY, SETTINGS, plain
 

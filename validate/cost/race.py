@@ -18,9 +18,8 @@ import math
 import random
 import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -92,35 +91,29 @@ def race(
 ) -> list[Row]:
     """Run all of them against each other, and give their rows in their order."""
     racers = [_Racer(runner, effort, clock) for runner in runners]
-    steps = len(racers) * (effort.repeats + 1)
-    with _undisturbed():
-        for i, racer in enumerate(racers):
-            progress(racer.words, i, steps)
-            racer.attempt(racer.first)
-        for number in range(effort.repeats):
-            gc.collect()
-            order = [racer for racer in racers if racer.loops]
-            random.Random(f"{SEED} {number}").shuffle(order)
-            for racer in order:
-                progress(f"{racer.words}, repeat {number + 1}", len(racers) * (number + 1), steps)
-                racer.attempt(racer.repeat)
-    return [row for racer in racers for row in racer.timed()]
-
-
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """One thread, no warnings, as what overflows is seen in the numbers, and no garbage collector."""
-    was_on = gc.isenabled()
+    steps, collects = len(racers) * (effort.repeats + 1), gc.isenabled()
     gc.disable()
     try:
         with threadpool_limits(limits=1), warnings.catch_warnings():
+            # What overflows is seen in the numbers.
             warnings.simplefilter("ignore")
-            yield
+            for i, racer in enumerate(racers):
+                progress(racer.words, i, steps)
+                racer.attempt(racer.first)
+            for number in range(1, effort.repeats + 1):
+                gc.collect()
+                order = [racer for racer in racers if racer.loops]
+                random.Random(f"{SEED} {number}").shuffle(order)
+                for racer in order:
+                    progress(f"{racer.words}, repeat {number}", len(racers) * number, steps)
+                    racer.attempt(racer.repeat)
     finally:
-        if was_on:
+        if collects:
             gc.enable()
+    return [row for racer in racers for row in racer.timed()]
 
 
+@dataclass
 class _Racer:
     """A runner in a race.
 
@@ -129,13 +122,16 @@ class _Racer:
             is no time for a second run. samples: seconds of the set-up and of the rest.
     """
 
-    def __init__(self, runner: Runner, effort: Effort, clock: Clock) -> None:
-        row = runner.row
-        self.runner, self.effort, self.clock = runner, effort, clock
-        self.words = " ".join(filter(None, (f"{row.scene}:" if row.scene else "", row.way, row.setting)))
-        self.rows: list[Row] = []
-        self.loops = 0
-        self.samples: list[tuple[float, float]] = []
+    runner: Runner
+    effort: Effort
+    clock: Clock
+    rows: list[Row] = field(default_factory=list)
+    loops: int = 0
+    samples: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def words(self) -> str:
+        return f"{self.runner.row.scene}: {self.runner.row.way} {self.runner.row.setting}"
 
     def attempt(self, step: Callable[[], None]) -> None:
         """Go a step; one that breaks down leaves the reason: failed, or that it does not apply."""
@@ -165,8 +161,7 @@ class _Racer:
         """A sample, if there is time for it: the mean of some runs."""
         took = self.loops * sum(map(sum, self.samples))
         if not self.samples or took * (1.0 + 1.0 / len(self.samples)) <= self.effort.most:
-            times = [self._run()[:2] for _ in range(self.loops)]
-            set_up, rest = (sum(each) / self.loops for each in zip(*times, strict=True))
+            set_up, rest = np.mean([self._run()[:2] for _ in range(self.loops)], axis=0).tolist()
             self.samples.append((set_up, rest))
 
     def _run(self) -> tuple[float, float, Any]:
@@ -182,8 +177,7 @@ class _Racer:
         if not self.samples:
             return self.rows
         set_up, rest = np.transpose(self.samples)
-        poses = max(self.runner.row.poses, 1)
-        lower, median, upper = (float(q) / poses for q in np.quantile(rest, (0.25, 0.5, 0.75)))
+        lower, median, upper = (np.quantile(rest, (0.25, 0.5, 0.75)) / max(self.runner.row.poses, 1)).tolist()
         columns: dict[str, Any] = {"time": median, "lower": lower, "upper": upper, "repeats": len(rest)}
         columns["set_up"] = float(np.median(set_up))
         return [replace(row, **columns) if row.verdict == "measured" else row for row in self.rows]

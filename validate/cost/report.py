@@ -1,4 +1,4 @@
-"""The report of a study from its table: sentences and tables, a page, data, and a folder with pictures.
+"""The report of a study from its table: sentences and tables, a page, data, and a folder with the picture.
 
 The same rows give the same bytes: nothing in it depends on when or where it is made.
 """
@@ -16,22 +16,18 @@ from validate.cost.table import WHERE, Row, StoreError, frame, latest, read_rows
 from validate.output.document import json_text
 from validate.output.table import Part, Table, markdown, text_of
 
-# Imported where they are needed: pandas takes half a second, and most pages show no costs.
+# Imported where they are needed, as `findings` is: pandas takes half a second, and most pages show no costs.
 if TYPE_CHECKING:
     import pandas as pd
 
 TITLE = "What accuracy costs in time"
 NOTHING = "nothing was measured, so that there is nothing to say"
-REFERENCE = (
-    "against a reference in 60 digits whose assembly is proven by interval arithmetic, and whose equations "
-    "share no code with any way; at instants that are special to none"
-)
-TIMES = (
-    "medians of interleaved repeats, by one thread, the garbage collector off; from instants to arrays, "
-    "positions alone where positions are judged; the set-up apart"
+HOW = (
+    "errors are against a many-digit reference, whose radius counts; times are medians of interleaved "
+    "repeats by one thread, from instants to arrays, the set-up apart; *: one solve serves any instant; in "
+    "brackets: the setting"
 )
 WIDTH = 110  # columns of a terminal
-MEASURED_BY = ("command", *WHERE)
 
 
 @dataclass(frozen=True)
@@ -75,9 +71,7 @@ class Report:
 
     def tables(self, *quantities: str) -> list[Table]:
         """The same with its numbers; of errors those of some quantities, or of all."""
-        from validate.cost.tables import tables_of
-
-        return tables_of(self.table, quantities)
+        return [*_reached(self.table, quantities), *_growths(self.table), *_without_numbers(self.table)]
 
     @property
     def measured(self) -> int:
@@ -86,34 +80,25 @@ class Report:
 
     def measured_by(self) -> dict[str, str] | None:
         """Command, program and machine of the first row."""
-        return {what: getattr(self.rows[0], what) for what in MEASURED_BY} if self.rows else None
+        return {what: getattr(self.rows[0], what) for what in ("command", *WHERE)} if self.rows else None
 
     def head(self) -> list[tuple[str, str]]:
         """Machine, versions and commands."""
-        from validate.cost.tables import KEY
-
-        counts = {v: sum(row.verdict == v for row in self.rows) for v in ("failed", "left out")}
-        rest = "".join(f", {count} {verdict}" for verdict, count in counts.items() if count)
         return [
             ("command", self.command),
-            ("rows", f"{self.store}: {self.measured} measured{rest}"),
+            ("rows", f"{self.store}: {self.measured} measured of {len(self.rows)}"),
             *((what, value) for what, value in (self.measured_by() or {}).items() if value),
-            ("errors", REFERENCE),
-            ("times", TIMES),
-            ("tables", KEY),
+            ("how", HOW),
             *((("quick", "fewer settings, instants and repeats: a first look"),) if self.quick else ()),
         ]
 
     def parts(self) -> tuple[Part, ...]:
         """For a terminal: sentences, tables, of errors those of positions, and by what it was measured."""
-        from validate.cost.tables import KEY
-
         said = self.sentences or ([] if self.measured else [NOTHING])
         shown = [part for table in self.tables("position") for part in ("", _wrapped(table.caption), table)]
-        where = [f"{row.program}, {row.machine}" for row in self.rows[:1]]
-        last = [_wrapped(f"{self.store}: {self.measured} rows measured by {words}") for words in where]
-        key = [KEY] if any(row.part == "accuracy" and row.time is not None for row in self.rows) else []
-        return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", *key, *last)
+        by = "".join(f" by {row.program}, {row.machine}" for row in self.rows[:1])
+        last = f"{self.store}: {self.measured} rows measured{by}"
+        return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", _wrapped(HOW), _wrapped(last))
 
     def text(self) -> str:
         """The same in lines."""
@@ -171,6 +156,76 @@ class Report:
         yield "report.md", self.markdown("headline.svg" if picture else "").encode()
         yield "table.csv", self.csv().encode()
         yield "rows.json", json_text(self.data()).encode()
+
+
+def _reached(table: pd.DataFrame, quantities: tuple[str, ...]) -> Iterator[Table]:
+    """Time of a pose by the cheapest setting that reaches an accuracy, the quickest first."""
+    from validate.cost.findings import ACCURACIES, cheapest, duration, timed, unit_of, words_of
+    from validate.cost.way import power
+
+    best, found = cheapest(table), timed(table, "accuracy")
+    settings = (f" ({power(value)})" if value == value else "" for value in best.value)
+    best = best.assign(cell=[duration(time) + more for time, more in zip(best.time, settings, strict=True)])
+    for (scene, quantity), here in found.groupby(["scene", "quantity"], sort=False):
+        if quantities and quantity not in quantities:
+            continue
+        near = best[(best.scene == scene) & (best.quantity == quantity)]
+        times, cells = (
+            near.pivot(index="way", columns="accuracy", values=of).reindex(columns=ACCURACIES)
+            for of in ("time", "cell")
+        )
+        ways = here.groupby("way", sort=False).agg({"error": "min", "set_up": "min", "dense": "any"})
+        ways = ways.join(times).sort_values([*reversed(ACCURACIES)], kind="stable")
+        cells = cells.reindex(ways.index).astype(object).fillna("not reached")
+        rows = (
+            (f"{way.Index}{'*' * way.dense}", *reached, f"{way.error:.1e}", duration(way.set_up))
+            for way, reached in zip(ways.itertuples(), cells.to_numpy().tolist(), strict=True)
+        )
+        unit = unit_of(quantity)
+        yield Table(
+            ("way", *(f"{power(a)} {unit}" for a in ACCURACIES), f"floor, {unit}", "set-up"),
+            tuple(rows),
+            caption=f"{scene}: time of a pose to an accuracy of {words_of(quantity)}, by the cheapest "
+            f"setting; {here.poses.max()} poses a run, reference to {here.radius.max():.0e} {unit}",
+        )
+
+
+def _growths(table: pd.DataFrame) -> Iterator[Table]:
+    """Fitted exponents of time and memory, a table for each thing that is varied and each scene."""
+    from validate.cost.findings import duration, growths, in_units
+
+    for (against, scene), here in growths(table).groupby(["against", "scene"], sort=False):
+        lines = []
+        for one in here.itertuples():
+            fit = "-" if one.exponent != one.exponent else f"{one.exponent:.2f}"
+            fit += "" if one.error != one.error else f" +- {one.error:.2f}"
+            values = one.value, one.value / one.largest
+            takes = [
+                duration(v) if one.of == "time" else in_units(v, GB=1e9, MB=1e6, kB=1e3, B=1.0)
+                for v in values
+            ]
+            lines.append((f"{one.way} {one.setting}".strip(), one.of, fit, f"{one.largest:g}", *takes))
+        yield Table(
+            ("way and setting", "of", "exponent", "largest", "takes", "each"),
+            tuple(lines),
+            caption=f"Growth in {against} of {scene}: value = factor x size^exponent, of the largest sizes",
+        )
+
+
+def _without_numbers(table: pd.DataFrame) -> Iterator[Table]:
+    """What failed or was left out: each reason with the settings, quantities and sizes that it is of."""
+    here = table[table.verdict != "measured"]
+    here = here.assign(
+        sized=[f"{n} {of}" if of else "" for n, of in zip(here["size"], here.against, strict=True)]
+    )
+    lines = []
+    for (scene, way, verdict, reason), some in here.groupby(
+        ["scene", "way", "verdict", "reason"], sort=False
+    ):
+        where = dict.fromkeys([*some.setting, *some.quantity, *some.sized])
+        lines.append((f"{scene} {way}".strip(), verdict, ", ".join(filter(None, where)), reason))
+    if lines:
+        yield Table(("what", "verdict", "where", "reason"), tuple(lines), caption="Without numbers")
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:

@@ -8,15 +8,13 @@ is kept is not measured again.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from pointcoord import Scene
 from validate.cost import growth
-from validate.cost.errors import Judge
+from validate.cost.errors import judge
 from validate.cost.race import FULL, QUICK, Progress, Runner, race, silent
 from validate.cost.scenes import StudyScene, study_instants
 from validate.cost.table import Part, Row, Store
@@ -62,32 +60,23 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
 
 
 def runners_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Runner]:
-    """Every way with every setting, for positions and for everything."""
-    scene, instants = study.scene, study_instants(study.scene, quick=quick)
-    asked = [study.positions_only(), *([scene] if scene.effects else [])]
-    judge = Judge(scene, instants)
-
-    def runner(way: Way, value: float | None, part: Scene) -> Runner:
-        row = Row(
-            *("accuracy", study.name, way.name, way.says(value), value, way.dense),
-            poses=len(instants),
-            quantity="" if part.effects else "position",
-            digest=study.digest,
-            quick=quick,
-        )
-        ready = partial(way.ready, part, value, instants)
-        return Runner(row, ready, partial(judge, positions=not part.effects))
-
-    return [
-        runner(way, value, part)
-        for way in ways
-        for value in chosen(way.values, SETTINGS_QUICK if quick else None)
-        for part in asked
-    ]
-
-
-def chosen(values: Sequence[Any], most: int | None) -> list[Any]:
-    """Some of the values, evenly from the first to the last."""
-    if most is None or len(values) <= most:
-        return list(values)
-    return [values[place] for place in np.linspace(0, len(values) - 1, most).round().astype(int)]
+    """Every way with every setting, for positions and for everything; of a quick study few settings."""
+    instants, runners = study_instants(study.scene, quick=quick), []
+    row = Row("accuracy", study.name, "", poses=len(instants), digest=study.digest, quick=quick)
+    alone = (study.positions_only(), "position", judge(study.positions_only(), instants))
+    every = (study.scene, "", judge(study.scene, instants, positions=False))
+    for way in ways:
+        count = min(SETTINGS_QUICK, len(way.values)) if quick else len(way.values)
+        for place in np.linspace(0, len(way.values) - 1, count).round().astype(int):
+            value = way.values[place]
+            for scene, quantity, found in [alone, *([every] if study.scene.effects else [])]:
+                of = replace(
+                    row,
+                    way=way.name,
+                    setting=way.says(value),
+                    value=value,
+                    dense=way.dense,
+                    quantity=quantity,
+                )
+                runners.append(Runner(of, partial(way.ready, scene, value, instants), found))
+    return runners

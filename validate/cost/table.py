@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 from pydantic import TypeAdapter, ValidationError
 
 from validate.output.document import code_digest, machine, program_version
-from validate.output.files import OutputError, write_content
+from validate.output.files import write_content
 
 # Imported where a table is made: it takes half a second, and most pages show no costs.
 if TYPE_CHECKING:
@@ -132,14 +132,12 @@ def read_rows(path: Path) -> list[Row]:
     from pyarrow import parquet
 
     try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise StoreError(f"{path}: cannot be read ({error.strerror}); give another file") from None
-    try:
-        table = parquet.read_table(BytesIO(content))
+        table = parquet.read_table(BytesIO(path.read_bytes()))
         if odd := set(table.column_names) ^ set(COLUMNS):
             raise ValueError(f"the columns {', '.join(sorted(odd))} are missing or unknown")
         return TypeAdapter(list[Row]).validate_python(table.to_pylist())
+    except OSError as error:
+        raise StoreError(f"{path}: cannot be read ({error.strerror}); give another file") from None
     except ValidationError as error:
         first = error.errors()[0]
         why = f"{first['loc'][1]} of row {first['loc'][0]}: {first['msg']}"
@@ -161,7 +159,7 @@ class Store:
             StoreError: it cannot be read, or holds something else, or rows of another program or machine.
         """
         self.path, self.here = path, here
-        self.rows = self._read()
+        self.rows = read_rows(path) if path is not None and path.exists() else []
         for row in self.rows:
             pairs = [(getattr(row, what), getattr(here, what)) for what in WHERE]
             other = [f"{there}; here: {mine}" for there, mine in pairs if there != mine]
@@ -171,9 +169,6 @@ class Store:
                     f"{'; '.join(other)}; give another file, or delete this one to measure all again"
                 )
 
-    def _read(self) -> list[Row]:
-        return [] if self.path is None or not self.path.exists() else read_rows(self.path)
-
     def has(self, row: Row) -> bool:
         """Whether the run of a row has been measured, whatever came of it."""
         return any(row.key == known.key for known in self.rows)
@@ -182,13 +177,8 @@ class Store:
         """Keep rows, now.
 
         Raises:
-            OutputError: the file cannot be written, or another program has written to it.
+            OutputError: the file cannot be written.
         """
-        try:
-            # Another run may have written meanwhile.
-            self.rows += [row for row in self._read() if not self.has(row)]
-        except StoreError as error:
-            raise OutputError("rows", str(error)) from None
         where = {what: getattr(self.here, what) for what in (*WHERE, "command")}
         self.rows += [replace(row, **where) for row in rows]
         if self.path is not None:

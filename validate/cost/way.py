@@ -12,12 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import Scene
-from validate.cost.words import power
 from validate.formulations.protocol import Numbers
 
 Array = NDArray[np.float64]
 
 DIGITS = tuple(10.0**-digits for digits in range(2, 14))
+
+
+def power(number: float) -> str:
+    """A number with one digit, such as 1e-9."""
+    mantissa, exponent = f"{number:.0e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
 
 
 class LeftOut(Exception):

@@ -61,7 +61,7 @@ def test_planted_exponents_come_out_of_the_largest_sizes(power: float) -> None:
 def test_three_sentences_say_who_is_quickest_what_digits_cost_and_where_others_win() -> None:
     quickest, digits, won = sentences(frame(study()))
     assert quickest.startswith("A pose to 1e-9 mm of position takes series 8.95 us to 14.3 us, mujoco 37 us")
-    assert quickest.endswith("scipy-root and printed do not reach it.")
+    assert quickest.endswith("; not reached by scipy-root, printed.")
     assert "11 digits" in digits
     assert "series 3.5" in digits
     assert "Of 30 races" in won

@@ -13,14 +13,14 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene
+from pointcoord import Scene
 from pointcoord.method import CHORD, MAP, NEWTON, NEWTON_COLD, SERIES, Method
-from pointcoord.numerics.counters import Work
 from pointcoord.results.samples import Samples
 from pointcoord.simulation import Task, checked_task, solve_by_map, solve_task
 from validate.cost.way import Answer, LeftOut, Solve, Way
 
 Array = NDArray[np.float64]
+COUNTED = ("factorisations", "residuals", "segments", "series_orders")
 
 
 def task_of(scene: Scene, method: Method, tolerance: float) -> Task:
@@ -36,25 +36,15 @@ def task_of(scene: Scene, method: Method, tolerance: float) -> Task:
     return checked_task(scene.model_copy(update={"tolerance": tolerance}), method)
 
 
-def motion_at(task: Task, instants: Array) -> Motion:
-    """A motion at instants, and before them at its start, from where the first one is reached.
-
-    Raises:
-        PointcoordError: one of them is not reached.
-    """
-    start = task.scene.time.start
-    return solve_task(
-        replace(task, instants=np.concatenate([[start] if instants[0] > start else [], instants]))
-    )
-
-
 def by_method(method: Method, scene: Scene, tolerance: float) -> Solve:
-    """A method of `simulate`, or one that is made like these."""
+    """A method of `simulate`, or one that is made like these; it begins at the scene's start."""
     task = task_of(scene, method, tolerance)
 
     def solve(instants: Array) -> Answer:
-        motion = motion_at(task, instants)
-        return Answer(numbers_of(motion, len(instants)), work_of(motion.work))
+        start = [scene.time.start] if instants[0] > scene.time.start else []
+        motion = solve_task(replace(task, instants=np.concatenate([start, instants])))
+        counts = {name: getattr(motion.work, name) for name in COUNTED}
+        return Answer(numbers_of(motion, len(instants)), {name: n for name, n in counts.items() if n})
 
     return solve
 
@@ -74,15 +64,6 @@ def numbers_of(samples: Samples, last: int) -> Mapping[str, Mapping[str, Array]]
         quantity: {name: array[-last:] for name, array in channel.items()}
         for quantity, channel in samples.numbers.items()
         if channel.computed
-    }
-
-
-def work_of(work: Work) -> Mapping[str, int]:
-    """What was done."""
-    return {
-        name: count
-        for name in ("factorisations", "residuals", "segments", "series_orders")
-        if (count := getattr(work, name))
     }
 
 

@@ -28,7 +28,7 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     # Imported here: pandas takes half a second, and most pages tell of no cost.
-    from validate.cost.findings import quantities_of, timed
+    from validate.cost.findings import timed
     from validate.cost.looks import KEY, looks
 
     accuracy = timed(cost.table, "accuracy")
@@ -36,7 +36,7 @@ def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     pictures = []
     for scene in scenes[:SCENES]:
         here = accuracy[accuracy.scene == scene]
-        panels = tuple(_panel(here[here.quantity == q], q, ways) for q in quantities_of(here))
+        panels = tuple(_panel(of, q, ways) for q, of in here.groupby("quantity", sort=False))
         pictures.append(Plots(f"{scene}: error against time, a line for each way", panels))
     # First what accuracy costs, in a sentence and one picture.
     yield from (Paragraph(sentence) for sentence in cost.sentences[:1])
