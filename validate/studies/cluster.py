@@ -20,14 +20,7 @@ from validate.errors import UsageError
 from validate.extras import needed
 from validate.plain_text import one_line, shown
 from validate.studies.store import Store
-from validate.studies.study import (
-    Row,
-    Study,
-    StudyStopped,
-    Task,
-    differences,
-    made_by,
-)
+from validate.studies.study import Row, Study, StudyStopped, Task, differences, made_by
 
 LOCAL = "local"
 HERE = "127.0.0.1"  # nobody else reaches processes of this machine: what they are sent, they run
@@ -36,7 +29,6 @@ FIRST_WORKER = 10.0  # and a cluster to have a worker
 WRITTEN = 2.0  # seconds of what is worked out that one file holds: what the end of this process can cost
 MOST = 5000  # Dask tasks of a run: a scheduler needs a millisecond for each
 LOGGERS = ("distributed", "tornado", "asyncio")
-INSTALL = "pip install 'pointcoord[validate,cluster]'"
 
 
 def run(
@@ -54,8 +46,7 @@ def run(
         told: how many of the tasks are recorded, whenever there are more.
     Raises:
         UsageError: a worker runs another program, or several tasks at once.
-        StudyStopped: the scheduler is gone, or a task ends its workers one after the other.
-        StudyStopped: a task raised an error.
+        StudyStopped: the scheduler is gone; a task ends its workers one after the other, or raises an error.
         OutputError: the records cannot be written.
     """
     distributed, size = quiet_dask(), max(study.chunk, -(-len(tasks) // MOST))
@@ -116,9 +107,8 @@ def rows_of(examine: Callable[[Task], list[Row]], task: Task, worker: str) -> li
     except ImportError as error:
         raise UsageError(f"worker {worker}: {error}") from error
     except Exception as error:
-        raise StudyStopped(
-            f"{' '.join(map(str, task))}: {type(error).__name__}: {told_failure(error)}"
-        ) from error
+        words = f"{type(error).__name__}: {told_failure(error)}"
+        raise StudyStopped(f"{task.part} {task.number}: {words}") from error
     every = {**task._asdict(), "seconds": time.perf_counter() - began, "worker": worker}
     return [{**every, **row} for row in rows]
 
@@ -132,19 +122,17 @@ def _result(future: Any, client: Any) -> tuple[int, list[Row]]:
     except (UsageError, StudyStopped):
         raise
     except distributed.KilledWorker as error:
-        raise StudyStopped(
+        problem = (
             f"{future.key} ended {error.allowed_failures + 1} workers one after the other, the last of "
             f"them {error.last_worker.address}; look into its log, and at its memory"
-        ) from None
+        )
     except Exception as error:
-        if isinstance(error, distributed.CancelledError) or client.status != "running":
-            raise StudyStopped(
-                "the scheduler does not answer any more; the same command goes on elsewhere"
-            ) from None
-        told = one_line(f"{type(error).__name__}: {error}")
-        raise UsageError(
-            f"a worker cannot run this program ({told}); it needs {INSTALL}, of this version"
-        ) from None
+        if client.status == "running" and not isinstance(error, distributed.CancelledError):
+            words = one_line(f"{type(error).__name__}: {error}")
+            need = "pip install 'pointcoord[validate,cluster]', of this version"
+            raise UsageError(f"a worker cannot run this program ({words}); it needs {need}") from None
+        problem = "the scheduler does not answer any more; the same command goes on elsewhere"
+    raise StudyStopped(problem)
 
 
 @contextmanager
@@ -159,9 +147,11 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
     """
     distributed = quiet_dask()
     with ExitStack() as stack:
-        cluster = stack.enter_context(_local(distributed, workers)) if address == LOCAL else address
         if address != LOCAL:
             _require_scheduler(distributed, address)
+        cluster: Any = address if address != LOCAL else _local(distributed, workers)
+        if address == LOCAL:
+            stack.callback(_quietly, cluster.close)
         with warnings.catch_warnings():
             # Of other versions; those that matter are refused.
             warnings.simplefilter("ignore")
@@ -170,9 +160,10 @@ def opened(address: str, workers: int | None = None) -> Iterator[Any]:
         try:
             client.wait_for_workers(1, timeout=FIRST_WORKER)
         except TimeoutError:
+            where = shown(address)
             raise UsageError(
-                f"the scheduler {shown(address)} has no worker after {FIRST_WORKER:g} s; start one: "
-                f"dask worker {shown(address)} --nthreads 1"
+                f"the scheduler {where} has no worker after {FIRST_WORKER:g} s; start one: "
+                f"dask worker {where} --nthreads 1"
             ) from None
         yield client
 
@@ -190,19 +181,14 @@ def quiet_dask() -> Any:
     return distributed
 
 
-@contextmanager
-def _local(distributed: Any, workers: int | None) -> Iterator[Any]:
-    """Processes of this machine, one thread each; one that dies is started again.
-
-    Raises:
-        UsageError: they do not start.
-    """
+def _local(distributed: Any, workers: int | None) -> Any:
+    """Processes of this machine, one thread each; one that dies is started again."""
     # A terminal sends Ctrl-C to all; who ends the workers is this program. Threads and processes that begin
     # here, and theirs, never see it. Whoever starts the tracker of multiprocessing would hear again.
     resource_tracker.ensure_running()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        cluster = distributed.LocalCluster(
+        return distributed.LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
             processes=True,
@@ -213,15 +199,8 @@ def _local(distributed: Any, workers: int | None) -> Iterator[Any]:
             memory_limit=0,
             silence_logs=logging.CRITICAL + 1,
         )
-    except Exception as error:
-        told = one_line(f"{type(error).__name__}: {error}")
-        raise UsageError(f"processes of this machine do not start ({told}); try --workers 1") from None
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    try:
-        yield cluster
-    finally:
-        _quietly(cluster.close)
 
 
 def _require_scheduler(distributed: Any, address: str) -> None:
@@ -231,29 +210,24 @@ def _require_scheduler(distributed: Any, address: str) -> None:
         UsageError: none does.
     """
 
-    async def asked() -> Any:
+    async def identity() -> Any:
         how = distributed.Security().get_connection_args("client")
         async with distributed.rpc(address, timeout=ANSWER, connection_args=how) as scheduler:
             return await scheduler.identity(n_workers=0)
 
-    async def answered() -> Any:
-        return await asyncio.wait_for(asked(), ANSWER)
+    async def answer() -> Any:
+        return await asyncio.wait_for(identity(), ANSWER)
 
-    began = time.monotonic()
     try:
-        if asyncio.run(answered()).get("type") == "Scheduler":
-            return
-        told = "something else answers"
-    except MemoryError:
-        # What another program says may be taken for the size of an answer.
-        told = "something else answers"
-    except Exception as error:
-        told = one_line(str(error)) or "no answer"
-    raise UsageError(
-        f"the scheduler {shown(address)} does not answer as a Dask scheduler ({told}, after "
-        f"{time.monotonic() - began:.1f} s); give --scheduler an address such as tcp://HOST:8786, where dask "
-        "scheduler runs, or leave it out"
-    )
+        kind = asyncio.run(answer()).get("type")
+        problem = "" if kind == "Scheduler" else f"it is a {kind}"
+    except Exception as error:  # also of what another program says, taken for the size of an answer
+        problem = one_line(str(error)) or f"no answer in {ANSWER:g} s"
+    if problem:
+        raise UsageError(
+            f"the scheduler {shown(address)} does not answer as a Dask scheduler ({problem}); give "
+            "--scheduler an address such as tcp://HOST:8786, where dask scheduler runs, or leave it out"
+        )
 
 
 def _quietly(close: Callable[..., object]) -> None:

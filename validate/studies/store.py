@@ -56,7 +56,7 @@ class Store:
         Raises:
             UsageError: a file cannot be read.
         """
-        return {Task(row["part"], row["number"]) for row in self._read(Task._fields)}
+        return {task for task, _ in self._read(Task._fields)}
 
     def rows(self, tasks: Sequence[Task] | None = None) -> list[Row]:
         """The rows of tasks in their order, whenever they were worked out; of all tasks if none are given.
@@ -65,18 +65,18 @@ class Store:
             UsageError: a file cannot be read.
         """
         found: dict[Task, list[Row]] = {}
-        for row in self._read(tuple(self.columns)):
-            found.setdefault(Task(row["part"], row["number"]), []).append(row)
+        for task, row in self._read(tuple(self.columns)):
+            found.setdefault(task, []).append(row)
         return [row for task in (sorted(found) if tasks is None else tasks) for row in found.get(task, ())]
 
-    def _read(self, columns: Sequence[str]) -> Iterator[Row]:
+    def _read(self, columns: Sequence[str]) -> Iterator[tuple[Task, Row]]:
         # Two runs may have worked out the same task: it counts once.
         known: set[Task] = set()
         parquet = needed("study", "pyarrow.parquet", "cluster")
         for file in self.files():
             try:
                 rows = parquet.read_table(file, columns=list(columns), partitioning=None).to_pylist()
-                here = {Task(row["part"], row["number"]) for row in rows}
+                here = [(Task(row["part"], row["number"]), row) for row in rows]
             except (OSError, ValueError, KeyError) as error:
                 told = " ".join(str(error).split())
                 raise _unusable(
@@ -84,8 +84,8 @@ class Store:
                     f"{file.name} cannot be read as what this study records ({told}); delete this file to "
                     "work out its tasks again",
                 ) from None
-            yield from (row for row in rows if Task(row["part"], row["number"]) not in known)
-            known |= here
+            yield from ((task, row) for task, row in here if task not in known)
+            known.update(task for task, _ in here)
 
     def next_file(self) -> Path:
         """A file for what is worked out next, which no other run has."""
@@ -128,10 +128,8 @@ def adding_to(folder: Path, study: Study) -> Store:
         UsageError: they are of something else, or there is no room.
     """
     needed("study", "pyarrow.parquet", "cluster")
-    here, there = (
-        Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by()),
-        _found(folder),
-    )
+    here = Store(folder, study.name, study.settings, {**EVERY, **study.columns}, made_by())
+    there = _found(folder)
     if folder.exists() and not folder.is_dir():
         raise _unusable(folder, "is a file, and records take a folder; give another name")
     # A run that ended before anything was recorded left nothing to be held to.
@@ -155,10 +153,8 @@ def _found(folder: Path) -> Store | None:
         return Store(folder=folder, **json.loads((folder / HEAD).read_text(encoding="utf-8")))
     except (FileNotFoundError, NotADirectoryError):
         return None
-    except OSError as error:
-        raise _unusable(folder, f"{HEAD} cannot be read ({error.strerror}); {ANOTHER}") from None
-    except (ValueError, TypeError):
-        raise _unusable(folder, f"{HEAD} does not say what the records are of; {ANOTHER}") from None
+    except (OSError, ValueError, TypeError) as error:
+        raise _unusable(folder, f"{HEAD} does not say what the records are of ({error}); {ANOTHER}") from None
 
 
 def _unusable(folder: Path, problem: str) -> UsageError:

