@@ -21,11 +21,6 @@ STEER = study_scene("steer", own_scene("steer"))
 FEW = Effort(repeats=2, least=0.0)
 
 
-@pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(studying, "QUICK", FEW)
-
-
 def test_instants_are_special_to_no_way_and_one_lies_in_each_part_of_the_time() -> None:
     scene = own_scene("bounce")
     instants, time = study_instants(scene), scene.time
@@ -63,21 +58,28 @@ def test_a_way_that_is_not_installed_is_left_out_and_one_that_refuses_has_failed
     }
 
 
-def test_what_is_kept_is_not_measured_again_and_more_is_added(tmp_path: Path, few: None) -> None:
+def test_what_is_kept_is_not_measured_again_and_more_is_added(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    raced: list[set[str]] = []
+
+    def planted(runners: Any, *_: Any) -> list[Row]:
+        raced.append({one.row.way for one in runners})
+        return [replace(one.row, quantity="position", error=1e-9, time=1e-6) for one in runners]
+
+    monkeypatch.setattr(studying, "race", planted)
     path, here = tmp_path / "rows", measured_here("test")
     study = Study(("accuracy",), (STEER,), ways_named(["absolute"]), quick=True)
     rows = measure(study, Store(path, here))
     before = path.read_bytes()
-    again = measure(study, Store(path, here), lambda *_: pytest.fail("measured again"))
-    assert (again, path.read_bytes()) == (rows, before)
+    assert (measure(study, Store(path, here)), path.read_bytes()) == (rows, before)
     assert {row.program for row in rows} == {here.program}
     more = measure(replace(study, ways=ways_named(["absolute", "newton"])), Store(path, here))
     assert more[: len(rows)] == rows
-    assert {row.way for row in more[len(rows) :]} == {"newton"}
+    assert raced == [{"absolute"}, {"newton"}]
     changed = study_scene("steer", STEER.positions_only())
-    assert not {row.key for row in measure(replace(study, scenes=(changed,)), Store(path, here))} & {
-        row.key for row in rows
-    }
+    found = measure(replace(study, scenes=(changed,)), Store(path, here))
+    assert not {row.key for row in found} & {row.key for row in rows}
 
 
 def test_growth_goes_on_with_the_size_that_it_was_stopped_at(

@@ -154,15 +154,12 @@ def test_an_address_that_does_not_answer_is_said_in_a_line(
     monkeypatch.setattr(cluster, "ANSWER", 1.0)
     with closing(socket.create_server(("127.0.0.1", 0))) as server:
         port = server.getsockname()[1]
-
         words = ["study", "random", "--count", "2", "--records", str(tmp_path / "records")]
         assert main([*words, "--scheduler", f"tcp://127.0.0.1:{port}"]) == 2
-
     # One line, and no word of a study that goes on: there is none.
     said = capsys.readouterr().err.splitlines()
     (line,) = [line for line in said if ": note: after " not in line]
     assert f"the scheduler tcp://127.0.0.1:{port} does not answer as a Dask scheduler (" in line
-
     assert "Error" not in line
     assert not (tmp_path / "records").exists()
 
