@@ -37,8 +37,6 @@ from validate.output.document import program_version
 from validate.plain_text import shown
 
 Array = NDArray[np.float64]
-Places = Mapping[str, Mapping[str, int]]
-"""Numbers of arrays by quantity and name."""
 
 FORMAT, VERSION = "pointcoord baseline", 1
 ALLOWED = "a file that --save-baseline wrote"
@@ -159,7 +157,7 @@ class Baseline:
             return Since(name, "new", f"{name} is not in the baseline")
         if other := ", ".join(_differing(then.mechanism, _mechanism(scene))):
             return Since(name, "another car", f"{name} is another car than in the baseline: {other}")
-        if _digest(_motion(scene)) != then.motion:
+        if _motion(scene) != then.motion:
             words = f"{name} has other inputs or another time than in the baseline"
             return Since(name, "another motion", words)
         if not outcomes:
@@ -243,13 +241,9 @@ def _mechanism(scene: Scene) -> dict[str, Any]:
     return dict(scene.mechanism.model_dump(mode="json"))
 
 
-def _motion(scene: Scene) -> dict[str, Any]:
-    """What drives the car, and when."""
-    content = scene.model_dump(mode="json")
-    return {key: content[key] for key in ("inputs", "time")}
-
-
-def _digest(content: Mapping[str, Any]) -> str:
+def _motion(scene: Scene) -> str:
+    """A digest of what drives the car, and when."""
+    content = scene.model_dump(mode="json", include={"inputs", "time"})
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
@@ -277,30 +271,26 @@ class Recorder:
         """Take in a scene that was compared; one that was not has no numbers to keep."""
         if not outcomes or name in self._scenes:
             return
-        self._scenes[name] = {
-            "scene": name,
-            "mechanism": _mechanism(scene),
-            "motion": _digest(_motion(scene)),
-            "solutions": [
-                {
-                    "formulation": solution.formulation,
-                    "times": self._put(solution.times),
-                    "condition": self._put(solution.accuracy.condition),
-                    "numbers": self._put_all(solution.numbers),
-                    "claims": self._put_all(solution.accuracy.claims),
-                }
-                for solution in solutions_of(scene, outcomes)
-            ],
-        }
+        solutions = [
+            {
+                "formulation": solution.formulation,
+                "times": solution.times,
+                "condition": solution.accuracy.condition,
+                "numbers": solution.numbers,
+                "claims": solution.accuracy.claims,
+            }
+            for solution in solutions_of(scene, outcomes)
+        ]
+        known = {"scene": name, "mechanism": _mechanism(scene), "motion": _motion(scene)}
+        self._scenes[name] = {**known, "solutions": [self._numbered(one) for one in solutions]}
 
-    def _put_all(self, arrays: Mapping[str, Mapping[str, Array]]) -> Places:
-        return {
-            quantity: {name: self._put(array) for name, array in part.items()}
-            for quantity, part in arrays.items()
-        }
-
-    def _put(self, array: Array) -> int:
-        self._arrays.append(array)
+    def _numbered(self, content: Any) -> Any:
+        """The same with the number of each array in its place."""
+        if isinstance(content, Mapping):
+            return {key: self._numbered(value) for key, value in content.items()}
+        if not isinstance(content, np.ndarray):
+            return content
+        self._arrays.append(content)
         return len(self._arrays) - 1
 
     def content(self) -> bytes:
@@ -340,24 +330,22 @@ def read_baseline(target: str) -> Baseline:
 
 
 def _scene(head: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> SavedScene:
+    def filled(content: Any) -> Any:
+        """The same with each array in the place of its number."""
+        if isinstance(content, Mapping):
+            return {key: filled(value) for key, value in content.items()}
+        return arrays[f"a{content}"] if isinstance(content, int) else content
+
+    found = [filled(one) for one in head["solutions"]]
     solutions = tuple(
-        Solution(
-            one["formulation"],
-            arrays[f"a{one['times']}"],
-            _taken(one["numbers"], arrays),
-            Accuracy(arrays[f"a{one['condition']}"], _taken(one["claims"], arrays)),
-        )
-        for one in head["solutions"]
+        Solution(one["formulation"], one["times"], one["numbers"], Accuracy(one["condition"], one["claims"]))
+        for one in found
     )
     for solution in solutions:
         given(solution, solution.times)
         if unknown := solution.numbers.keys() - QUANTITIES.keys():
             raise ValueError(f"{sorted(unknown)[0]} is no quantity")
     return SavedScene(head["mechanism"], head["motion"], solutions)
-
-
-def _taken(places: Places, arrays: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, Array]]:
-    return {q: {name: arrays[f"a{place}"] for name, place in part.items()} for q, part in places.items()}
 
 
 def _unusable(target: str, problem: str, allowed: str = ALLOWED) -> UsageError:
