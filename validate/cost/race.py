@@ -18,8 +18,8 @@ import math
 import random
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -90,97 +90,77 @@ def race(
     clock: Clock = time.perf_counter_ns,
 ) -> list[Row]:
     """Run all of them against each other, and give their rows in their order."""
-    racers = [_Racer(runner, effort, clock) for runner in runners]
-    steps, collects = len(racers) * (effort.repeats + 1), gc.isenabled()
+    courses = [_course(runner, effort, clock) for runner in runners]
+    rows: list[list[Row]] = [[] for _ in runners]
+    steps, collects = len(runners) * (effort.repeats + 1), gc.isenabled()
     gc.disable()
     try:
         with threadpool_limits(limits=1), warnings.catch_warnings():
             # What overflows is seen in the numbers.
             warnings.simplefilter("ignore")
-            for i, racer in enumerate(racers):
-                progress(racer.words, i, steps)
-                racer.attempt(racer.first)
-            for number in range(1, effort.repeats + 1):
+            for number in range(effort.repeats + 1):
                 gc.collect()
-                order = [racer for racer in racers if racer.loops]
-                random.Random(f"{SEED} {number}").shuffle(order)
-                for racer in order:
-                    progress(f"{racer.words}, repeat {number}", len(racers) * number, steps)
-                    racer.attempt(racer.repeat)
+                order = list(range(len(runners)))
+                if number:
+                    random.Random(f"{SEED} {number}").shuffle(order)
+                for done, i in enumerate(order, number * len(runners)):
+                    row = runners[i].row
+                    progress(f"{row.scene}: {row.way} {row.setting}, run {number + 1}", done, steps)
+                    try:
+                        rows[i] = next(courses[i], rows[i])
+                    except Exception as error:
+                        rows[i] = [replace(row, **_broken(error))]
     finally:
         if collects:
             gc.enable()
-    return [row for racer in racers for row in racer.timed()]
+    return [row for of in rows for row in of]
 
 
-@dataclass
-class _Racer:
-    """A runner in a race.
+def _course(runner: Runner, effort: Effort, clock: Clock) -> Iterator[list[Row]]:
+    """The rows of a runner after its first two runs, and again after each sample that there is time for."""
 
-    Attributes:
-        rows: with errors, or the one that says why there are none. loops: runs of a sample; none where there
-            is no time for a second run. samples: seconds of the set-up and of the rest.
-    """
-
-    runner: Runner
-    effort: Effort
-    clock: Clock
-    rows: list[Row] = field(default_factory=list)
-    loops: int = 0
-    samples: list[tuple[float, float]] = field(default_factory=list)
-
-    @property
-    def words(self) -> str:
-        return f"{self.runner.row.scene}: {self.runner.row.way} {self.runner.row.setting}"
-
-    def attempt(self, step: Callable[[], None]) -> None:
-        """Go a step; one that breaks down leaves the reason: failed, or that it does not apply."""
-        try:
-            step()
-        except Exception as error:
-            known = isinstance(error, PointcoordError | NoNumbers | LeftOut | ImportError)
-            verdict: Verdict = "left out" if isinstance(error, LeftOut | ImportError) else "failed"
-            why = absent(verdict, str(error) if known else f"{type(error).__name__}: {error}")
-            self.rows, self.loops = [replace(self.runner.row, **why)], 0
-
-    def first(self) -> None:
-        """The first run, whose answer is looked at, and the second."""
-        *first, answer = self._run()
-        found = self.runner.found(answer)
-        del answer
-        gc.collect()
-        row = replace(self.runner.row, first=sum(first))
-        self.rows = [replace(row, quantity=quantity, **columns) for quantity, columns in found.items()]
-        self.samples = [(first[0], first[1])]
-        if 2.0 * sum(first) <= self.effort.most:
-            seconds = max(sum(self._run()[:2]), 1e-9)
-            self.samples = []
-            self.loops = min(max(math.ceil(self.effort.least / seconds), 1), MOST_LOOPS)
-
-    def repeat(self) -> None:
-        """A sample, if there is time for it: the mean of some runs."""
-        took = self.loops * sum(map(sum, self.samples))
-        if not self.samples or took * (1.0 + 1.0 / len(self.samples)) <= self.effort.most:
-            set_up, rest = np.mean([self._run()[:2] for _ in range(self.loops)], axis=0).tolist()
-            self.samples.append((set_up, rest))
-
-    def _run(self) -> tuple[float, float, Any]:
+    def run() -> tuple[tuple[float, float], Any]:
         """Seconds of the set-up and of the rest, and the answer."""
-        begun = self.clock()
-        run = self.runner.set_up()
-        ready = self.clock()
-        answer = run()
-        return 1e-9 * (ready - begun), 1e-9 * (self.clock() - ready), answer
+        begun = clock()
+        solve = runner.set_up()
+        ready = clock()
+        answer = solve()
+        return (1e-9 * (ready - begun), 1e-9 * (clock() - ready)), answer
 
-    def timed(self) -> list[Row]:
-        """The rows; median and quartiles of the samples are in every one that has numbers."""
-        if not self.samples:
-            return self.rows
-        set_up, rest = np.transpose(self.samples)
-        lower, median, upper = (np.quantile(rest, (0.25, 0.5, 0.75)) / max(self.runner.row.poses, 1)).tolist()
-        columns: dict[str, Any] = {"time": median, "lower": lower, "upper": upper, "repeats": len(rest)}
-        columns["set_up"] = float(np.median(set_up))
-        return [replace(row, **columns) if row.verdict == "measured" else row for row in self.rows]
+    took, answer = run()
+    found = runner.found(answer)
+    del answer
+    gc.collect()
+    row, samples, loops = replace(runner.row, first=sum(took)), [took], 0
+    if 2.0 * sum(took) <= effort.most:
+        seconds = max(sum(run()[0]), 1e-9)
+        samples, loops = [], min(max(math.ceil(effort.least / seconds), 1), MOST_LOOPS)
+    yield _rows(row, found, samples)
+    while loops and sum(map(sum, samples)) * loops * (1.0 + 1.0 / max(len(samples), 1)) <= effort.most:
+        set_up, rest = np.mean([run()[0] for _ in range(loops)], axis=0).tolist()
+        samples.append((set_up, rest))
+        yield _rows(row, found, samples)
+
+
+def _rows(row: Row, found: Found, samples: Sequence[tuple[float, float]]) -> list[Row]:
+    """A row for each quantity, with median and quartiles of the samples where it has numbers."""
+    times: dict[str, Any] = {}
+    if samples:
+        set_up, rest = np.transpose(samples)
+        lower, median, upper = (np.quantile(rest, (0.25, 0.5, 0.75)) / max(row.poses, 1)).tolist()
+        times = {"time": median, "lower": lower, "upper": upper, "repeats": len(rest)}
+        times["set_up"] = float(np.median(set_up))
+    return [
+        replace(row, quantity=quantity, **({} if "verdict" in columns else times), **columns)
+        for quantity, columns in found.items()
+    ]
+
+
+def _broken(error: Exception) -> dict[str, Any]:
+    """Columns of a row of what breaks down: failed, or that it does not apply."""
+    known = isinstance(error, PointcoordError | NoNumbers | LeftOut | ImportError)
+    verdict: Verdict = "left out" if isinstance(error, LeftOut | ImportError) else "failed"
+    return absent(verdict, str(error) if known else f"{type(error).__name__}: {error}")
 
 
 def absent(verdict: Verdict, reason: str) -> dict[str, Any]:
