@@ -8,7 +8,7 @@ from typing import get_args
 
 from validate.ci.baseline import Move, Since
 from validate.ci.record import Record
-from validate.comparison.compare import Comparison, Outcome, Verdict
+from validate.comparison.compare import Comparison, Verdict
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
 from validate.output.report import (
@@ -33,9 +33,14 @@ from validate.solvers.plain import SolverFailed
 
 NAMED = 10  # scenes that a sentence names of each verdict
 NUMBERS = 8  # numbers in a sentence: the table's notes have them all
-TELLING = 20.0  # tolerances that a difference must have, for a fault to be told from others by it
 ALONE = {"new": "not in the baseline", "gone": "in the baseline and not given now"}
 NOT_TESTED = "not tested"
+NEXT = {
+    "refused": "pointcoord plan {} says how far each input can go and what holds it there",
+    ExitStatus.WRONG_INPUT.verdict: "mend {} as the message about it says",
+    "failed": "report what failed on {}, with its file",
+}
+"""What to do about a scene that was not tested, by the reason."""
 # The line of a scene tells of the last verdict that any of its numbers has.
 OF_THE_LINE = ("not given", NOT_TESTED, "agrees", "disagrees")
 
@@ -148,34 +153,22 @@ def scene_lines(examined: Examined, seconds: float, width: int) -> Iterator[str]
 
 def next_step(record: Record, verbose: bool = False) -> str:
     """What to do next where something is not as wanted; empty where all is."""
-    words = {standing(one): one.name for one in record.examined}
-    verdicts = {verdict for verdict, why in words if not why}
+    by_standing = {standing(one): one for one in record.examined}
     steps = []
     if record.files and record.status is not ExitStatus.AGREE:
-        if any(_too_little_to_explain(outcome) for one in record.examined for outcome in one.outcomes):
-            steps.append("differences of so few tolerances tell no fault apart: print more digits")
         steps.append("--report DIR draws the file's columns beside ours")
-    elif verdicts - {"agrees"}:
+    elif any(not why and verdict != "agrees" for verdict, why in by_standing):
         table = "" if verbose else "-v prints the table of every quantity, "
         steps.append(f"{table}--report DIR makes a page with both models in motion")
-    refused = [one for one in record.examined if standing(one) == (NOT_TESTED, "refused")]
-    failed = {r.formulation: one for one in refused for r in one.refusals if r.error == SolverFailed.__name__}
-    steps += [f"mend {solver} as the message about it says" for solver in failed]
-    if left := [one.name for one in refused if one not in failed.values()]:
-        steps.append(f"pointcoord plan {left[-1]} says how far each input can go and what holds it there")
-    if name := words.get((NOT_TESTED, "wrong input")):
-        steps.append(f"mend {name} as the message about it says")
-    if name := words.get((NOT_TESTED, "failed")):
-        steps.append(f"report what failed on {name}, with its file")
+    for (_, why), one in by_standing.items():
+        solvers = [r.formulation for r in one.refusals if r.error == SolverFailed.__name__]
+        if solvers and why == "refused":
+            steps.append(f"mend {solvers[0]} as the message about it says")
+        elif why in NEXT:
+            steps.append(NEXT[why].format(one.name))
     if any(since.moved or since.lost for since in record.since):
         steps.append("if the new numbers are right, keep them by --save-baseline FILE")
     return f"Next: {'; '.join(steps)}." if steps else ""
-
-
-def _too_little_to_explain(outcome: Outcome) -> bool:
-    """Whether nothing explains it and no difference is many times its tolerance."""
-    shares = [row.share for row in outcome.disagreements]
-    return bool(shares) and not outcome.explanations and max(shares) <= TELLING
 
 
 Lines = Callable[[Examined], Iterator[str]]
