@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from validate.cost.table import WHERE, Row, StoreError, frame, latest, read_rows
 from validate.output.document import json_text
-from validate.output.table import Part, Table, markdown, text_of
+from validate.output.table import Part, Table, markdown
 
 # Imported where they are needed, as `findings` is: pandas takes half a second, and most pages show no costs.
 if TYPE_CHECKING:
@@ -99,10 +99,6 @@ class Report:
         by = "".join(f" by {row.program}, {row.machine}" for row in self.rows[:1])
         last = f"{self.store}: {self.measured} rows measured{by}"
         return ("\n".join(map(_wrapped, (TITLE, *said))), *shown, "", _wrapped(HOW), _wrapped(last))
-
-    def text(self) -> str:
-        """The same in lines."""
-        return text_of(self.parts())
 
     def markdown(self, picture: str = "") -> str:
         """For a page: sentences, a picture by the name of its file, and all tables."""

@@ -13,6 +13,7 @@ from made_rows import kept, measured, study
 
 from validate.cli import main
 from validate.cost import study as studying
+from validate.cost.report import NOTHING
 from validate.cost.scenes import STUDY_SCENES
 from validate.cost.study import Study
 from validate.cost.table import PARTS, Row, Store, measured_here, read_rows
@@ -151,7 +152,9 @@ def test_nothing_that_could_be_measured_ends_with_3_and_the_reasons(
     assert main(["cost", "--rows", str(tmp_path / "rows.parquet")]) == 3
     out, err = told(capsys)
     assert "locked at 2 s" in out
+    assert NOTHING in out
     assert "nothing could be measured" in err[0]
+    assert [path.name for path in tmp_path.iterdir()] == ["rows.parquet"], "there is nothing to draw"
 
 
 def test_a_run_leaves_the_picture_beside_its_rows_and_names_it(
