@@ -18,7 +18,7 @@ from validate.errors import UsageError
 from validate.extras import needed
 from validate.output.console import Console
 from validate.output.document import Ending, Head, Journal, at_the_end
-from validate.output.report import counted_as
+from validate.output.report import share_of_all
 from validate.plain_text import shown
 
 # What a page is made of is imported where one is made: most runs make none.
@@ -31,53 +31,46 @@ class Page:
     """Where the page of a run goes.
 
     Attributes:
-        with_more: adds to a run what else is computed for its page.
-        option: that names the folder, with a space behind it.
-        brief: whether nothing is said but the verdict in a sentence, and where the page is.
+        with_more: of `pointcoord report`, adds to a run what else is computed for its page; such a run says
+            nothing but the verdict in a sentence, and where the page is.
     """
 
     folder: str
-    with_more: Callable[[Run], Run] = lambda run: run
-    option: str = "--report "
-    brief: bool = False
+    with_more: Callable[[Run], Run] | None = None
 
     @classmethod
     def of(cls, options: argparse.Namespace) -> Page | None:
-        """The page that `--report` asks for, if it does."""
-        return None if options.report is None else cls(options.report)
-
-    @property
-    def place(self) -> str:
-        """The page itself, for people."""
-        return shown(os.path.join(self.folder, "index.html"))
-
-    def require(self) -> None:
-        """Find out that there can be no page, before anything is solved.
+        """The page that `--report` asks for, if it does, found to be possible before anything is solved.
 
         Raises:
             MissingPackage: a page needs the extra `report`.
             UsageError: the folder has no name, or cannot be a report's.
             OutputError: it cannot be written.
         """
+        if options.report is None:
+            return None
         from validate.html.page import require_folder
 
-        if not self.folder.strip():
+        if not options.report.strip():
+            option = "" if "folder" in options else "--report "
             raise UsageError(
-                f"{self.option}{self.folder!r} names no folder; give the path of one, which is made if needed"
+                f"{option}{options.report!r} names no folder; give the path of one, which is made if needed"
             )
         for package in ("jinja2", "plotly.offline"):
             needed("report", package, "report")
-        require_folder(self.folder)
+        require_folder(options.report)
+        return cls(options.report, getattr(options, "with_more", None))
+
+    @property
+    def place(self) -> str:
+        """The page itself, for people."""
+        return shown(os.path.join(self.folder, "index.html"))
 
     def write(self, run: Run, console: Console) -> Run:
-        """Write the page of a run; returns it with what the page holds beside it.
-
-        Raises:
-            OutputError: it cannot be written.
-        """
+        """Write the page of a run; returns it with what the page holds beside it."""
         from validate.html.page import write_report
 
-        whole = self.with_more(run)
+        whole = run if self.with_more is None else self.with_more(run)
         write_report(self.folder, whole)
         console.written[self.place] = "the report"
         return whole
@@ -112,30 +105,25 @@ def results_of(options: argparse.Namespace) -> dict[str, str | None]:
 
 @contextmanager
 def comparing(
-    options: argparse.Namespace, console: Console, record: Record, page: Page | None, noun: str = "scene"
+    options: argparse.Namespace, console: Console, record: Record, noun: str = "scene"
 ) -> Iterator[Comparing]:
     """A run of comparisons; its files are written however it ends, its page if it comes to its end.
 
     Raises:
         MissingPackage, UsageError: there can be no page. OutputError: a result cannot be written.
     """
-    drawings = None
+    drawings, page = None, Page.of(options)
     if page is not None:
         from validate.html.run import Drawings, Run
 
-        page.require()
         drawings = Drawings(len(record.names))
     head = Head.of("validate", options.command, options.timings)
     files = Files(options.junit, options.summary, options.save_baseline)
+
     journal = Journal(
-        options.json,
-        head,
-        console,
-        record.data,
-        lambda: f"{len(record.examined)} of {counted_as(len(record.names), noun)}",
-        lambda: record.examined,
+        options.json, head, console, record.data, lambda: share_of_all(record.examined, record.names, noun)
     )
-    mute, brief = console.mute, page is not None and page.brief
+    mute, brief = console.mute, page is not None and page.with_more is not None
     console.mute = mute or brief
     with journal.closing() as ending, at_the_end(lambda end: files.write(record, end, console)):
         yield Comparing(record, files, journal, drawings, ending)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from validate.ci import verdict
 from validate.ci.baseline import Since, read_baseline
 from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
-from validate.commands.comparing import Page, comparing, results_of
+from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import (
     DATA,
     JSON,
@@ -104,26 +104,21 @@ TABLES_OPTION = """\
 """
 
 
-def run(options: argparse.Namespace, console: Console, page: Page | None = None) -> ExitStatus:
-    """Compare scenes, a file or tables; each is said, and written as JSON, as soon as it is done.
-
-    Args:
-        page: is made of the run, if there is one; that of --report if not given.
-    """
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
+    """Compare scenes, a file or tables; each is said, and written as JSON, as soon as it is done."""
     kind = require_sense(options)
     if options.tolerance_factor is None:
         options.tolerance_factor = 1.0
-    page = page or Page.of(options)
     # Most runs compare no file and no table.
     if kind == TABLES:
         from validate.commands.tables import run as run_tables
 
-        return run_tables(options, console, page)
+        return run_tables(options, console)
     if kind == A_FILE:
         from validate.commands.data import run as run_data
 
-        return run_data(options, console, page)
-    return _compare_scenes(options, console, page)
+        return run_data(options, console)
+    return _compare_scenes(options, console)
 
 
 def require_sense(options: argparse.Namespace) -> str:
@@ -141,7 +136,7 @@ def require_sense(options: argparse.Namespace) -> str:
     return kind
 
 
-def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
+def _compare_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
     names, pairs = _names(options), _pairs(options, console)
     require_input_once(names)
     if options.save_baseline == "-":
@@ -156,15 +151,16 @@ def _compare_scenes(options: argparse.Namespace, console: Console, page: Page | 
     record, width = Record(shown_names, options.tolerance_factor, baseline), max(map(len, shown_names))
     with (
         _solver(options) as own,
-        comparing(options, console, record, page) as compared,
-        console.progress("scenes", total=len(names), lines=page is not None and page.brief) as told,
+        comparing(options, console, record) as compared,
+        console.progress("scenes", total=len(names), lines="folder" in options) as told,
     ):
-        loaded = _loaded(names, console)
+        # All are read before any is solved.
+        loaded = [_loaded(name, console) for name in names]
         told_pairs = "; ".join(" and ".join(pair) for pair in pairs)
         console.say(f"{told_pairs}: {counted_as(len(names), 'scene')}\n")
         if not options.verbose:
             console.say(verdict.scene_head(width))
-        for place, (name, scene) in enumerate(loaded):
+        for place, (name, scene) in enumerate(zip(names, loaded, strict=True)):
             since, began = None, time.monotonic()
             told(shown_names[place], place)
             if isinstance(scene, Scene):
@@ -244,17 +240,14 @@ def _pairs(options: argparse.Namespace, console: Console) -> tuple[tuple[str, st
     return ((first, second),)
 
 
-def _loaded(names: Sequence[str], console: Console) -> list[tuple[str, Scene | Examined]]:
-    """The scenes, all read before any is solved; of those that cannot be, it is said at once why not."""
-    scenes: list[tuple[str, Scene | Examined]] = []
-    for name in names:
-        try:
-            scenes.append((name, load_scene(name)))
-        except SceneError as error:
-            bad = Examined(name=name_of(name), problem=str(error))
-            console.complain(bad.complaint)
-            scenes.append((name, bad))
-    return scenes
+def _loaded(name: str, console: Console) -> Scene | Examined:
+    """A scene; of one that cannot be read, it is said at once why not."""
+    try:
+        return load_scene(name)
+    except SceneError as error:
+        bad = Examined(name=name_of(name), problem=str(error))
+        console.complain(bad.complaint)
+        return bad
 
 
 def _say(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -81,35 +81,53 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     parts = _parts(options)
     if options.report is not None:
         needed("--report", "matplotlib", "plot")
-        Page(options.report).require()
+    page = Page.of(options)
     needed("cost", "pyarrow")
-    if options.from_rows:
-        report = _from_rows(options, parts)
-        with _journal(options, console, lambda: report).closing() as ending:
-            ending.status = _told(report, options, console)
-        return ending.status
-    study = _study(options, parts)
+    study = None if options.from_rows else _study(options, parts)
+    command = shlex.join(options.command)
     try:
-        store = Store(Path(options.rows), measured_here(shlex.join(options.command)))
+        store = Store(Path(options.rows), measured_here(command)) if study else None
+        report = Report.of_file(options.rows, command, options.quick) if study is None else None
     except StoreError as error:
         raise UsageError(f"--rows {error}") from None
-    return _measured(study, store, options, console)
+    rows = [] if report is None else _chosen_rows(report, parts, options)
 
+    def so_far() -> Report:
+        return replace(report or Report(options.rows, command, options.quick, ()), rows=tuple(rows))
 
-def _journal(options: argparse.Namespace, console: Console, report: Callable[[], Report]) -> Journal:
-    head = Head.of("cost", options.command, timed=True)
-    return Journal(
+    journal = Journal(
         options.json,
-        head,
+        Head.of("cost", options.command, timed=True),
         console,
-        lambda: report().data(),
-        lambda: counted_as(len(report().rows), "row"),
-        lambda: report().rows,
+        lambda: so_far().data(),
+        lambda: counted_as(len(rows), "row") if rows else "",
     )
+    if store is not None:
+        there = f"rows are kept in {options.rows} ({len(store.rows)} there)"
+        console.note(f"{there}; a run that is stopped goes on with its scene")
+    with journal.closing() as ending:
+        if study is not None and store is not None:
+            _measure(study, store, rows, options, console)
+        ending.status = _told(so_far(), page, options, console)
+    return ending.status
+
+
+def _measure(
+    study: Study, store: Store, rows: list[Row], options: argparse.Namespace, console: Console
+) -> None:
+    """Measure into rows; what was measured is kept and named however it ends."""
+    try:
+        with console.progress("what accuracy costs") as told:
+            rows += needed("cost", "validate.cost.study").measure(study, store, told)
+    except BaseException:
+        # What was kept before it stopped is in the file only.
+        rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
+        raise
+    finally:
+        console.written[options.rows] = counted_as(len(store.rows), "row")
 
 
 def _listing() -> str:
-    """Ways, scenes and parts by name."""
     scenes = needed("cost", "validate.cost.scenes").STUDY_SCENES
     ways: tuple[Way, ...] = needed("cost", "validate.cost.ways.registry").WAYS
     needs = {way.name: f" (needs the package {way.package})" if way.package else "" for way in ways}
@@ -120,14 +138,10 @@ def _listing() -> str:
 
 
 def _parts(options: argparse.Namespace) -> tuple[Part, ...]:
-    """The parts that are asked for, in their order."""
-    if options.parts is None and options.quick and not options.from_rows:
-        return ("accuracy",)
-    if options.parts is None:
-        return PARTS
-    return tuple(
-        part for part in PARTS if part in _chosen(options.parts, "--parts", "part of the study", PARTS)
-    )
+    if options.parts is not None:
+        chosen = _chosen(options.parts, "--parts", "part of the study", PARTS)
+        return tuple(part for part in PARTS if part in chosen)
+    return ("accuracy",) if options.quick and not options.from_rows else PARTS
 
 
 def _chosen(words: str, option: str, what: str, allowed: Sequence[str]) -> list[str]:
@@ -150,92 +164,67 @@ def _study(options: argparse.Namespace, parts: tuple[Part, ...]) -> Study:
     if options.ways is not None:
         ways = registry.ways_named(_chosen(options.ways, "--ways", "way", [way.name for way in ways]))
     scenes = []
-    for name in dict.fromkeys(options.scenes):
+    usual = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
+    for name in dict.fromkeys(options.scenes or usual):
         with told_as(name_of(name)):
-            own = name in of_study.STUDY_SCENES
+            own = name in of_study.STUDY_SCENES or not options.scenes
             scene = of_study.own_scene(name) if own else load_scene(name)
             scenes.append(of_study.study_scene(name_of(name), scene))
-    if not scenes:
-        names = (of_study.QUICK_SCENE,) if options.quick else of_study.STUDY_SCENES
-        scenes = [of_study.study_scene(name, of_study.own_scene(name)) for name in names]
     found: Study = study.Study(parts, tuple(scenes), ways, options.quick)
     return found
 
 
-def _measured(study: Study, store: Store, options: argparse.Namespace, console: Console) -> ExitStatus:
-    """Measure, and report; what was measured is kept and named however it ends."""
-    there = f"rows are kept in {options.rows} ({len(store.rows)} there)"
-    console.note(f"{there}; a run that is stopped goes on with its scene")
-    rows: list[Row] = []
-
-    def report() -> Report:
-        return Report(options.rows, shlex.join(options.command), options.quick, tuple(rows))
-
-    with _journal(options, console, report).closing() as ending:
-        try:
-            with console.progress("what accuracy costs") as told:
-                rows += needed("cost", "validate.cost.study").measure(study, store, told)
-        except BaseException:
-            # What was kept before it stopped is in the file only.
-            rows[:] = [row for row in latest(store.rows, study.quick) if row.part in study.parts]
-            raise
-        finally:
-            console.written[options.rows] = counted_as(len(store.rows), "row")
-        ending.status = _told(report(), options, console)
-    return ending.status
-
-
-def _from_rows(options: argparse.Namespace, parts: tuple[Part, ...]) -> Report:
+def _chosen_rows(report: Report, parts: Sequence[Part], options: argparse.Namespace) -> list[Row]:
     """The rows of a file, chosen as they would be measured."""
-    try:
-        report = Report.of_file(options.rows, shlex.join(options.command), options.quick)
-    except StoreError as error:
-        raise UsageError(f"--rows {error}") from None
     rows = [row for row in report.rows if row.part in parts]
-    if options.scenes:
-        names = [name_of(name) for name in options.scenes]
-        there = [*dict.fromkeys(row.scene for row in rows if row.scene)]
-        # A scene without its effects is named after a comma.
-        about = {name: [one for one in there if f"{one}, ".startswith(f"{name}, ")] for name in names}
-        for name in names:
-            if not about[name]:
-                raise UnknownName(f"scene of the rows in {options.rows}", name, there)
-        rows = [row for row in rows if any(row.scene in about[name] for name in names)]
+    # A scene without its effects is named after a comma.
+    there = [*dict.fromkeys(row.scene for row in rows if row.scene)]
+    chosen: set[str] = set()
+    for name in map(name_of, options.scenes):
+        about = {one for one in there if f"{one}, ".startswith(f"{name}, ")}
+        if not about:
+            raise UnknownName(f"scene of the rows in {options.rows}", name, there)
+        chosen |= about
+    rows = [row for row in rows if not chosen or row.scene in chosen]
     if options.ways is not None:
-        there = [*dict.fromkeys(row.way for row in rows)]
-        asked = _chosen(options.ways, "--ways", f"way in the rows of {options.rows}", there)
+        known = [*dict.fromkeys(row.way for row in rows)]
+        asked = _chosen(options.ways, "--ways", f"way in the rows of {options.rows}", known)
         rows = [row for row in rows if row.way in asked]
-    return replace(report, rows=tuple(rows))
+    return rows
 
 
-def _told(report: Report, options: argparse.Namespace, console: Console) -> ExitStatus:
+def _told(report: Report, page: Page | None, options: argparse.Namespace, console: Console) -> ExitStatus:
     """Say and write the report, its JSON apart; the status is that of a run that comes to its end."""
-    status = ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
     console.show(report.parts())
     if options.csv:
         console.put(options.csv, report.csv(), "the rows")
-    if options.report:
+    if page is not None:
         # Most runs write no page.
         from validate.html.page import make_folder
         from validate.html.run import Run
 
-        make_folder(options.report)
+        make_folder(page.folder)
         for name, written in report.files():
-            write_content(os.path.join(options.report, name), written)
-        Page(options.report).write(Run(Head.of("cost", options.command), cost=report), console)
+            write_content(os.path.join(page.folder, name), written)
+        page.write(Run(Head.of("cost", options.command), cost=report), console)
     elif not options.from_rows and not console.quiet and not console.mute:
-        place = Path(options.rows).with_suffix(".svg")
-        try:
-            content = report.headline()
-        except ImportError:
-            content = None
-            console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
-        if content is not None:
-            console.put(str(place), content, "the picture")
-            console.say(f"the picture: {place}")
+        _draw_beside(options.rows, report, console)
     if not report.measured:
         console.complain(f"nothing could be measured; {options.rows} says why, row by row")
-    return status
+    return ExitStatus.AGREE if report.measured else ExitStatus.NO_VERDICT
+
+
+def _draw_beside(rows: str, report: Report, console: Console) -> None:
+    """The picture, beside the file of rows."""
+    place = str(Path(rows).with_suffix(".svg"))
+    try:
+        content = report.headline()
+    except ImportError:
+        console.note("there is no picture of it: pip install 'pointcoord[plot]' brings matplotlib")
+        return
+    if content is not None:
+        console.put(place, content, "the picture")
+        console.say(f"the picture: {place}")
 
 
 COMMANDS = {"cost": Command(DESCRIPTION, OPTIONS, run, {"--rows": {"default": ROWS}})}

@@ -8,7 +8,7 @@ import os
 from validate.ci.record import Record
 from validate.ci.verdict import next_step
 from validate.closed_drawing import closing_data, closing_of, warnings_of
-from validate.commands.comparing import Page, comparing, results_of
+from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import (
     STANDARD_INPUT,
     load_scene,
@@ -28,7 +28,7 @@ from validate.output.console import Console
 from validate.plain_text import shown
 
 
-def run(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare a file with a scene's car."""
     if len(options.scenes) != 1:
         given = f"{len(options.scenes)} scenes are" if options.scenes else "no scene is"
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace, console: Console, page: Page | None) -> Exi
         return to_be_filled_in(options.map, map_to_fill_in(options.data, load_scene(given)), console)
     name = name_of(given)
     record = Record([name], options.tolerance_factor)
-    with comparing(options, console, record, page) as compared:
+    with comparing(options, console, record) as compared:
         scene = load_scene(given)
         with told_as(name):
             measured = read_results(options.data, options.map, scene)

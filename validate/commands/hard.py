@@ -11,7 +11,7 @@ from validate.exit_status import ExitStatus
 from validate.formulations.registry import missing
 from validate.output.console import Console
 from validate.output.document import Head, Journal
-from validate.output.report import counted_as
+from validate.output.report import counted_as, share_of_all
 
 DESCRIPTION = """\
 Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
@@ -45,14 +45,11 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     head = Head.of("hard-list" if options.list else "hard", options.command, timed=True)
     if options.list:
         console.say(hard_report.listing(cases))
-        listed = Journal(
+        with Journal(
             options.json, head, console, lambda: hard_report.listing_data(cases), lambda: "the list"
-        )
-        with listed.closing():
+        ).closing():
             return ExitStatus.AGREE
     page = Page.of(options)
-    if page is not None:
-        page.require()
     lacking = missing(name for case in cases for name in case.expected)
     for name, why in lacking.items():
         console.warn(f"{name} is left out: {why}")
@@ -63,8 +60,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         head,
         console,
         lambda: hard_report.results_data(results),
-        lambda: f"{len(results)} of {counted_as(len(cases), 'case')}",
-        lambda: results,
+        lambda: share_of_all(results, cases, "case"),
     )
 
     def tell(result: hard_run.Examined) -> None:
@@ -102,15 +98,14 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
         raise UsageError(f"{others[0]} is about cases; leave it out with --assemblies")
     require_results({"--json": options.json}, (), options, console)
     found: list[scenes.SceneCount] = []
+    head, names = Head.of("assemblies", options.command), options.cases or scenes.SHIPPED
     journal = Journal(
         options.json,
-        Head.of("assemblies", options.command),
+        head,
         console,
         lambda: scenes.data(found),
-        lambda: f"{len(found)} counts",
-        lambda: found,
+        lambda: counted_as(len(found), "count") if found else "",
     )
-    names = options.cases or scenes.SHIPPED
     with journal.closing() as ending, console.progress("scenes", total=len(names), lines=False) as working:
         for done, name in enumerate(names, start=1):
             found.extend(scenes.counts(name))

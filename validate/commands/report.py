@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 
 from pointcoord import built_in_scenes
-from validate.commands.comparing import Page
 from validate.commands.comparison import OPTIONS, require_sense
 from validate.commands.comparison import run as compare
 from validate.commands.usage import Command
@@ -62,20 +61,16 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         cost = None if options.cost is None else Report.of_file(options.cost)
     except StoreError as error:
         raise UsageError(f"--cost {error}") from None
-    return compare(options, console, Page(folder, partial(_with_more, hard, cost, console), "", brief=True))
+    options.report, options.with_more = folder, partial(_with_more, hard, cost, console)
+    return compare(options, console)
 
 
 def _with_more(hard: HardCases | None, cost: Report | None, console: Console, run: Run) -> Run:
-    """A run with the rest of a report."""
-    # The paper's tables are compared in a run of all that is built in, and of nothing else.
+    """A run with the rest of a report; a run of all that is built in tries some of it itself."""
     if not run.record.paper:
         return replace(run, hard=hard, cost=cost)
-    return replace(
-        run,
-        hard=hard or _some_hard_cases(run, console),
-        cost=cost or _first_look_at_cost(run, console),
-        published=compare_published(),
-    )
+    hard, cost = hard or _some_hard_cases(run, console), cost or _first_look_at_cost(run, console)
+    return replace(run, hard=hard, cost=cost, published=compare_published())
 
 
 def _some_hard_cases(run: Run, console: Console) -> HardCases:
@@ -84,15 +79,8 @@ def _some_hard_cases(run: Run, console: Console) -> HardCases:
     from validate.hard import run as hard_run
     from validate.hard.catalogue import chosen
 
-    cases = chosen(HARD)
-    with console.progress("hard cases", total=len(cases)) as at:
-        done: list[str] = []
-
-        def tell(one: hard_run.Examined) -> None:
-            done.append(one.case.name)
-            at(one.case.name, len(done))
-
-        results = hard_run.run(cases, tell)
+    with console.progress("hard cases"):
+        results = hard_run.run(chosen(HARD), lambda one: None)
     status = ExitStatus.AGREE if hard_run.as_expected(results) else ExitStatus.DISAGREE
     head = replace(run.head, kind="hard")
     return HardCases.of(head.document(hard_report.results_data(results), status, complete=True))

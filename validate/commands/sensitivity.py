@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene, Sensitivity, sensitivity, sweep
+from pointcoord import sensitivity, sweep
 from pointcoord.effects.registry import RANKED_FIRST, number_called
 from pointcoord.sweeping.sensitivity import numbers_named
 from validate.commands.table import meant_numbers
 from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
-from validate.curves.numbers import Number, asking_for, by_path
+from validate.curves.numbers import asking_for, by_path
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
@@ -23,11 +24,9 @@ from validate.output.table import Table, csv_of
 from validate.tables.units import degrees_of
 
 Array = NDArray[np.float64]
-Shown = tuple[str, str, float]
-"""A number for people: its name, its unit, and how many of them its own is."""
 
-ENDINGS = (".csv", ".md", ".svg", ".png")
 PICTURES = (".svg", ".png")
+ENDINGS = (".csv", ".md", *PICTURES)
 ROWS = 15
 SAMPLES = 11
 DESIGNS = 400
@@ -57,6 +56,22 @@ MORE: Mapping[str, Mapping[str, Any]] = {
 }
 
 
+@dataclass(frozen=True)
+class Column:
+    """A number as it is shown, and its change by each coordinate, the most important first.
+
+    Attributes:
+        name: with a minus where it counts the other way. unit: angles in degrees.
+        changes: (C,), unit/mm, each at the instant where it is largest.
+        spreads: what the tolerance makes of it: deviation, that of random designs, worst case.
+    """
+
+    name: str
+    unit: str
+    changes: Array
+    spreads: tuple[float, ...]
+
+
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print or write the derivatives and the spreads."""
     target = place_of_result(options, ENDINGS, console)
@@ -65,83 +80,55 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         needed("sensitivity", "matplotlib", "plot")
     scene, name = load_scene(options.scene), name_of(options.scene)
     signs = meant_numbers(options.number, scene, name, RANKED_FIRST) or meant_numbers(None, scene, name, None)
-    chosen, paths = [*signs], by_path(scene)
-    shown_as = {number: _shown(number, sign, paths) for number, sign in signs.items()}
-    time = {
-        "start": scene.time.start,
-        "stop": scene.time.stop,
-        "samples": min(SAMPLES, scene.time.samples),
-    }
-    scene = asking_for(scene.model_copy(update={"effects": (), "time": time}), chosen)
+    paths, samples = by_path(scene), min(SAMPLES, scene.time.samples)
+    time = {"start": scene.time.start, "stop": scene.time.stop, "samples": samples}
+    scene = asking_for(scene.model_copy(update={"effects": (), "time": time}), [*signs])
+    random = np.random.default_rng(options.seed)
     with told_as(name), console.progress(f"solving {name}", total=None, lines=False):
-        found = sensitivity(scene, chosen, options.point)
-        random = _by_designs(scene, found, options.tolerance, options.seed)
+        found = sensitivity(scene, [*signs], options.point)
+        offsets = {one: random.normal(0.0, options.tolerance, DESIGNS) for one in found.coordinates}
+        designs = sweep(scene, offsets=offsets)
     for coordinate, why in found.failures.items():
         console.warn(f"{name}: {coordinate} has no derivative: {why}")
-    order = np.argsort(-np.abs(found.largest(chosen[0])), kind="stable")
+    order = np.argsort(-np.abs(found.largest(next(iter(signs)))), kind="stable")
+    columns = []
+    for number, array in numbers_named(designs.numbers, [*signs]).items():
+        called, sign = number_called(number), signs[number]
+        factor, unit = degrees_of(paths[number].unit if called is None else called.quantity.unit)
+        deviation, worst = found.spread(number, options.tolerance)
+        drawn = float(np.nanstd(array[designs.solved], axis=0).max())  # where it is largest
+        spreads = tuple(factor * spread for spread in (deviation, drawn, worst))
+        changes = sign * factor * found.largest(number)[order]
+        columns.append(Column(f"{'-' if sign < 0 else ''}{number}", unit, changes, spreads))
+    coordinates = [found.coordinates[place] for place in order]
     if ending in PICTURES:
-        console.put(target, _picture(found, shown_as, order, name, ending), "the picture")
+        console.put(target, _picture(coordinates, columns, name, ending), "the picture")
     else:
-        linear = {n: found.spread(n, options.tolerance) for n in chosen}
-        spreads = {n: (deviation, random[n], worst) for n, (deviation, worst) in linear.items()}
-        text = _text(found, shown_as, order, ending, options.tolerance, spreads)
-        console.put(target, text, "the table")
+        console.put(target, _text(coordinates, columns, ending, options.tolerance), "the table")
     return ExitStatus.NO_VERDICT if found.failures else ExitStatus.AGREE
 
 
-def _by_designs(scene: Scene, found: Sensitivity, tolerance: float, seed: int) -> dict[str, float]:
-    """The standard deviation of each number over designs at random, where it is largest."""
-    random = np.random.default_rng(seed)
-    offsets = {one: random.normal(0.0, tolerance, DESIGNS) for one in found.coordinates}
-    designs = sweep(scene, offsets=offsets)
-    arrays = numbers_named(designs.numbers, [*found.derivatives])
-    return {n: float(np.nanstd(array[designs.solved], axis=0).max()) for n, array in arrays.items()}
-
-
-def _shown(number: str, sign: int, paths: Mapping[str, Number]) -> Shown:
-    """A number, with a minus where it is to count the other way."""
-    called = number_called(number)
-    unit = paths[number].unit if called is None else called.quantity.unit
-    factor, unit = degrees_of(unit)
-    return f"{'-' if sign < 0 else ''}{number}", unit, sign * factor
-
-
-def _text(
-    found: Sensitivity,
-    shown_as: Mapping[str, Shown],
-    order: NDArray[np.intp],
-    ending: str,
-    tolerance: float,
-    spreads: Mapping[str, tuple[float, float, float]],
-) -> str:
+def _text(coordinates: Sequence[str], columns: Sequence[Column], ending: str, tolerance: float) -> str:
     """A row for each coordinate, and what a tolerance makes."""
-    head = ("hardpoint", *(f"{called} [{unit}/mm]" for called, unit, _ in shown_as.values()))
-    columns = [found.largest(n)[order] * factor for n, (*_, factor) in shown_as.items()]
-    names = [found.coordinates[place] for place in order]
+    head = ("hardpoint", *(f"{one.name} [{one.unit}/mm]" for one in columns))
     if ending == ".csv":
-        return csv_of(head, zip(names, *(column.tolist() for column in columns), strict=True))
-    shown = len(names) if ending else min(ROWS, len(names))
-    rows = [(names[i], *(f"{round(column[i], 5) + 0.0:.5f}" for column in columns)) for i in range(shown)]
+        return csv_of(head, zip(coordinates, *(one.changes.tolist() for one in columns), strict=True))
+    shown = len(coordinates) if ending else min(ROWS, len(coordinates))
+    # Adding 0 turns a rounded -0 into 0.
+    texts = ([f"{round(change, 5) + 0.0:.5f}" for change in one.changes[:shown]] for one in columns)
+    table = Table(head, tuple(zip(coordinates[:shown], *texts, strict=True)))
     made = Table(
         (f"by {tolerance:g} mm of each", "standard deviation", f"of {DESIGNS} designs", "worst case"),
-        tuple(
-            (
-                f"{called} [{unit}]",
-                *(f"{abs(factor) * spread:.4f}" for spread in spreads[n]),
-            )
-            for n, (called, unit, factor) in shown_as.items()
-        ),
+        tuple((f"{one.name} [{one.unit}]", *(f"{spread:.4f}" for spread in one.spreads)) for one in columns),
     )
-    table = Table(head, tuple(rows))
     if ending:
         return "\n".join([table.markdown, "", made.markdown, ""])
-    rest = [f"{len(names) - shown} more coordinates: -o FILE.csv has all", ""] if shown < len(names) else [""]
-    return "\n".join([table.text, *rest, made.text, ""])
+    rest = len(coordinates) - shown
+    told = [f"{rest} more coordinates: -o FILE.csv has all"] if rest else []
+    return "\n".join([table.text, *told, "", made.text, ""])
 
 
-def _picture(
-    found: Sensitivity, shown_as: Mapping[str, Shown], order: NDArray[np.intp], name: str, ending: str
-) -> bytes:
+def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, ending: str) -> bytes:
     """A panel of bars for each number, a bar for each of the first coordinates."""
     # Imported here: matplotlib takes a second.
     from matplotlib import rc_context
@@ -149,16 +136,14 @@ def _picture(
 
     from validate.output.figure import BLUE, SETTINGS, drawn, plain
 
-    first = order[:ROWS][::-1]
+    first = coordinates[:ROWS][::-1]
     with rc_context(SETTINGS):
-        page = Figure(figsize=(2.2 * len(shown_as) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
+        page = Figure(figsize=(2.2 * len(columns) + 1.4, 0.18 * len(first) + 1.0), layout="constrained")
         page.suptitle(f"{name}: change by each hardpoint, per mm", x=0.02, ha="left", fontsize=9.0)
-        panels = page.subplots(1, len(shown_as), sharey=True, squeeze=False)[0]
-        for axes, (number, (called, unit, factor)) in zip(panels, shown_as.items(), strict=True):
-            axes.barh(
-                [found.coordinates[i] for i in first], factor * found.largest(number)[first], color=BLUE
-            )
-            axes.set_xlabel(f"{called}, {unit}/mm")
+        panels = page.subplots(1, len(columns), sharey=True, squeeze=False)[0]
+        for axes, one in zip(panels, columns, strict=True):
+            axes.barh(first, one.changes[:ROWS][::-1], color=BLUE)
+            axes.set_xlabel(f"{one.name}, {one.unit}/mm")
             plain(axes)
         return drawn(page, ending.removeprefix("."))
 

@@ -202,7 +202,7 @@ def _worked_out(
             told = stack.enter_context(console.progress(f"{who} start" if local else f"{who} is asked", SOON))
             client = stack.enter_context(cluster.opened(options.scheduler, options.workers))
         console.note(f"{where} holds {held()}; a study that is stopped goes on with the same command")
-        journal = Journal(options.json, head, console, lambda: found().data, held, lambda: there)
+        journal = Journal(options.json, head, console, lambda: found().data, lambda: held() if there else "")
         with journal.closing() as ending:
             if missing:
                 tell(0)

@@ -108,8 +108,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         Head.of("sweep", options.command, options.timings),
         console,
         lambda: {"scene": name, **summary.data()},
-        lambda: f"{summary.tried} of {designs.count} designs",
-        lambda: summary.tried,
+        lambda: f"{summary.tried} of {designs.count} designs" if summary.tried else "",
     )
     with journal.closing() as ending:
         try:

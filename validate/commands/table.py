@@ -6,6 +6,7 @@ import argparse
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,16 +18,7 @@ from pointcoord.effects.loads import LOADS
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
-from validate.commands.usage import (
-    QUIET,
-    SCENE,
-    Command,
-    given,
-    load_scene,
-    name_of,
-    place_of_result,
-    told_as,
-)
+from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
 from validate.commands.values import values_of
 from validate.curves.numbers import COMPONENTS, Number, asking_for, by_path, numbers_of
 from validate.errors import UsageError
@@ -42,20 +34,7 @@ Array = NDArray[np.float64]
 ENDINGS = (".csv", ".md")
 ROWS = 21
 NAMED = 12  # numbers, in a message
-DIGITS = {
-    "deg": 4,
-    "mm": 3,
-    "deg/mm": 6,
-    "mm/mm": 5,
-    "deg/rad": 4,
-    "deg/s": 3,
-    "mm/s": 2,
-    "%": 2,
-    "mm/deg": 5,
-    "N": 2,
-    "N/mm": 4,
-}
-OTHERWISE = 4
+FIGURES, DECIMALS = 5, (2, 6)  # significant digits of the largest number of a column, and limits of decimals
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
 
 DESCRIPTION = """\
@@ -86,10 +65,24 @@ OPTIONS = f"""\
 {QUIET}"""
 
 
+@dataclass(frozen=True)
+class Column:
+    """A number over the rows of a table, (N,), angles in degrees; with sign -1 it counts the other way."""
+
+    number: Number
+    sign: int
+    values: Array
+
+    @property
+    def name(self) -> str:
+        path = self.number.path
+        return ".".join(path) if _is_force(self.number) or len(path) > 2 else path[-1]
+
+
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a table."""
     target = place_of_result(options, ENDINGS, console)
-    if options.grid and given(options, "--rows"):
+    if options.grid and options.rows:
         raise UsageError("--rows is about a way of the inputs; leave it out with --grid")
     scene, name = load_scene(options.scene), name_of(options.scene)
     if options.convention:
@@ -102,27 +95,28 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     with told_as(name):
         scene = asking_for(scene, [*signs])
     every = numbers_of(scene)
-    # A rod may be called as a number of the car is, and has a force: the first by a name is the car's.
-    numbers = {number.path[-1]: number for number in reversed(every) if number.of_the_car}
     inputs = {number.path[0]: number for number in every if len(number.path) == 1}
-    paths = by_path(scene)
-    read = [numbers[number] if number in numbers else paths[number] for number in signs]
+    # A rod may be called as a number of the car is, and has a force: the first by a name is the car's.
+    known = by_path(scene) | {number.path[-1]: number for number in reversed(every) if number.of_the_car}
+    read = [(known[number], sign) for number, sign in signs.items()]
     if not options.number:
-        read += [one for one in every if _is_force(one) and one.missing is None]
+        read += [(one, 1) for one in every if _is_force(one) and one.missing is None]
     if options.grid:
-        rates = [name for name, number in zip(signs, read, strict=False) if per_second(number.path[0])]
+        rates = [number for number in signs if per_second(known[number].path[0])]
         if rates:
             raise UsageError(f"--number {rates[0]}: poses of a grid have no rates; leave it out, or --grid")
-        return _on_grid(scene, read, signs, options, target, console)
+        axes = _axes(scene, options.grid)
+        grid = {inputs[one]: values for one, values in axes.items()}
+        return _on_grid(scene, grid, read, name, target, console)
     driven = [n for n, law in scene.functions.items() if not law.still] or list(scene.inputs)
-    columns = [*(inputs[one] for one in driven), *read]
 
     def write(motion: Motion) -> str:
         rows = options.rows or min(ROWS, len(motion.times))
         first, last = motion.times[0], motion.times[-1]
         samples = motion.at(np.linspace(first, last, rows)) if len(motion.times) > 1 else motion
-        values = [one.shown(motion, samples) for one in columns]
-        console.put(target, _text(columns, values, signs, target), "the table")
+        chosen = [*((inputs[one], 1) for one in driven), *read]
+        columns = [Column(one, sign, one.shown(motion, samples)) for one, sign in chosen]
+        console.put(target, _text(columns, target), "the table")
         return "the table"
 
     return solved(scene, target, options, console, write)
@@ -142,88 +136,78 @@ def meant_numbers(
     Raises:
         UsageError: the car has no such number, or none at all.
     """
-    convention, known = CONVENTIONS[scene.convention], _known_numbers(scene, name)
-    if named:
-        counted = dict(map(convention.number, named))
-        chosen = _chosen_of([*counted], known, scene, name)
-        return {number: counted.get(number, counted.get(number.rpartition(".")[2], 1)) for number in chosen}
-    if first is None:
-        called = {one: number_called(one) for one in known}
-        return {one: 1 for one, number in called.items() if number and not per_second(number.quantity.name)}
-    usual = [number for own in first for number in known if number.rpartition(".")[2] == own]
-    return {number: sign for number, sign in map(convention.number, usual) if number in known}
-
-
-def _is_force(number: Number) -> bool:
-    """Whether it is one of what loads make."""
-    return len(number.path) > 1 and is_force(number.path[0])
-
-
-def _known_numbers(scene: Scene, name: str) -> list[str]:
-    """The numbers that the car has."""
-    part = scene.mechanism
+    part, convention = scene.mechanism, CONVENTIONS[scene.convention]
     had = [number for effect in part.effects for number in EFFECTS[effect].names(part.topology)]
-    known = [number for number in dict.fromkeys(had) if number_called(number)]
+    known = {one: called for one in had if (called := number_called(one))}
     if not known:
         raise UsageError(
             f"{name}: there is no number of a wheel: its mechanism names no wheel_axis under [roles]; "
             "pointcoord simulate writes what it gives"
         )
-    return known
+    if named:
+        counted = dict(map(convention.number, named))
+        chosen = _of_each_wheel([*counted], [*known], scene, name)
+        return {number: counted.get(number, counted.get(_own(number), 1)) for number in chosen}
+    if first is None:
+        return {one: 1 for one, number in known.items() if not per_second(number.quantity.name)}
+    usual = [number for own in first for number in known if _own(number) == own]
+    return {number: sign for number, sign in map(convention.number, usual) if number in known}
 
 
-def _chosen_of(named: Sequence[str], known: Sequence[str], scene: Scene, name: str) -> list[str]:
-    """Numbers by names, of each wheel where no part is named."""
-    part = scene.mechanism
-    asked = [one for number in named for one in _of_each_part(number, known) or [number]]
-    paths = by_path(scene)
-    for number in asked:
-        if number not in known and number not in paths:
-            own = number.rpartition(".")[2]
-            why = [reason for e in EFFECTS.values() if own in e.own_names and (reason := part.refusal(e))]
+def _own(number: str) -> str:
+    """The name of a number without that of its wheel."""
+    return number.rpartition(".")[2]
+
+
+def _of_each_wheel(named: Sequence[str], known: Sequence[str], scene: Scene, name: str) -> list[str]:
+    paths, found = by_path(scene), []
+    for number in named:
+        if number in known or number in paths:
+            found.append(number)
+        elif each := [one for one in known if _own(one) == number]:
+            found += each
+        else:
+            givers = (effect for effect in EFFECTS.values() if _own(number) in effect.own_names)
+            if why := [reason for effect in givers if (reason := scene.mechanism.refusal(effect))]:
+                raise UsageError(f"{name}: --number {number}: {why[0]}")
             raise UsageError(
-                f"{name}: --number {number}: {why[0]}"
-                if why
-                else f"{name}: no number of a car is called {shown(number)}"
-                f"{meant(number, (*known, *paths))}; allowed: {some_of(known, NAMED)} (--all shows every one)"
+                f"{name}: no number of a car is called {shown(number)}{meant(number, (*known, *paths))}; "
+                f"allowed: {some_of(known, NAMED)} (--all shows every one)"
             )
-    return list(dict.fromkeys(asked))
+    return list(dict.fromkeys(found))
 
 
-def _of_each_part(number: str, known: Sequence[str]) -> list[str]:
-    """A number that the wheels have by a name without their part's; none of one that has it whole."""
-    return [] if number in known else [one for one in known if one.rpartition(".")[2] == number]
+def _is_force(number: Number) -> bool:
+    return len(number.path) > 1 and is_force(number.path[0])
 
 
 def _on_grid(
     scene: Scene,
-    columns: Sequence[Number],
-    signs: Mapping[str, int],
-    options: argparse.Namespace,
+    axes: Mapping[Number, Array],
+    read: Sequence[tuple[Number, int]],
+    name: str,
     target: str | None,
     console: Console,
 ) -> ExitStatus:
     """A row for each combination of values; status 3 where one of them is out of reach."""
-    axes = _axes(scene, options.grid)
-    grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij"), strict=True))
-    held = {n: law.series(scene.time.start, 0)[0] for n, law in scene.functions.items() if n not in axes}
-    name = name_of(options.scene)
+    grid = dict(zip(axes, map(np.ravel, np.meshgrid(*axes.values(), indexing="ij")), strict=True))
+    at = {number.path[0]: values for number, values in grid.items()}
+    held = {n: law.series(scene.time.start, 0)[0] for n, law in scene.functions.items() if n not in at}
     try:
         with told_as(name):
-            poses = solve_poses(scene, {**held, **{n: values.ravel() for n, values in grid.items()}})
+            poses = solve_poses(scene, held | at)
     except PointcoordError as error:
         console.complain(f"{name}: {error}; nothing is written")
         return ExitStatus.NO_VERDICT
-    inputs = {n.path[0]: n for n in numbers_of(scene) if len(n.path) == 1}
-    # A pose has no motion: what is read of the car is there by quantity and name.
-    values = [grid[n].ravel() for n in axes]
-    for one in columns:
-        there = poses.numbers[one.path[0]][one.path[1]]
-        values.append(there[:, COMPONENTS.index(one.path[2])] if len(one.path) > 2 else there)
-    every = [*(inputs[n] for n in axes), *columns]
-    turned = [v * degrees_of(c.unit)[0] for c, v in zip(every, values, strict=True)]
+    columns = [(number, 1, values) for number, values in grid.items()]
+    for number, sign in read:
+        # A pose has no motion: what is read of the car is there by quantity and name.
+        there = poses.numbers[number.path[0]][number.path[1]]
+        one = there[:, COMPONENTS.index(number.path[2])] if len(number.path) > 2 else there
+        columns.append((number, sign, one))
+    turned = [Column(number, sign, degrees_of(number.unit)[0] * one) for number, sign, one in columns]
     reasons = {row: str(error) for row, error in poses.failures.items()}
-    console.put(target, _text(every, turned, signs, target, reasons), "the table")
+    console.put(target, _text(turned, target, reasons), "the table")
     if not reasons:
         return ExitStatus.AGREE
     first = min(reasons)
@@ -235,11 +219,7 @@ def _on_grid(
 
 
 def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
-    """The values of each input of a grid.
-
-    Raises:
-        UsageError: one is not driven, or is given twice. SweepError: values are no range and no list.
-    """
+    """The values of each input of a grid."""
     found: dict[str, Array] = {}
     for text in texts:
         name, equals, values = text.partition("=")
@@ -255,64 +235,53 @@ def _axes(scene: Scene, texts: Sequence[str]) -> dict[str, Array]:
     return found
 
 
-def _text(
-    columns: Sequence[Number],
-    values: Sequence[Array],
-    signs: Mapping[str, int],
-    target: str | None,
-    reasons: Mapping[int, str] | None = None,
-) -> str:
-    """Numbers, angles in degrees: CSV, or text with what is positive.
+def _text(columns: Sequence[Column], target: str | None, reasons: Mapping[int, str] | None = None) -> str:
+    """CSV, or text with what is positive.
 
     Args:
-        signs: of numbers by name, -1 of what is to count the other way.
-        reasons: why there are none in a row, of a grid.
+        reasons: why there are no numbers in a row, of a grid.
     """
-    names = [".".join(one.path) if _is_force(one) or len(one.path) > 2 else one.path[-1] for one in columns]
-    ways = [signs.get(name, 1) for name in names]
+    names = [column.name for column in columns]
     # An input may be called as a number is, such as the damper's length.
-    whole = [".".join(one.path if len(one.path) > 1 else ("input", *one.path)) for one in columns]
+    whole = [".".join(path if len(path := one.number.path) > 1 else ("input", *path)) for one in columns]
     names = [long if names.count(name) > 1 else name for name, long in zip(names, whole, strict=True)]
     head = tuple(
-        f"{'-' if way < 0 else ''}{name} [{one.unit_shown()}]"
-        for name, way, one in zip(names, ways, columns, strict=True)
+        f"{'-' if one.sign < 0 else ''}{name} [{one.number.unit_shown()}]"
+        for name, one in zip(names, columns, strict=True)
     )
-    counted = (way * each for way, each in zip(ways, values, strict=True))
-    lines = [tuple(line) for line in zip(*(each.tolist() for each in counted), strict=True)]
+    values = [one.sign * one.values for one in columns]
     if target is not None and Path(target).suffix == ".csv":
+        lines = zip(*(each.tolist() for each in values), strict=True)
         if reasons is None:
             return csv_of(head, lines)
         every = ((*line, reasons.get(row, "")) for row, line in enumerate(lines))
         return csv_of((*head, "why there is none"), every)
-    digits = [DIGITS.get(one.unit_shown(), OTHERWISE) for one in columns]
-    table = Table(head, tuple(tuple(map(_rounded, line, digits)) for line in lines))
+    table = Table(head, tuple(zip(*map(_rounded, values), strict=True)))
     # The wheels of an axle share a line.
-    told_signs = {one.path[-1].rpartition(".")[2]: one.sign for one in columns if one.of_the_car and one.sign}
-    vectors = (one for one in columns if len(one.path) > 2 and not _is_force(one))
-    told_signs |= {".".join(one.path): one.sign for one in vectors if one.sign}
-    told = [f"{number}: positive {sign}" for number, sign in told_signs.items()]
-    told += [f"forces: {LOADS.sign}"] * any(map(_is_force, columns))
+    numbers = [column.number for column in columns]
+    signs = {_own(one.path[-1]): one.sign for one in numbers if one.of_the_car}
+    signs |= {".".join(one.path): one.sign for one in numbers if len(one.path) > 2 and not _is_force(one)}
+    told = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
+    told += [f"forces: {LOADS.sign}"] * any(map(_is_force, numbers))
     if target is not None:
         return "\n".join([table.markdown, "", *(f"- {sign}" for sign in told), ""])
-    kept = sum(len(one.path) == 1 for one in columns)
+    kept = sum(len(one.path) == 1 for one in numbers)
     # Lines that a terminal would fold cannot be read down.
     bands = table.bands(shutil.get_terminal_size().columns, kept) if is_terminal(sys.stdout) else [table]
     return "\n".join([*(line for band in bands for line in (band.text, "")), *told, ""])
 
 
-def _rounded(value: float, digits: int) -> str:
+def _rounded(values: Array) -> list[str]:
+    """Numbers with so many decimals that the largest has five figures; a dash where there is none."""
+    largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
+    decimals = FIGURES - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
+    decimals = min(max(decimals, DECIMALS[0]), DECIMALS[1])
     # Adding 0 turns a rounded -0 into 0.
-    return f"{round(value, digits) + 0.0:.{digits}f}" if np.isfinite(value) else "-"
+    return [f"{round(one, decimals) + 0.0:.{decimals}f}" if np.isfinite(one) else "-" for one in values]
 
 
 COMMANDS = {
     "table": Command(
-        DESCRIPTION,
-        OPTIONS,
-        run,
-        {
-            "--number": {"action": "append"},
-            "--grid": {"action": "append"},
-        },
+        DESCRIPTION, OPTIONS, run, {"--number": {"action": "append"}, "--grid": {"action": "append"}}
     )
 }

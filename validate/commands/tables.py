@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 
 from validate.ci.record import Record
-from validate.commands.comparing import Page, comparing, results_of
+from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import require_results
 from validate.comparison.examined import Examined
 from validate.exit_status import ExitStatus
@@ -16,11 +16,11 @@ from validate.output.table import Cell, Part, Table
 from validate.published.tables import MODELS, NOT_HELD, Column, Published, compare_published, tables
 
 
-def run(options: argparse.Namespace, console: Console, page: Page | None) -> ExitStatus:
+def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Compare every printed table."""
     require_results(results_of(options), (), options, console)
     record = Record([table.name for table in tables()])
-    with comparing(options, console, record, page, "table") as compared:
+    with comparing(options, console, record, "table") as compared:
         found = compare_published()
         for one in found:
             compared.add(Examined(one.table.name, one.table.title, one.outcomes, solved=MODELS))

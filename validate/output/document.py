@@ -190,8 +190,8 @@ class Journal:
 
     Attributes:
         target: the file, - for standard output, None where no JSON is asked for.
-        results: all that there is so far, as plain data. what: it is, in words.
-        begun: whether that is worth writing of a run that does not come to its end.
+        results: all that there is so far, as plain data.
+        what: it is, in words; empty as long as there is nothing worth writing.
     """
 
     target: str | None
@@ -199,7 +199,6 @@ class Journal:
     console: Console
     results: Callable[[], Mapping[str, Any]]
     what: Callable[[], str]
-    begun: Callable[[], object] = lambda: True
     _next: float = 0.0
 
     def keep(self) -> None:
@@ -221,7 +220,7 @@ class Journal:
         """
 
         def write(ending: Ending) -> None:
-            if ending.complete or self.begun():
+            if ending.complete or self.what():
                 self._write(ending.status, ending.complete)
 
         return at_the_end(write)

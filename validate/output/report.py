@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -129,6 +129,11 @@ def held_to(factor: float) -> str:
 def counted_as(count: int, noun: str) -> str:
     """A number of things: 1 instant, 2,000 instants."""
     return f"{count:,} {noun}" if count == 1 else f"{count:,} {noun}s"
+
+
+def share_of_all(done: Sized, every: Sized, noun: str) -> str:
+    """How much of a run is there: 3 of 20 scenes; empty where nothing is."""
+    return f"{len(done)} of {counted_as(len(every), noun)}" if done else ""
 
 
 def agreeing(agreed: int, count: int) -> str:

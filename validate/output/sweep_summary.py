@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -34,15 +34,10 @@ class Extremes:
     highest: float
     design_of_highest: int
 
-    def with_more(self, other: Extremes) -> Extremes:
-        """Of both."""
-        low = self if self.lowest <= other.lowest else other
-        high = self if self.highest >= other.highest else other
-        return Extremes(low.lowest, low.design_of_lowest, high.highest, high.design_of_highest)
-
 
 Label = tuple[str, str]
 """Quantity and name."""
+Ranges = dict[Label, Extremes]
 
 
 @dataclass
@@ -53,6 +48,7 @@ class Summary:
         total: how many designs were asked for.
         told: the point whose place is told.
         failures: by reason how many designs, and the first of them.
+        varied, as_drawn, in_motion: how far what varies, the drawings and the motions range.
     """
 
     total: int
@@ -62,9 +58,9 @@ class Summary:
     failed: list[int] = field(default_factory=list)
     failures: dict[str, tuple[int, Failure]] = field(default_factory=dict)
     notes: tuple[Noted, ...] = ()
-    varied: dict[str, Extremes] = field(default_factory=dict)
-    as_drawn: dict[Label, Extremes] = field(default_factory=dict)
-    in_motion: dict[Label, Extremes] = field(default_factory=dict)
+    varied: Ranges = field(default_factory=dict)
+    as_drawn: Ranges = field(default_factory=dict)
+    in_motion: Ranges = field(default_factory=dict)
 
     def add(self, block: Sweep) -> None:
         """Take in a block."""
@@ -76,7 +72,7 @@ class Summary:
             self.failures[failure.reason] = (count + 1, first)
         self.notes = merged((*self.notes, *block.notes))
         for name, values in block.varied.items():
-            _extend(self.varied, name, values, block.first)
+            _extend(self.varied, ("", name), values, block.first)
         for name, values in block.drawn.items():
             _extend(self.as_drawn, (ANGLES, name), values, block.first)
         for label, values in _told(block, self.told):
@@ -98,52 +94,46 @@ class Summary:
         """For people, angles in degrees."""
         said = [
             f"varied: {name} from {one.lowest:.6g} to {one.highest:.6g} mm"
-            for name, one in self.varied.items()
+            for (_, name), one in self.varied.items()
         ]
         instants = counted_as(self.instants, "instant")
         said += [f"solved: {self.solved} of {self.tried} designs, at {instants} each", *self.failed_lines()]
-        labels = sorted(self.in_motion, key=lambda label: label not in self.as_drawn)
-        rows = tuple(
-            (_name(one), _range(self.as_drawn.get(one), one), _range(self.in_motion[one], one))
-            for one in labels
-        )
-        return (*said, *([Table(("", "as drawn", "over the motion"), rows)] if rows else ()))
+        rows = []
+        for label in sorted(self.in_motion, key=lambda label: label not in self.as_drawn):
+            quantity, name = label
+            factor, unit = degrees_of(QUANTITIES[quantity].unit)
+            what = name if quantity == ANGLES else f"{QUANTITIES[quantity].words}, {name}"
+            ranges = (_range(ranges.get(label), factor) for ranges in (self.as_drawn, self.in_motion))
+            rows.append((f"{what} [{unit}]", *ranges))
+        return (*said, *([Table(("", "as drawn", "over the motion"), tuple(rows))] if rows else ()))
 
     def data(self) -> dict[str, Any]:
         """As plain data, angles in rad."""
+        failures = [
+            {"reason": reason, "designs": count, "design": first.design, "instant": first.instant}
+            | {"problem": str(first.error)}
+            for reason, (count, first) in self.failures.items()
+        ]
+        notes = [
+            {"warning": note.warns, "designs": note.count, "design": note.design, "note": note.words}
+            for note in self.notes
+        ]
+        when = {"as_drawn": self.as_drawn, "in_motion": self.in_motion}
+        ranges = [
+            {"quantity": label[0], "name": label[1], "unit": QUANTITIES[label[0]].unit}
+            | {name: asdict(some[label]) if label in some else None for name, some in when.items()}
+            for label in dict.fromkeys((*self.as_drawn, *self.in_motion))
+        ]
         return {
             "designs": self.total,
             "instants": self.instants,
             "tried": self.tried,
             "solved": self.solved,
-            "varied": {name: dict(vars(one)) for name, one in self.varied.items()},
-            "failures": [
-                {
-                    "reason": reason,
-                    "designs": count,
-                    "design": first.design,
-                    "instant": first.instant,
-                    "problem": str(first.error),
-                }
-                for reason, (count, first) in self.failures.items()
-            ],
+            "varied": {name: asdict(one) for (_, name), one in self.varied.items()},
+            "failures": failures,
             "failed": self.failed,
-            "notes": [
-                {"warning": note.warns, "designs": note.count, "design": note.design, "note": note.words}
-                for note in self.notes
-            ],
-            "ranges": [
-                {
-                    "quantity": quantity,
-                    "name": name,
-                    "unit": QUANTITIES[quantity].unit,
-                    **{
-                        when: dict(vars(some[quantity, name])) if (quantity, name) in some else None
-                        for when, some in (("as_drawn", self.as_drawn), ("in_motion", self.in_motion))
-                    },
-                }
-                for quantity, name in dict.fromkeys((*self.as_drawn, *self.in_motion))
-            ],
+            "notes": notes,
+            "ranges": ranges,
         }
 
 
@@ -160,26 +150,24 @@ def _told(block: Sweep, point: str) -> Iterator[tuple[Label, Array]]:
                 yield (quantity, f"size of {name}"), np.linalg.norm(array, axis=-1)
 
 
-def _extend(found: dict[Any, Extremes], key: object, values: Array, first: int) -> None:
+def _extend(found: Ranges, label: Label, values: Array, first: int) -> None:
     """Take in numbers of consecutive designs, (D, ...); nothing if there are none."""
     flat = values.reshape(len(values), -1)
-    if np.isfinite(flat).any():
-        low, high = (int(place(flat)) for place in (np.nanargmin, np.nanargmax))
-        one, other = (first + place // flat.shape[1] for place in (low, high))
-        more = Extremes(float(flat.flat[low]), one, float(flat.flat[high]), other)
-        found[key] = found[key].with_more(more) if key in found else more
+    if not np.isfinite(flat).any():
+        return
+    low, high = int(np.nanargmin(flat)), int(np.nanargmax(flat))
+    one, other = (first + place // flat.shape[1] for place in (low, high))
+    here = (float(flat.flat[low]), one), (float(flat.flat[high]), other)
+    if (old := found.get(label)) is not None:
+        before = (old.lowest, old.design_of_lowest), (old.highest, old.design_of_highest)
+        # Of equal ones the first design is told.
+        here = min(before[0], here[0]), max(before[1], here[1], key=lambda end: (end[0], -end[1]))
+    found[label] = Extremes(*here[0], *here[1])
 
 
-def _name(label: Label) -> str:
-    quantity, name = label
-    what = name if quantity == ANGLES else f"{QUANTITIES[quantity].words}, {name}"
-    return f"{what} [{degrees_of(QUANTITIES[quantity].unit)[1]}]"
-
-
-def _range(extremes: Extremes | None, label: Label) -> str:
+def _range(extremes: Extremes | None, factor: float) -> str:
     if extremes is None:
         return ""
-    factor, _ = degrees_of(QUANTITIES[label[0]].unit)
     # Adding 0 turns a rounded -0 into 0.
     low, high = (f"{round(factor * one, 4) + 0.0:.6g}" for one in (extremes.lowest, extremes.highest))
     if low == high:

@@ -11,8 +11,6 @@ import pytest
 
 from pointcoord import Scene, sensitivity, simulate
 from validate.cli import main
-from validate.commands.table import DIGITS
-from validate.curves.numbers import numbers_of
 from validate.toml_written import written
 
 
@@ -169,11 +167,6 @@ def test_forces_that_a_scene_asks_for_stand_in_its_tables(
     )
     assert status == 0
     assert "rod_force.damper [N/mm]" in out
-
-
-def test_a_table_in_text_knows_how_many_digits_each_unit_has() -> None:
-    every = numbers_of(Scene.load("axle-steer"))
-    assert {one.unit_shown() for one in every if one.of_the_car} <= {*DIGITS}
 
 
 @pytest.mark.parametrize(

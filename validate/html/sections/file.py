@@ -26,8 +26,7 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 
 def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
-    outcome = file.outcome
-    source = outcome.solutions[0].formulation
+    outcome, source = file.outcome, file.outcome.solutions[0].formulation
     rows = sorted(outcome.rows, key=lambda row: row.verdict != "disagrees")
     yield Paragraph(
         f"{source} beside the car of {name}: {counted_as(len(file.rows), 'row')} over "
@@ -41,13 +40,12 @@ def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:
     cells += [(words, absent, "-", "-", "", "the scene asks for it") for words in file.absent]
     yield Table(HEAD, tuple(cells), caption=caption)
     worst = worst_rows(outcome)
-    if panels := tuple(one for row in worst for one in panels_of(file, row, run.points)):
+    if panels := tuple(one for row in worst for one in _panels(file, row, run.points)):
         apart = any(row.verdict == "disagrees" for row in worst)
         yield Plots(f"{source}: crosses: the file; line: pointcoord", panels, at_once=apart)
 
 
 def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
-    why = row.why or "; ".join(file.outcome.explained(row)[:1])
     there = not math.isnan(row.difference)
     return (
         Cell(about(row.quantity, row.name), ", ".join(h.series.column for h in file.columns_of(row))),
@@ -55,32 +53,30 @@ def _cells(file: DataOutcome, row: Comparison) -> tuple[str | Cell, ...]:
         in_degrees(row.difference, row.unit),
         in_degrees(row.tolerance, row.unit),
         when(row, 4) if there else "",
-        why,
+        row.why or "; ".join(file.outcome.explained(row)[:1]),
     )
 
 
-def panels_of(file: DataOutcome, row: Comparison, points: int) -> tuple[Panel, ...]:
+def _panels(file: DataOutcome, row: Comparison, points: int) -> Iterator[Panel]:
     """The worst column of a row beside ours, and how far it is apart; none where nothing is of ours."""
     columns = [held for held in file.columns_of(row) if np.isfinite(held.gap).any()]
     if not columns:
-        return ()
+        return
     held = max(columns, key=lambda held: float(np.nanmax(held.share)))
     # Rows of a file are in any order; of two at the same value, which inputs tell apart, both are drawn.
     order = np.argsort(file.at, kind="stable")
     share = np.nan_to_num(held.share[order], nan=-1.0)
     at = order[np.asarray(fewer(share, points), dtype=np.intp)]
-    angle = file.over.endswith("[rad]")
-    over, x = plain(file.over.replace("[rad]", "[deg]")), file.at[at] * (math.degrees(1.0) if angle else 1.0)
+    turn = math.degrees(1.0) if file.over.endswith("[rad]") else 1.0
+    over, x = plain(file.over.replace("[rad]", "[deg]")), turn * file.at[at]
     factor, unit = degrees_of(held.series.meaning.unit)
     told = f"{plain(held.series.column)} ({held.series.meaning.words})"
-    traces = (
-        curve("pointcoord", x, factor * held.ours[at], OURS),
-        marks("file", x, factor * held.series.values[at], OTHER),
-    )
-    gap, limit = factor * held.gap[at], factor * file.outcome.factor * held.tolerance[at]
+    ours, theirs = factor * held.ours[at], factor * held.series.values[at]
+    traces = curve("pointcoord", x, ours, OURS), marks("file", x, theirs, OTHER)
+    yield panel(f"{told} over {over}: {row.verdict}", over, f"[{unit}]", traces)
     words = f"{told}, difference: at most {row.share:.1e} of its tolerance"
-    curves = panel(f"{told} over {over}: {row.verdict}", over, f"[{unit}]", traces)
-    return curves, gaps(words, over, x, gap, limit, unit)
+    limit = factor * file.outcome.factor * held.tolerance[at]
+    yield gaps(words, over, x, factor * held.gap[at], limit, unit)
 
 
 SECTION = Section("file", "The file beside the car", 15, _blocks)

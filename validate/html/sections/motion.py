@@ -22,12 +22,10 @@ from validate.output.table import Table
 
 Array = NDArray[np.float64]
 
-# Digits behind the point of places, mm.
-DIGITS = 2
+DIGITS = 2  # behind the point of places, mm
 # Marks of the other model on a curve: more would hide the line that they are to be seen beside.
 MARKS = 25
-# mm; a drawing that closes comes back to less.
-ROUNDING = 1e-6
+ROUNDING = 1e-6  # mm; a drawing that closes comes back to less
 PLACE = ALWAYS[0].quantities[0].name
 CLOSING = (
     "How far each point of the drawing moves until it closes at its own inputs, mm: links are as long as "
@@ -62,42 +60,36 @@ def _blocks(run: Run) -> Sequence[Block]:
 
 
 def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
-    models, instants = one.models, scene.instants
-    topology = scene.mechanism.topology
+    models, topology, part = one.models, scene.mechanism.topology, scene.mechanism
     # Instants of the scene that any of the models gives; of a scene that nobody solves the drawing stands.
-    given = np.isin(instants, np.concatenate([model.times for model in models])) if models else [True]
+    given = np.isin(scene.instants, np.concatenate([m.times for m in models])) if models else [True]
     reached = np.flatnonzero(given)
-    at = instants[reached[:: max(-(-len(reached) // run.frames), 1)]]
-    known = {name: np.array(p) for name, p in scene.mechanism.points.items()}
-    points = [name for name in topology.points if name in known]
-    number = {name: i for i, name in enumerate(points)}
+    at = scene.instants[reached[:: max(-(-len(reached) // run.frames), 1)]]
+    known = {name: np.array(part.points[name]) for name in topology.points if name in part.points}
+    number = {name: i for i, name in enumerate(known)}
     lines = [ends for constraint in topology.constraints for ends in constraint.segments]
     if topology.wheel_axis:
         inner, centre = topology.wheel_axis
         lines.append((inner, centre))
     for body in topology.bodies.values():
         lines += zip(body, (*body[1:], body[0]), strict=True)
-    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
+    up, right = np.array(part.up), np.array(part.right)
     data: dict[str, Any] = {
         "times": [float(f"{time:.6g}") for time in at],
-        "points": points,
+        "points": [*known],
         "chassis": [number[name] for name in topology.chassis if name in number],
         "lines": [[number[a], number[b]] for a, b in lines if a in number and b in number],
         "axes": [right.tolist(), np.cross(right, up).tolist(), up.tolist()],
-        "drawn": _rounded(np.stack([known[name] for name in points])),
-        "closed": _closed(scene, known, points),
+        "drawn": _rounded(np.stack([*known.values()])),
+        "closed": _closed(scene, known),
         "models": [
-            {
-                "name": m.formulation,
-                "frames": _frames(_places(scene, one.motion, m, known), m.times, points, at),
-            }
-            for m in models
+            {"name": m.formulation, "frames": _frames(scene, one.motion, m, known, at)} for m in models
         ],
     }
-    curves, why = _wheel_angles(one, models, run.points)
+    curves, why = _wheel_angles(one, scene, run.points)
     return Spatial(
         one.examined.name,
-        _caption(one, models) + (f"; {why}" if why else ""),
+        _caption(one) + (f"; {why}" if why else ""),
         json.dumps(data, allow_nan=False),
         max(len(at), 1),
         curves,
@@ -105,53 +97,42 @@ def _of_scene(one: Drawn, scene: Scene, run: Run) -> Block:
     )
 
 
-def _closed(scene: Scene, known: Mapping[str, Array], points: Sequence[str]) -> Any:
+def _closed(scene: Scene, known: Mapping[str, Array]) -> Any:
     """Where the points of the drawing are once it is closed; None of one that cannot be."""
     try:
         places = closed_drawing(scene).places
     except PointcoordError:
         return None
-    return _rounded(np.stack([places.get(name, known[name]) for name in points])) if places else None
+    return _rounded(np.stack([places.get(name, place) for name, place in known.items()])) if places else None
 
 
-def _places(
-    scene: Scene, motion: Motion | None, model: Solution, known: Mapping[str, Array]
-) -> Mapping[str, Array]:
-    """Of each point that a model has its places at its instants, (N, 3).
+def _frames(
+    scene: Scene, motion: Motion | None, model: Solution, known: Mapping[str, Array], shown: Array
+) -> Any:
+    """Of each instant that is shown a place for each point, None for one that is not given.
 
     Points of the chassis are given to every model: they are where the chassis is moved to.
     """
-    if motion is None:
-        return model.numbers.get(PLACE, {})
-    readout = motion.solved.readout
-    origin, still = readout.mechanism.origin, np.zeros((len(model.times), 3))
-    drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
-    shift = origin + sum(readout.chassis.states(model.times, 0), np.zeros(3))
-    held = {
-        name: place + shift
-        for name, place in readout.chassis.turned_by(readout.laws(model.times), [drawn])[0].items()
-    }
-    return {**held, **model.numbers.get(PLACE, {})}
-
-
-def _frames(places: Mapping[str, Array], times: Array, points: Sequence[str], shown: Array) -> Any:
-    """Of each instant that is shown a place for each point, None for one that is not given.
-
-    Args:
-        places: by point, at times, (N, 3).
-    """
-    rows = np.full((len(shown), len(points), 3), np.nan)
-    given = np.isin(shown, times)
-    at = np.searchsorted(times, shown[given])
-    for i, name in enumerate(points):
+    places: dict[str, Array] = {}
+    if motion is not None:
+        chassis, origin = motion.solved.readout.chassis, motion.solved.readout.mechanism.origin
+        still = np.zeros((len(model.times), 3))
+        drawn = {n: known[n] - origin + still for n in scene.mechanism.topology.chassis if n in known}
+        shift = origin + sum(chassis.states(model.times, 0), np.zeros(3))
+        turned = chassis.turned_by(motion.solved.readout.laws(model.times), [drawn])[0]
+        places = {name: place + shift for name, place in turned.items()}
+    places |= model.numbers.get(PLACE, {})
+    rows = np.full((len(shown), len(known), 3), np.nan)
+    given = np.isin(shown, model.times)
+    at = np.searchsorted(model.times, shown[given])
+    for i, name in enumerate(known):
         if name in places:
             rows[given, i] = places[name][at]
     there = np.isfinite(rows).all(axis=-1)
-    rounded = _rounded(np.nan_to_num(rows))
-    return [
-        [place if found else None for place, found in zip(row, are, strict=True)]
-        for row, are in zip(rounded, there, strict=True)
-    ]
+    frames = _rounded(np.nan_to_num(rows))
+    for frame, point in np.argwhere(~there):
+        frames[frame][point] = None
+    return frames
 
 
 def _rounded(places: Array) -> Any:
@@ -160,25 +141,22 @@ def _rounded(places: Array) -> Any:
 
 def _closing(run: Run) -> Iterator[Block]:
     """How far the points of the drawings move until they close."""
-    closed = {
-        one.examined.name: one.examined.closing for one in run.drawn if one.examined.closing is not None
-    }
-    moved: dict[str, Mapping[str, float]] = {name: one.get("movements", {}) for name, one in closed.items()}
+    closings = {one.examined.name: one.examined.closing or {} for one in run.drawn}
+    moved = {name: closing["movements"] for name, closing in closings.items() if closing}
     points = list(dict.fromkeys(point for movements in moved.values() for point in movements))
-    rows = tuple((name, *(_size(one[p]) if p in one else "" for p in points)) for name, one in moved.items())
+    rows = tuple((name, *(_size(one.get(point)) for point in points)) for name, one in moved.items())
     if points:
         yield Table(("scene", *points), rows, caption=CLOSING, folded=True)
 
 
-def _size(movement: float) -> str:
+def _size(movement: float | None) -> str:
     # Less is rounding, and says nothing of the drawing.
-    return f"{movement:.3g}" if movement > ROUNDING else "rounding"
+    return "" if movement is None else f"{movement:.3g}" if movement > ROUNDING else "rounding"
 
 
-def _caption(one: Drawn, models: Sequence[Solution]) -> str:
-    lines = ("wide blue lines", "narrow orange lines")
-    told = [f"{model.formulation} in {line}" for model, line in zip(models, lines, strict=False)]
-    moved = one.examined.closing
+def _caption(one: Drawn) -> str:
+    lines, moved = ("wide blue lines", "narrow orange lines"), one.examined.closing
+    told = [f"{model.formulation} in {line}" for model, line in zip(one.models, lines, strict=False)]
     closing = ""
     if moved:
         closing = f"; closing it moves {moved['point']} by {moved['largest']:.3g} mm"
@@ -186,39 +164,48 @@ def _caption(one: Drawn, models: Sequence[Solution]) -> str:
             closing = "; it closes, no point moves by more than rounding"
     stopped = f". Stopped: {one.stopped}" if one.stopped else ""
     called = f"{one.examined.title}. " if one.examined.title else ""
-    whose = f"{called}{', '.join(told)}; " if told else called
-    return f"{whose}dashed: the drawing{closing}{stopped}"
+    return f"{called}{'; '.join([*filter(None, [', '.join(told)]), 'dashed: the drawing'])}{closing}{stopped}"
 
 
-def _wheel_angles(one: Drawn, models: Sequence[Solution], points: int) -> tuple[Plots | None, str]:
-    """The curves of a scene, and what there is to say of them, such as why there are none."""
-    if one.scene is None or one.motion is None or not models:
+def _wheel_angles(one: Drawn, scene: Scene, points: int) -> tuple[Plots | None, str]:
+    """The curves of a scene, or why there are none."""
+    if one.motion is None or not one.models:
         return None, "no curves: pointcoord solves no instant of it"
-    pairs = usual(one.scene, numbers_of(one.scene), one.motion).pairs
-    centre = one.scene.mechanism.topology.wheel_centre
-    found = [_angle_panel(pair, models, one.motion, centre, points) for pair in pairs]
-    first, *rest = models
-    dots = "".join(f"; dots: {other.formulation}" for other in rest)
-    if panels := tuple(one for one in found if one is not None):
-        return Plots(f"line: {first.formulation}{dots}", panels), ""
+    pairs = usual(scene, numbers_of(scene), one.motion).pairs
+    first, *rest = one.models
+    if panels := [drawn for pair in pairs if (drawn := _angle_panel(pair, one.models, one.motion, points))]:
+        dots = "".join(f"; dots: {other.formulation}" for other in rest)
+        return Plots(f"line: {first.formulation}{dots}", tuple(panels)), ""
     names = dict.fromkeys(n.words for pair in pairs for n in pair if len(n.path) > 1)
     return None, f"no curves: {first.formulation} gives no {' and no '.join(names)}"
 
 
 def _angle_panel(
-    pair: tuple[Number, Number], models: Sequence[Solution], motion: Motion, centre: str, points: int
+    pair: tuple[Number, Number], models: Sequence[Solution], motion: Motion, points: int
 ) -> Panel | None:
-    """The line of the first model and the dots of the second; None where the first does not give it."""
+    """The line of the first model and the dots of the second; None where the first does not give it.
+
+    The travel is that of the model's own wheel centre; of a model that gives none it is pointcoord's, and the
+    panel says so.
+    """
     traces: list[Trace] = []
     lacking: list[str] = []
     for model in models:
-        x, y = (_values(number, model, motion) for number in pair)
-        if x is None or y is None:
+        given, lacks = [], False
+        for number in pair:
+            try:
+                given.append(number.shown(motion, model))
+            except KeyError:
+                there = np.isin(motion.times, model.times)
+                if number.path[0] == TRAVEL and there.sum() == len(model.times):
+                    given.append(number.shown(motion, motion)[there])
+                    lacks = True
+        if len(given) < 2:
             if model is models[0]:
                 return None
             continue
-        if TRAVEL in (pair[0].path[0], pair[1].path[0]) and centre not in model.numbers.get(PLACE, {}):
-            lacking.append(model.formulation)
+        x, y = given
+        lacking += [model.formulation] * lacks
         if model is models[0]:
             # Of a stretch of a curve the place farthest out is kept.
             at = fewer(np.abs(np.nan_to_num(x - np.nanmean(x))), points) if np.isfinite(x).any() else range(0)
@@ -229,20 +216,6 @@ def _angle_panel(
     across, up = pair
     whose = f" (wheel travel of {', '.join(lacking)} as pointcoord has it)" if lacking else ""
     return panel(f"{up.words} over {across.words}{whose}", _title(across), _title(up), traces)
-
-
-def _values(number: Number, model: Solution, motion: Motion) -> Array | None:
-    """A model's own numbers at its instants; None where it has none.
-
-    The travel is that of the model's own wheel centre; of a model that gives none it is pointcoord's, and the
-    panel says so.
-    """
-    try:
-        return number.shown(motion, model)
-    except KeyError:
-        there = np.isin(motion.times, model.times)
-        known = number.path[0] == TRAVEL and there.sum() == len(model.times)
-        return number.shown(motion, motion)[there] if known else None
 
 
 def _title(number: Number) -> str:
