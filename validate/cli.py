@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import NoReturn
 
 from pointcoord.wording import meant, shown
+from validate.commands.pages import page
 from validate.errors import UsageError
 from validate.exit_status import HELP, ExitStatus, of_interruption
 from validate.output.console import Console
@@ -21,27 +22,27 @@ share no code, and everything that they compute is compared. A mechanism and its
 scene: `pointcoord scenes` lists those that are built in, and a file of your own has the same
 form."""
 
-COMMANDS: Mapping[str, tuple[str, str]] = {
-    "validate": ("comparison", "solve scenes by two formulations and compare them"),
-    "simulate": ("solved", "solve a scene by point coordinates and write its motion"),
-    "sweep": ("sweep", "solve many designs of a suspension together"),
-    "plan": ("scenes", "say what a scene would compute, and where its drawing stands"),
-    "scenes": ("scenes", "list the built-in scenes"),
-    "new": ("new", "write a scene and its mechanism file to start from"),
-    "draw": ("scenes", "make a picture of a scene's hardpoints (SVG)"),
-    "plot": ("solved", "draw curves of a scene's motion (SVG, PNG)"),
-    "table": ("table", "print a car's angles and dimensions over travel"),
-    "sensitivity": ("sensitivity", "rank hardpoints by what they change, and spread their tolerances"),
-    "hard": ("hard", "try the cases that are known to be hard"),
-    "cost": ("cost", "measure and show what accuracy costs in time"),
-    "import": ("hardpoints", "make a scene from another program's hardpoints"),
-    "export": ("export", "write a car as another program's model"),
-    "report": ("report", "validate scenes and write a page of HTML about it"),
-    "fit": ("fit", "fit hardpoints to measured curves"),
-    "study": ("study", "long studies, by several processes or a cluster"),
-    "help": ("topics", "print a page on a topic"),
+COMMANDS: Mapping[str, str] = {
+    "validate": "comparison",
+    "simulate": "solved",
+    "sweep": "sweep",
+    "plan": "scenes",
+    "scenes": "scenes",
+    "new": "new",
+    "draw": "scenes",
+    "plot": "solved",
+    "table": "table",
+    "sensitivity": "sensitivity",
+    "hard": "hard",
+    "cost": "cost",
+    "import": "hardpoints",
+    "export": "export",
+    "report": "report",
+    "fit": "fit",
+    "study": "study",
+    "help": "topics",
 }
-"""Every command: the module of `validate.commands` that it is in, and what it does."""
+"""Every command: the module of `validate.commands` that it is in."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -131,7 +132,7 @@ def _overview() -> str:
             "usage: pointcoord COMMAND ...\n",
             DESCRIPTION,
             "\ncommands, each with --help:",
-            *(f"  {name.ljust(width)}  {words}" for name, (_, words) in COMMANDS.items()),
+            *(f"  {name.ljust(width)}  {page(name)[0]}" for name in COMMANDS),
             "\noptions:",
             "  -h, --help  print this",
             "  --version   print the version",
@@ -170,36 +171,21 @@ def _parsed(words: Sequence[str]) -> argparse.Namespace:
 
 
 def _scene_instead(name: str) -> str:
-    """What to write where a word that is no command has to do with scenes; empty if it does not.
+    """What to write where a word that is no command names a scene or some; empty if it does not."""
+    from pointcoord import built_in_scenes
 
-    It is a scene's file, or a whole word or several of the name of a built-in scene or a shipped mechanism.
-    """
-    from pointcoord import Scene, built_in_scenes
-    from pointcoord.mechanism import shipped
-
-    plain, scenes = name.lower().replace("_", "-"), built_in_scenes()
-
-    def within(one: str) -> bool:
-        return f"-{plain}-" in f"-{one.replace('_', '-')}-"
-
-    named = [plain] if plain in scenes else [scene for scene in scenes if within(scene)]
+    plain = name.lower().replace("_", "-")
     if name.endswith(".toml"):
-        what, named = "a scene's file stands after a command", [shown(name)]
-    elif plain in named:
-        what = f"{plain} is a scene"
-    elif named:
-        what = f"there is {' and '.join(named)} among the scenes"
-    else:
-        types = [type for type in shipped() if within(type)]
-        named = [scene for scene in scenes if types and Scene.load(scene).mechanism.type in types]
-        what = f"{' and '.join(types)} is a mechanism, of {', '.join(named)}"
-    return f" ({what}: pointcoord simulate {named[0]})" if named else ""
+        return f" (a scene's file stands after a command: pointcoord simulate {shown(name)})"
+    if named := [scene for scene in built_in_scenes() if f"-{plain}-" in f"-{scene}-"]:
+        return f" (there is {' and '.join(named)} among the scenes: pointcoord simulate {named[0]})"
+    return ""
 
 
 def parser(name: str) -> Parser:
     """The parser of a command. No other one's module is imported: that takes longer than to solve a scene."""
-    one, (module, _) = Parser(prog=f"pointcoord {name}"), COMMANDS[name]
-    import_module(f"validate.commands.{module}").COMMANDS[name].declare(one, name)
+    one = Parser(prog=f"pointcoord {name}")
+    import_module(f"validate.commands.{COMMANDS[name]}").COMMANDS[name].declare(one, name)
     return one
 
 

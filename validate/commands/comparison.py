@@ -15,14 +15,7 @@ from validate.ci.record import Record, ends_the_run
 from validate.ci.scene_folder import scenes_below
 from validate.commands.comparing import comparing, results_of
 from validate.commands.usage import (
-    DATA,
-    JSON,
-    MAP,
-    QUIET,
-    REPORT,
-    SCENE_HELP,
     STANDARD_INPUT,
-    TIMINGS,
     Command,
     given,
     load_scene,
@@ -63,45 +56,11 @@ GOES_WITH: Mapping[str, tuple[str, ...]] = {
 }
 
 _WIDTH = max(map(len, WORDS))
-DESCRIPTION = """\
-Solve each scene by two formulations and compare every number that it asks for. Each
-formulation states an error bound with every number; the tolerance of a difference is the sum of
-both bounds. A line for each scene says which number uses the largest share of its tolerance, how
-much, and where; -v prints every quantity.
-
-formulations:
-""" + "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items())
-
-OPTIONS = f"""\
-scenes=[SCENE ...]  {SCENE_HELP}; none: all built-in scenes
---first NAME  a formulation ({FIRST} if not given)
---second NAME  the one to compare it with (absolute if not given, and where Pinocchio is not there, MuJoCo or
-    Exudyn); without --first and --second {FURTHER} is compared with it as well
-{DATA}{MAP}
---solver MODULE:NAME  a solver of your own in the place of --first: a function, object or class that takes
-    plain data (see pointcoord help solvers); without --second it is compared with {FIRST}
---accuracy A  with --solver: how exactly the solver says it places points, mm ({ACCURACY:g} if not given); the
-    tolerance of every number follows from it, pose by pose. With --data: how far off a number may be beside
-    its digits, in its column's unit
---traceback  show where in its files that solver raises an error
---solver-timeout S  how long that solver may take for a scene, s ({LIMIT:g} if not given); one that takes
-    longer, or crashes, has no answer there, and is started again for the next scene
---in-process  call that solver in this process, for a debugger: no time limit, and a crash ends the run
---scenes-dir DIR  compare every .toml file below this folder too, sorted by path
---tolerance-factor F  allow F times the derived tolerance; every result says so
---fail-fast  stop at the first scene that disagrees, has moved or is refused; what was not run is named
-{JSON}
---junit FILE  write JUnit XML, a case for each scene and quantity; - likewise
---summary FILE  write a summary in Markdown; - likewise
---save-baseline FILE  keep the solved numbers and their error bounds (npz)
---baseline FILE  say what moved since a kept baseline by more than both bounds
--v --verbose  print the table of every quantity of each scene
-{TIMINGS}{QUIET}"""
-"""What is compared, how, and where results go beside a report."""
-TABLES_OPTION = """\
---tables  compare tables that other programs printed of their own cars, in place of scenes: every column with
-    both models, to the last printed digit
-"""
+PAGE_WORDS = {
+    "formulations": "\n".join(f"  {name.ljust(_WIDTH)}  {words}" for name, words in WORDS.items()),
+    "accuracy": f"{ACCURACY:g}",
+    "limit": f"{LIMIT:g}",
+}
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -295,4 +254,4 @@ def _say_at_the_end(record: Record, verbose: bool, console: Console) -> None:
                 console.complain(f"no verdict since the baseline: {words}")
 
 
-COMMANDS = {"validate": Command(DESCRIPTION, OPTIONS + TABLES_OPTION + REPORT, run)}
+COMMANDS = {"validate": Command(run, PAGE_WORDS)}

@@ -13,9 +13,6 @@ from typing import TYPE_CHECKING
 from pointcoord import UnknownName
 from validate.commands.comparing import Page
 from validate.commands.usage import (
-    JSON,
-    QUIET,
-    SCENE_HELP,
     STANDARD_INPUT,
     Command,
     load_scene,
@@ -37,31 +34,6 @@ from validate.output.report import counted_as
 if TYPE_CHECKING:
     from validate.cost.study import Study
     from validate.cost.way import Way
-
-ROWS = "pointcoord-cost.parquet"
-
-DESCRIPTION = """\
-What accuracy costs in time: every way to solve a scene, over the range of its settings, compared with
-a many-digit reference. Three sentences say who is quickest, what a digit costs and where others
-win; a picture shows error against time; tables hold the rest, and how time and memory grow with
-instants, designs and unknowns.
-
-What is measured is kept in a Parquet file, a row for each number: a run that is stopped goes on
-with the scene that it was in, and --from-rows makes the report again without measuring."""
-
-OPTIONS = f"""\
-scenes=[SCENE ...]  {SCENE_HELP}; none: the scenes of the study
---list  name the ways, scenes and parts, and end
---quick  a first look at one scene: its accuracy, in under a minute
---ways A,B  measure these ways only; --list names them
---parts A,B  of {", ".join(PARTS)}; both if not given, with --quick accuracy
---rows FILE  keeps what is measured; {ROWS} if not given
---from-rows  report what the file holds, and measure nothing
-{JSON}
---csv FILE  write every row as CSV; - for standard output
---report DIR  write a page of HTML that needs no network, the picture, all tables as Markdown and CSV, and
-    the rows as JSON into a folder
-{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -227,4 +199,4 @@ def _draw_beside(rows: str, report: Report, console: Console) -> None:
         console.say(f"the picture: {place}")
 
 
-COMMANDS = {"cost": Command(DESCRIPTION, OPTIONS, run, {"--rows": {"default": ROWS}})}
+COMMANDS = {"cost": Command(run, {"parts": ", ".join(PARTS)})}

@@ -5,24 +5,13 @@ from __future__ import annotations
 import argparse
 
 from validate.closed_drawing import closed_drawing, closed_mechanism, warnings_of
-from validate.commands.usage import SCENE, Command, load_scene, name_of, require_results, told_as
+from validate.commands.usage import Command, load_scene, name_of, require_results, told_as
 from validate.exit_status import ExitStatus
 from validate.extras import needed
 from validate.output.console import Console
 from validate.plain_text import shown
 
 ENDINGS = (".xml", ".mjcf")
-
-DESCRIPTION = """\
-Write a car as a MuJoCo model (MJCF) that opens in its viewer: bodies on joints, rods, and the
-loops that they close; its home pose is the closed drawing. Lengths are in m, x points rearward, y
-right and z up. Inputs that are a hinge or a slide have an actuator, the others are free; motions
-of the chassis are left out. pointcoord import reads it again."""
-
-OPTIONS = f"""\
-{SCENE}
---mjcf FILE  the model, {" or ".join(ENDINGS)}; standard output if not given, or for -
-"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -49,4 +38,4 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ExitStatus.AGREE
 
 
-COMMANDS = {"export": Command(DESCRIPTION, OPTIONS, run, {"--mjcf": {"default": "-"}})}
+COMMANDS = {"export": Command(run)}

@@ -5,15 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
-from collections.abc import Mapping
-from typing import Any
 
 from validate.commands.data import require_files
 from validate.commands.usage import (
-    JSON,
-    MAP,
-    QUIET,
-    SCENE,
     TOML,
     Command,
     load_scene,
@@ -29,35 +23,6 @@ from validate.measured.mapping import map_to_fill_in, read_results
 from validate.output.console import Console
 from validate.output.document import Head, json_text
 from validate.plain_text import shown
-
-DESCRIPTION = """\
-Find the corrections of hardpoints that best explain a file of results, by least squares, each
-number weighed by the digits that it is written with. Says what is left, how well each correction
-is known, and which combinations of coordinates the data cannot see. Where there are such, the
-answer is one of many: the likeliest if every coordinate is off by --prior or so, not the one that
-moves the fewest hardpoints. Where you know which points are in doubt, name them by --free."""
-
-OPTIONS = f"""\
-{SCENE}
---data FILE  a file of results, as for validate --data
-{MAP}
---free POINT.AXIS  coordinates to correct, such as lower_ball_joint.z, or points for all three; none: every
-    point
---bounds MM  how far a coordinate may move at most ({BOUNDS:g} if not given)
---prior MM  how far off a coordinate is thought to be, a standard deviation: the smaller, the less hardpoints
-    move along what the data leave open ({PRIOR:g} if not given, a fifth of the bounds that are taken then)
---accuracy A  how far off the numbers of --data may be beside their digits, each in its column's unit
--o --output SCENE.toml  the corrected scene; - for the output
-{JSON}
---csv FILE  write the coordinates and their corrections as a table; - likewise
-{QUIET}"""
-MORE: Mapping[str, Mapping[str, Any]] = {
-    "--data": {"required": True},
-    "--free": {"nargs": "+", "default": []},
-    "--bounds": {"default": BOUNDS},
-    "--prior": {"default": PRIOR},
-    "--accuracy": {"default": 0.0},
-}
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -103,4 +68,6 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     return status
 
 
-COMMANDS = {"fit": Command(DESCRIPTION, OPTIONS, run, MORE)}
+COMMANDS = {
+    "fit": Command(run, {"bounds": f"{BOUNDS:g}", "prior": f"{PRIOR:g}"}, {"--data": {"required": True}})
+}

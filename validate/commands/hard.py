@@ -5,28 +5,13 @@ from __future__ import annotations
 import argparse
 
 from validate.commands.comparing import Page
-from validate.commands.usage import JSON, QUIET, REPORT, Command, given, require_results
+from validate.commands.usage import Command, given, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.registry import missing
 from validate.output.console import Console
 from validate.output.document import Head, Journal
 from validate.output.report import counted_as, share_of_all
-
-DESCRIPTION = """\
-Try mechanisms and motions that are known to be hard: near dead points, on branches that meet,
-in extreme sizes and rates. Every answer is compared with a reference that is solved in 60
-digits and proven: it must be right within its error bound, or refused with a reason.
-`pointcoord study hard` does the same by several processes or machines, and keeps records.
-With --assemblies the arguments are scenes: all assemblies of their knuckles are counted, complex
-ones too, with the inputs held as drawn, and certified one by one."""
-
-OPTIONS = f"""\
-cases=[CASE ...]  a hard case's name; none: all cases
---list  name the cases and say why each is hard
---assemblies  count the assemblies of scenes instead
---times  say how long each case took, the longest first
-{JSON}{REPORT}{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -116,4 +101,4 @@ def count(options: argparse.Namespace, console: Console) -> ExitStatus:
     return ending.status
 
 
-COMMANDS = {"hard": Command(DESCRIPTION, OPTIONS, run)}
+COMMANDS = {"hard": Command(run)}

@@ -24,32 +24,6 @@ from validate.output.console import Console
 from validate.plain_text import shown, some_of
 from validate.tables.units import LENGTHS
 
-DESCRIPTION = """\
-Make a scene from a file of hardpoints of another program. Points get our names, axes and unit;
-the scene has x rearward, y right, z up, mm, a comment with the source of each point, and
-30 mm of wheel travel either way. It lists the points that it does not know, and asks for those
-that the file lacks.
-A MuJoCo model becomes a mechanism of its own, by its bodies, joints, sites, welds and connects.
-
-formats:
-""" + "\n".join(f"  {one.name.ljust(8)}  {one.words}" for one in formats().values())
-
-OPTIONS = f"""\
-file=FILE  the other program's file
--o --output SCENE.toml  the scene; standard output if not given, or for -
---format NAME  one of the formats; seen in the file if not given
---suspension TYPE  as in a scene; seen in the file or by its points if not given
---side {"|".join(SIDES)}  the file's wheel, if it has both or does not say
---part {"|".join(PARTS)}  the axle, of a file that has several; a number of three or more
---names FILE.toml  what the file calls our points: a table [names] of our_name = "its name", or of our_name =
-    [x, y, z] for a point that it does not have; one that is not there yet is written, to be filled in
---axes X,Y,Z  where the file's x, y and z point, such as forward,left,up, of {", ".join(DIRECTIONS)}
---unit UNIT  of the file's lengths: {", ".join(LENGTHS)}
---camber DEG  static camber, + leaning out at the top, of a file without an inner point of the spin axis
---toe DEG  static toe of such a file, + toe in
---mirror  make the wheel of the other side of it
-"""
-
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Write a scene from another program's file, and say what became of each of its points.
@@ -107,4 +81,11 @@ def _report(name: str, found: Imported) -> list[str]:
     return lines
 
 
-COMMANDS = {"import": Command(DESCRIPTION, OPTIONS, run)}
+WORDS = {
+    "formats": "\n".join(f"  {one.name.ljust(8)}  {one.words}" for one in formats().values()),
+    "sides": "|".join(SIDES),
+    "parts": "|".join(PARTS),
+    "directions": ", ".join(DIRECTIONS),
+    "units": ", ".join(LENGTHS),
+}
+COMMANDS = {"import": Command(run, WORDS)}

@@ -18,16 +18,6 @@ from validate.output.console import Console
 from validate.output.files import require_writable
 from validate.plain_text import shown
 
-DESCRIPTION = """\
-Write NAME.toml, a copy of a scene, and NAME-mechanism.toml, a copy of its mechanism with a note on
-every table: change names, bodies, rods and slides there, and points and inputs in the scene. A scene
-that holds its mechanism's tables itself stays one file."""
-
-OPTIONS = """\
-name=NAME  of the new files, without .toml; may have a folder
---from SCENE  the scene to copy, built-in or a file; double-wishbone if not given
-"""
-
 TYPE = re.compile(r"^([ \t]*type[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')", re.MULTILINE)
 
 PATH = re.compile(r"(\b(?:mechanism|table)[ \t]*=[ \t]*)(\"[^\"\n]*\"|'[^'\n]*')")
@@ -53,20 +43,20 @@ MECHANISM_NOTE = """\
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Write both files."""
-    name = options.name.removesuffix(".toml")
+    name, copied = options.name.removesuffix(".toml"), vars(options)["from"]
     if not name:
         raise UsageError("NAME is empty; allowed: the name of the new files, without .toml")
-    Scene.load(options.scene)
-    source = SCENES / f"{options.scene}.toml" if options.scene in built_in_scenes() else Path(options.scene)
+    Scene.load(copied)
+    source = SCENES / f"{copied}.toml" if copied in built_in_scenes() else Path(copied)
     written = read_file(source, "a scene")
-    of_type = parsed(written, options.scene)["mechanism"].get("type")
+    of_type = parsed(written, copied)["mechanism"].get("type")
     files = {}
     text = _found_from(written.decode("utf-8-sig"), source.parent, Path(name).parent)
     if of_type is not None:
         own = f"{Path(name).name}-mechanism.toml"
         text, count = TYPE.subn(lambda found: f'{found[1]}"{own}"', text)
         if count != 1:
-            raise SceneError(options.scene, "mechanism.type", "is not written as one line type = ...")
+            raise SceneError(copied, "mechanism.type", "is not written as one line type = ...")
         source = source.parent / of_type if is_path(of_type) else MECHANISMS / f"{of_type}.toml"
         tables = read_file(source, ", ".join(shipped())).decode("utf-8-sig")
         files[f"{name}-mechanism.toml"] = MECHANISM_NOTE + _found_from(
@@ -79,7 +69,7 @@ def run(options: argparse.Namespace, console: Console) -> ExitStatus:
         require_writable(target)
     for target, content in files.items():
         console.put(target, content, "the scene or its mechanism")
-    console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(options.scene)}")
+    console.say(f"{' and '.join(map(shown, files))} written, copied from {shown(copied)}")
     console.say(f"for another (pointcoord scenes): --from SCENE; try: pointcoord plan {shown(name)}.toml")
     return ExitStatus.AGREE
 
@@ -97,6 +87,4 @@ def _found_from(text: str, folder: Path, other: Path) -> str:
     return PATH.sub(counted, text)
 
 
-COMMANDS = {
-    "new": Command(DESCRIPTION, OPTIONS, run, {"--from": {"dest": "scene", "default": "double-wishbone"}})
-}
+COMMANDS = {"new": Command(run)}

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from pointcoord import built_in_scenes
-from validate.commands.comparison import OPTIONS, require_sense
+from validate.commands.comparison import PAGE_WORDS, require_sense
 from validate.commands.comparison import run as compare
 from validate.commands.usage import Command
 from validate.cost.report import Report
@@ -27,23 +27,6 @@ from validate.published.tables import compare_published
 # scene; some five seconds.
 HARD = ("arm-highest-held-wishbone", "upper-arm-locks-held", "knuckle-in-line-wishbone")
 SCENE, WAYS = "bounce", ("series", "absolute", "relative")
-
-DESCRIPTION = """\
-Compare scenes as `pointcoord validate` does, with its options, and write a report of it into a
-folder: index.html, one page that needs no network and opens from disk, with its data as JSON
-and CSV beside it.
-
-Without SCENE it is about all built-in scenes, and holds the paper's and other programs' printed
-tables, a few hard cases, and a first look at what accuracy costs in time. Whole studies of these
-are taken from files, for they take minutes: `pointcoord hard --json FILE` and then --hard FILE,
-`pointcoord cost --rows FILE` and then --cost FILE."""
-
-REPORT_OPTIONS = f"""\
-folder=DIR  the report's folder, made if it is not there
-{OPTIONS}
---hard FILE  show the hard cases that `pointcoord hard --json` kept
---cost FILE  show the times that `pointcoord cost --rows` kept
-"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -100,4 +83,4 @@ def _first_look_at_cost(run: Run, console: Console) -> Report:
     return Report("in this run", command, True, tuple(rows))
 
 
-COMMANDS = {"report": Command(DESCRIPTION, REPORT_OPTIONS, run)}
+COMMANDS = {"report": Command(run, PAGE_WORDS)}

@@ -16,7 +16,7 @@ from pointcoord.results.closing import ALLOWED
 from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
-from validate.commands.usage import SCENE, Command, load_scene, name_of, place_of_picture, told_as
+from validate.commands.usage import Command, load_scene, name_of, place_of_picture, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
@@ -29,16 +29,6 @@ STATES = tuple(
     for effect in (*ALWAYS, *EFFECTS.values())
     if effect.reports_states
 )
-
-PLAN = """\
-Say what a scene makes the program compute and what it leaves out; then, of its drawing, the
-value of each input, how far each can go from there, the wheel's angles, and how far the
-drawing is from closing. Whether by series in time or by a map of the inputs, and what the asked
-accuracy takes, is found by building these; the motion itself is not computed."""
-DRAW = """\
-Draw a scene's hardpoints from behind, from the left and from above, so that a wrong sign,
-axis or side is seen before anything is solved. Where the drawing does not close, it is drawn
-a second time as it is solved."""
 
 
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -239,12 +229,4 @@ def _told(value: float, unit: str) -> str:
     return f"{value:.6g} {unit}" + (f" ({np.degrees(value):.5g} deg)" if unit == "rad" else "")
 
 
-COMMANDS = {
-    "plan": Command(PLAN, SCENE, run_plan),
-    "draw": Command(
-        DRAW,
-        f"{SCENE}-o --output FILE.svg  where to; standard output for -, or if not given and no terminal",
-        run_draw,
-    ),
-    "scenes": Command("List the built-in scenes with their titles.", "", run_scenes),
-}
+COMMANDS = {"plan": Command(run_plan), "draw": Command(run_draw), "scenes": Command(run_scenes)}

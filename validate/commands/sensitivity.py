@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,7 @@ from pointcoord import sensitivity, sweep
 from pointcoord.effects.registry import RANKED_FIRST, number_called
 from pointcoord.sweeping.sensitivity import numbers_named
 from validate.commands.table import meant_numbers
-from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
 from validate.curves.numbers import asking_for, by_path
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -30,30 +29,6 @@ ENDINGS = (".csv", ".md", *PICTURES)
 ROWS = 15
 SAMPLES = 11
 DESIGNS = 400
-
-DESCRIPTION = f"""\
-Say how much the numbers of a car change for each mm by which a coordinate of a hardpoint moves, at
-the one of {SAMPLES} instants of the motion where they change most. The coordinate that changes the
-first number most comes first. Below, it says what a tolerance of all coordinates makes of each
-number: the standard deviation if coordinates are independent, to first order and by {DESIGNS}
-designs drawn at random, and the worst case. Without --number these are
-{", ".join(RANKED_FIRST)},
-as far as the car has them. A picture (SVG, PNG) has a bar for each coordinate."""
-
-OPTIONS = f"""\
-{SCENE}
--o --output FILE  where to, by its ending {", ".join(ENDINGS)}; the first {ROWS} rows in text if not given
---number NAME  a number of the car, or another as QUANTITY.NAME, such as rod_force.tie_rod; may be given again
---point NAME  a hardpoint or one of its coordinates, such as tie_rod_outer.z; may be given again
---tolerance MM  standard deviation of every coordinate, and its limit for the worst case; 1 if not given
---seed K  of the random designs; 0 if not given
-{QUIET}"""
-MORE: Mapping[str, Mapping[str, Any]] = {
-    "--number": {"action": "append"},
-    "--point": {"action": "append", "default": []},
-    "--tolerance": {"default": 1.0},
-    "--seed": {"default": 0},
-}
 
 
 @dataclass(frozen=True)
@@ -148,4 +123,5 @@ def _picture(coordinates: Sequence[str], columns: Sequence[Column], name: str, e
         return drawn(page, ending.removeprefix("."))
 
 
-COMMANDS = {"sensitivity": Command(DESCRIPTION, OPTIONS, run, MORE)}
+WORDS = {"samples": SAMPLES, "designs": DESIGNS, "rows": ROWS, "ranked": ", ".join(RANKED_FIRST)}
+COMMANDS = {"sensitivity": Command(run, WORDS)}

@@ -13,9 +13,6 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS, Method
 from validate.closed_drawing import warnings_of
 from validate.commands.usage import (
-    INSTANTS,
-    QUIET,
-    SCENE,
     Command,
     load_scene,
     name_of,
@@ -36,46 +33,6 @@ BY_NAME: dict[str, Method] = {method.name: method for method in (*METHODS.values
 PICTURES = (".svg", ".png")
 NAMED = 8  # columns of a file, in a message
 SMOOTH = 401  # a curve of fewer instants has corners
-
-SIMULATE = """\
-Solve a scene by point coordinates alone and write what it asks for: a row for each instant, a
-column for each number with its unit. A motion that stops halfway is written as far as it
-goes."""
-PLOT = f"""\
-Draw curves of a scene's motion: any number that it gives over any other. Without --x and --y
-the wheel's angles are drawn against its travel, which goes upward on the paper; against the
-one input that moves, or time, where the wheel does not go mostly up and down; and the wheel
-centre's place over time where the scene asks for no angle.
-
-A number is named by as many words of QUANTITY.NAME.COMPONENT as tell it apart: an angle or
-an input by its name, a place as POINT.z, another quantity of a point as QUANTITY.POINT.z; all
-three components are drawn if none is named. {TIME} is the time, and {TRAVEL} is how far the wheel
-centre is above its drawn place, measured on the chassis. Each axis says which way is positive.
-
-Instead of a scene, a file that sweep, simulate or table wrote may be given: its columns are drawn
-by their names, and each design of a sweep is a curve."""
-SIMULATE_OPTIONS = f"""\
-{SCENE}
--o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; CSV on standard output if not given
-{INSTANTS}{QUIET}
---method NAME  auto (if not given): series, or a map where these are too long or too rough; series: a chain of
-    power series in time; map: series in the inputs, on patches that cover their way; newton: Newton's method
-    at each instant, from the one before; newton-cold: each instant from the drawing; chord: newton with one
-    factorisation kept for many instants; printed: newton with the paper's formulas as printed, some of which
-    are wrong
-"""
-PLOT_OPTIONS = f"""\
-scene=SCENE  a built-in scene's name, or the path of a scene file or of a table, by its ending
-    {" or ".join(ENDINGS)}
--o --output FILE  where to, by its ending {" or ".join(PICTURES)}; if not given, SVG on standard output unless
-    that is a terminal
---y NUMBER  what goes upward on the paper; may be given again
---x NUMBER  what goes to the right ({TIME} if only --y is given); may be given again without --y, and then
-    {TRAVEL} goes upward
---degrees  angles in degrees, which is usual, or in radians
---instants N  points of a curve; the scene's own if not given, at least {SMOOTH}
-{QUIET}"""
-AGAIN = {"action": "append"}
 
 
 def run_simulate(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -225,7 +182,7 @@ def _curves(
     up_if_not_said: Sequence[str] = (TRAVEL,),
 ) -> Curves | None:
     """What the command line asks for; None if it leaves that open."""
-    if options.x is None and options.y is None:
+    if not options.x and not options.y:
         return None
     asked = (("--x", options.x or across_if_not_said), ("--y", options.y or up_if_not_said))
     across, up = (_named(words, option, numbers, name) for option, words in asked)
@@ -246,20 +203,10 @@ def _named(words: Sequence[str], option: str, numbers: Sequence[Number], name: s
 
 
 COMMANDS = {
-    "simulate": Command(
-        SIMULATE,
-        SIMULATE_OPTIONS,
-        run_simulate,
-        {"--method": {"choices": tuple(BY_NAME), "default": "auto", "metavar": None}},
-    ),
+    "simulate": Command(run_simulate, more={"--method": {"choices": tuple(BY_NAME), "metavar": None}}),
     "plot": Command(
-        PLOT,
-        PLOT_OPTIONS,
         run_plot,
-        {
-            "--y": AGAIN,
-            "--x": AGAIN,
-            "--degrees": {"action": argparse.BooleanOptionalAction, "default": True},
-        },
+        {"smooth": SMOOTH},
+        {"--degrees": {"action": argparse.BooleanOptionalAction, "default": True}},
     ),
 }

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from validate.commands.usage import JSON, QUIET, Command, given, require_results
+from validate.commands.usage import Command, given, require_results
 from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.extras import needed
@@ -26,102 +26,40 @@ LOCAL = "local"
 METHODS = ("pointcoord", "pointcoord-map", "pointcoord-newton")
 SOON = 2.0  # seconds before the first line of how far a study is, which waits for others
 
-DESCRIPTION = """\
-Long studies by several processes of this machine, or by any Dask cluster. Everything is numbered,
-and a number means the same wherever it is worked out. What is worked out is added to a folder of
-Parquet files, which can be read while the study runs; a study that is stopped goes on where it
-was by the same command."""
-ADDRESSES = """\
-Each worker of a cluster runs the same version as here: pip install 'pointcoord[validate,cluster]',
-dask worker ADDRESS --nthreads 1. It needs no disk in common with this machine.
-
-Processes of this machine listen on 127.0.0.1 only. A cluster at an address trusts its network:
-whoever reaches its scheduler or its workers can run any code on them and on this machine, for
-what travels are Python's pickles. Keep it in a network of your own, or give a tls://HOST:8786 and
-Dask's settings of TLS, here and there: DASK_DISTRIBUTED__COMM__TLS__CA_FILE, ...__CLIENT__CERT and
-...__CLIENT__KEY, or the same in Dask's configuration file."""
-
 
 @dataclass(frozen=True)
 class Named:
     """A study on the command line.
 
     Attributes:
-        module, function: of `validate.studies`, that make it.
-        description: what it does. options: those of its own. choices: the names that one of them takes.
-        settings: what it is made of; the counts among them say which tasks, and may change from run to run.
+        made_by: module and function of `validate.studies` that make it.
+        settings: what it is made of. counts: options among them that say which tasks, and may change from run
+            to run. choices: the option that takes one of some names, and these.
     """
 
-    module: str
-    function: str
-    description: str
-    options: str
+    made_by: tuple[str, str]
     settings: tuple[str, ...]
     counts: tuple[str, ...]
-    choices: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    choices: tuple[str, Sequence[str]] = ("", ())
 
     def made(self, settings: Mapping[str, Any]) -> Study:
-        """The study of these options, or of settings that were recorded.
-
-        Raises:
-            MissingPackage: what it needs is not there.
-        """
-        module = needed("study", f"validate.studies.{self.module}")
-        study: Study = getattr(module, self.function)(**settings)
+        """The study of these options, or of settings that were recorded."""
+        module, function = self.made_by
+        study: Study = getattr(needed("study", f"validate.studies.{module}"), function)(**settings)
         return study
 
 
 STUDIES: Mapping[str, Named] = {
-    "random": Named(
-        "random_cars",
-        "random_cars",
-        "Random cars and motions, solved by both models. Where the two disagree or only one answers, the\n"
-        "reference decides; of the others it looks at one in twenty.",
-        "--count K  scenes; 20000 if not given\n"
-        f"--first NAME  by which of pointcoord's methods: {', '.join(METHODS)}; {METHODS[0]} if not given\n",
-        ("count", "first"),
-        ("--count",),
-        {"--first": {"choices": METHODS}},
-    ),
-    "bounds": Named(
-        "bounds",
-        "bounds",
-        "Random poses close to the end of an input, and motions towards one: no error may be above its\n"
-        "proven bound.",
-        "--poses K  poses held close to an end; 2000 if not given\n"
-        "--motions K  towards one; one for 20 poses if not given\n"
-        "--seed K  of both; 0 if not given\n",
-        ("poses", "motions", "seed"),
-        ("--poses", "--motions"),
-    ),
+    "random": Named(("random_cars", "random_cars"), ("count", "first"), ("--count",), ("--first", METHODS)),
+    "bounds": Named(("bounds", "bounds"), ("poses", "motions", "seed"), ("--poses", "--motions")),
     "claims": Named(
-        "claims",
-        "claims",
-        "Random cars and motions, solved by one model: every number of every instant is compared with\n"
-        "the reference, and its error with its bound.",
-        "--count K  scenes; 300 if not given\n"
-        "--first K  of them; 0 if not given\n"
-        f"--formulation NAME  the model: {', '.join(NAMES)}; {NAMES[0]} if not given\n",
+        ("claims", "claims"),
         ("count", "first", "formulation"),
         ("--count", "--first"),
-        {"--formulation": {"choices": NAMES}},
+        ("--formulation", NAMES),
     ),
-    "hard": Named(
-        "hard_cases",
-        "hard",
-        "What `pointcoord hard` does, by several processes, and recorded.",
-        "cases=[CASE ...]  a hard case's name; none: all cases\n",
-        ("cases",),
-        ("cases",),
-    ),
+    "hard": Named(("hard_cases", "hard"), ("cases",), ("cases",)),
 }
-OPTIONS = f"""\
---scheduler local|ADDRESS  local, which is usual, is processes of this machine; or the scheduler of a Dask
-    cluster, such as tcp://HOST:8786, whose network is trusted (see above)
---workers N  processes of this machine; one a processor if not given
---records FOLDER  where records are kept; pointcoord-STUDY if not given
---from-records  report what the folder holds, and solve nothing
-{JSON}{QUIET}"""
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -213,19 +151,13 @@ def _worked_out(
     return ending.status
 
 
+WORDS = {"methods": ", ".join(METHODS), "formulations": ", ".join(NAMES)}
 COMMANDS = {
     "study": Command(
-        DESCRIPTION,
-        "",
         run,
         inner={
-            name: Command(
-                f"{named.description}\n\n{DESCRIPTION}\n\n{ADDRESSES}",
-                named.options + OPTIONS,
-                run,
-                {**named.choices, "--scheduler": {"default": LOCAL}},
-            )
-            for name, named in STUDIES.items()
+            name: Command(run, WORDS, {one.choices[0]: {"choices": one.choices[1]}})
+            for name, one in STUDIES.items()
         },
     )
 }

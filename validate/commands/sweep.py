@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,11 +24,6 @@ from pointcoord import (
 from pointcoord.sweeping.designs import coordinates_named
 from pointcoord.toml_text import read_file
 from validate.commands.usage import (
-    INSTANTS,
-    JSON,
-    QUIET,
-    SCENE,
-    TIMINGS,
     Command,
     load_scene,
     name_of,
@@ -48,37 +42,6 @@ from validate.plain_text import shown
 from validate.tables.cells import joined, lines_of, text_of
 
 Array = NDArray[np.float64]
-
-DESCRIPTION = """\
-Solve many designs of a scene's suspension together by point coordinates: every combination of
-what --vary gives, or the designs of a table. A design that cannot be solved is marked with its
-reason and disturbs no other. Says how many were solved, why the others were not, and how far
-the results range; -o writes every number.
-
-  --vary lower_ball_joint.z=-5:5:11        11 values, 5 mm below to 5 mm above the drawing
-  --vary lower_ball_joint.z=-5,0,2.5       these offsets from the drawing, mm
-  --vary lower_ball_joint.z==250:260:11    the same by where the point is drawn, mm
-  --vary lower_ball_joint.z=normal:0.5     drawn at random about the drawing, standard deviation
-  --vary lower_ball_joint.z=uniform:0.5    or evenly to either side; both with --count
-
-A rack_centre that is drawn where tie_rod_inner is goes along with it, unless it is varied
-itself. Designs are numbered from 0. Ends with 3 if a design could not be solved."""
-
-OPTIONS = f"""\
-{SCENE}
---vary POINT.AXIS=VALUES  vary a coordinate; several make a grid, the last one changing from design to design
---designs FILE.csv  a design for each row instead, with columns such as lower_ball_joint.z: where it is
-    drawn, mm
---count N  how many designs at random
---seed K  of the random numbers; the same seed gives the same designs; 0 if not given
--o --output FILE  every number, by the ending {" or ".join(ENDINGS)}; CSV for -
-{INSTANTS}
---memory MB  what designs that are solved in one block may take; 256 if not given, whatever their number
-{JSON}{TIMINGS}{QUIET}"""
-MORE: Mapping[str, Mapping[str, Any]] = {
-    "--vary": {"action": "append", "default": []},
-    "--memory": {"default": 256.0},
-}
 
 EXAMPLES = (
     "POINT.AXIS=START:STOP:COUNT, =A,B,C, =normal:SIGMA or =uniform:HALF, in finite mm; == for places, not "
@@ -228,4 +191,4 @@ def _designs_of_file(scene: Scene, path: str) -> Designs:
     return designs_of(scene, {column: values[:, i] for i, column in enumerate(header)})
 
 
-COMMANDS = {"sweep": Command(DESCRIPTION, OPTIONS, run, MORE)}
+COMMANDS = {"sweep": Command(run)}

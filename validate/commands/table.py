@@ -18,7 +18,7 @@ from pointcoord.effects.loads import LOADS
 from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
-from validate.commands.usage import QUIET, SCENE, Command, load_scene, name_of, place_of_result, told_as
+from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as
 from validate.commands.values import values_of
 from validate.curves.numbers import COMPONENTS, Number, asking_for, by_path, numbers_of
 from validate.errors import UsageError
@@ -36,33 +36,6 @@ ROWS = 21
 NAMED = 12  # numbers, in a message
 FIGURES, DECIMALS = 5, (2, 6)  # significant digits of the largest number of a column, and limits of decimals
 EXAMPLES = "INPUT=START:STOP:COUNT or INPUT=A,B,C, finite, in mm or rad as in a scene"
-
-DESCRIPTION = """\
-Solve a scene by point coordinates and print the wheel's angles and dimensions over the way of
-its inputs, and how much they change per mm of wheel travel and of rack. A sweep such as
-wheel_travel = { sweep = [-50.0, 50.0] } makes a plain range. Bump steer is called toe_by_travel,
-and the motion ratio damper_per_wheel. With --grid there is a row for every combination of values
-of inputs, and the other inputs stay where the scene begins:
-
-  --grid wheel_travel=-50:50:11 --grid rack=-30:30:7
-
-Where the scene has loads and asks for them, there are columns for the forces of rods, joints and
-slides.
-Other programs mean other numbers by the same names: --convention adams has Adams/Car's camber,
-optimumk OptimumK's toe and steer angle, with what is positive there. Columns keep our names,
-with a minus before one that counts the other way.
-
-A row out of reach has no numbers and says why; the exit status is then 3."""
-
-OPTIONS = f"""\
-{SCENE}
--o --output FILE  where to, by its ending {" or ".join(ENDINGS)}; a table in text if not given
---rows N  how many, evenly over the scene's time; its own if these are fewer than {ROWS}, else {ROWS}
---grid INPUT=VALUES  a row for every combination of values instead, in mm or rad; may be given again
---number NAME  a column, such as toe, rod_force.tie_rod or velocity.wheel_centre.z; may be given again
---all  every number of the car that there is at a pose
---convention NAME  what names mean: {", ".join(CONVENTIONS)}; the scene's if not given, iso if it has none
-{QUIET}"""
 
 
 @dataclass(frozen=True)
@@ -281,7 +254,5 @@ def _rounded(values: Array) -> list[str]:
 
 
 COMMANDS = {
-    "table": Command(
-        DESCRIPTION, OPTIONS, run, {"--number": {"action": "append"}, "--grid": {"action": "append"}}
-    )
+    "table": Command(run, {"rows": ROWS, "conventions": ", ".join(CONVENTIONS)}),
 }

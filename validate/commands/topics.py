@@ -52,10 +52,4 @@ def page(topic: str) -> str:
     return (Path(str(package.__file__)).parent / folder / PAGE).read_text(encoding="utf-8")
 
 
-COMMANDS = {
-    "help": Command(
-        f"Print a page on a topic, or the list of topics: {', '.join(TOPICS)}.",
-        "topic=[TOPIC]  one of them",
-        run,
-    )
-}
+COMMANDS = {"help": Command(run, {"topics": ", ".join(TOPICS)})}

@@ -13,9 +13,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
+from string import Template
 from typing import Any
 
 from pointcoord import Scene, SceneError
+from validate.commands.pages import page
 from validate.errors import UsageError
 from validate.exit_status import HELP, ExitStatus
 from validate.output.console import Console
@@ -60,67 +62,57 @@ TYPES: Mapping[str, Callable[[str], Any]] = {
 
 @dataclass(frozen=True)
 class Command:
-    """A command of the program.
+    """A command of the program, whose page in `help/` says what it takes.
+
+    An entry of its options begins at the beginning of a line: names and what stands for the value, as `TYPES`
+    reads it, then two blanks and what it does. `NAME ...` may be given again, `NAME = 1` has a default, and
+    `[NAME ...]` takes any number of values. An argument is `name=WORD`, one that may be left out
+    `name=[WORD]`, any number of them `name=[WORD ...]`.
 
     Attributes:
-        options: as its help lists them. An entry begins at the beginning of a line: names and what stands for
-            the value, as `TYPES` reads it, then two blanks and what it does. An argument is `name=WORD`, one
-            that may be left out `name=[WORD]`, any number of them `name=[WORD ...]`.
         run: does it.
-        more: what such a text cannot say of an option, as `argparse` takes it.
+        words: by name what stands for `$name` in its page.
+        more: what an entry cannot say of an option, as `argparse` takes it.
         inner: commands of the command; it has no options itself then.
     """
 
-    description: str
-    options: str
     run: Callable[[argparse.Namespace, Console], ExitStatus]
+    words: Mapping[str, object] = field(default_factory=dict)
     more: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     inner: Mapping[str, Command] = field(default_factory=dict)
 
     def declare(self, parser: ArgumentParser, name: str) -> None:
         """Declare what it takes."""
-        parser.description, parser.epilog = self.description, HELP
+        _, description, options = (Template(text).substitute(self.words) for text in page(name))
+        parser.description, parser.epilog = description, HELP
         parser.formatter_class = argparse.RawDescriptionHelpFormatter
-        for entry in re.split(r"\n(?=\S)", self.options.strip()) if self.options else ():
+        for entry in re.split(r"\n(?=\S)", options) if options else ():
             head, words = re.split(r"\s{2,}", entry, maxsplit=1)
+            head, _, default = head.partition(" = ")
             names = [word for word in head.split() if word.startswith("-")]
-            about: dict[str, Any] = {"help": " ".join(words.split())}
+            about: dict[str, Any] = {"help": " ".join(words.replace("%", "%%").split())}
             if not names:
                 argument, _, value = head.partition("=")
                 names = [argument]
                 if value.startswith("["):
                     about["nargs"] = "*" if value.endswith("...]") else "?"
-                about["metavar"] = value.strip("[].").strip()
             elif value := " ".join(word for word in head.split() if word not in names):
-                about |= {"metavar": value, "type": TYPES.get(value)}
+                about |= {"type": TYPES.get(value), "default": default or None}
+                if value.startswith("["):
+                    about |= {"nargs": "+", "default": []}
+                elif value.endswith("..."):
+                    about |= {"action": "append", "default": []}
             else:
                 about["action"] = "store_true"
+            if value:
+                about["metavar"] = value.strip("[].").strip()
             parser.add_argument(*names, **{**about, **self.more.get(names[-1], {})})
         if self.inner:
             inner = parser.add_subparsers(required=True, metavar=name.upper(), dest=name)
             for one, command in self.inner.items():
-                summary = " ".join(command.description.partition("\n\n")[0].split())
-                command.declare(inner.add_parser(one, help=summary), one)
+                own = f"{name}-{one}"
+                command.declare(inner.add_parser(one, help=page(own)[0]), own)
         parser.set_defaults(run=self.run)
-
-
-SCENE = f"scene=SCENE  {SCENE_HELP}\n"
-DATA = """\
---data FILE  compare a file of results (CSV, whitespace table, Parquet) with the one SCENE's car, at the
-    file's own times, inputs or travels, to the digits that it is written with
-"""
-MAP = """\
---map FILE.toml  what the columns of --data are; not needed for files that pointcoord simulate -o writes;
-    one that is not there yet is written, to be filled in
-"""
-INSTANTS = """\
---instants N  so many, evenly over the scene's time, instead of its own samples; they take no more memory
-"""
-REPORT = "--report DIR  write a page of HTML that needs no network, with its data, into a folder\n"
-JSON = "--json FILE  write the results as JSON; - for standard output\n"
-TIMINGS = "--timings  write into the JSON when the run began and when it was written\n"
-QUIET = "-q --quiet  print nothing but errors\n"
-# Options of several commands.
 
 
 def given(options: argparse.Namespace, *names: str) -> list[str]:
