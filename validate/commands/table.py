@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -25,7 +24,7 @@ from validate.errors import UsageError
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import is_force, per_second
 from validate.output.console import Console
-from validate.output.table import Table, csv_of, is_terminal
+from validate.output.table import Table, csv_of, text_for
 from validate.plain_text import shown, some_of
 from validate.tables.units import degrees_of
 
@@ -229,19 +228,17 @@ def _text(columns: Sequence[Column], target: str | None, reasons: Mapping[int, s
             return csv_of(head, lines)
         every = ((*line, reasons.get(row, "")) for row, line in enumerate(lines))
         return csv_of((*head, "why there is none"), every)
-    table = Table(head, tuple(zip(*map(_rounded, values), strict=True)))
-    # The wheels of an axle share a line.
     numbers = [column.number for column in columns]
+    kept = sum(len(one.path) == 1 for one in numbers)
+    table = Table(head, tuple(zip(*map(_rounded, values), strict=True)), kept=kept)
+    # The wheels of an axle share a line.
     signs = {_own(one.path[-1]): one.sign for one in numbers if one.of_the_car}
     signs |= {".".join(one.path): one.sign for one in numbers if len(one.path) > 2 and not _is_force(one)}
     told = [f"{number}: positive {sign}" for number, sign in signs.items() if sign]
     told += [f"forces: {LOADS.sign}"] * any(map(_is_force, numbers))
     if target is not None:
         return "\n".join([table.markdown, "", *(f"- {sign}" for sign in told), ""])
-    kept = sum(len(one.path) == 1 for one in numbers)
-    # Lines that a terminal would fold cannot be read down.
-    bands = table.bands(shutil.get_terminal_size().columns, kept) if is_terminal(sys.stdout) else [table]
-    return "\n".join([*(line for band in bands for line in (band.text, "")), *told, ""])
+    return text_for(sys.stdout, [table, "", *told, ""])
 
 
 def _rounded(values: Array) -> list[str]:

@@ -9,7 +9,7 @@ from contextlib import contextmanager, suppress
 
 from validate.output.files import OutputError, unwritable, write_content
 from validate.output.progress import OFTEN, PATIENCE, PAUSE, Progress, Told, rewrite
-from validate.output.table import Part, is_terminal, laid_out, text_of
+from validate.output.table import Part, is_terminal, text_for
 from validate.plain_text import one_line
 
 STANDARD_OUTPUT = "standard output"
@@ -55,11 +55,7 @@ class Console:
 
     def show(self, parts: Sequence[Part]) -> None:
         """Lines and tables for people, laid out for a terminal that is one; nothing if quiet or mute."""
-        if self.quiet or self.mute or not is_terminal(sys.stdout):
-            self.say(text_of(parts))
-        else:
-            self.write(laid_out(parts))
-            self.flush()
+        self.say(text_for(sys.stdout, parts))
 
     def put(self, target: str | None, content: str | bytes, what: str) -> None:
         """Write a result whole to its file, or to standard output for `-` or None.

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import os
 import re
 import shutil
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from itertools import zip_longest
-from textwrap import wrap
 from typing import ClassVar, TextIO
 
 from validate.plain_text import shown
@@ -50,6 +49,7 @@ class Table:
     Attributes:
         indent: of plain text. caption: what stands above it on a page.
         folded: whether a page shows it only to who opens it.
+        kept: how many columns stand first in each band of a table that is too wide.
     """
 
     template: ClassVar[str] = "grid.html"
@@ -59,6 +59,7 @@ class Table:
     indent: int = 0
     caption: str = ""
     folded: bool = False
+    kept: int = 1
 
     @cached_property
     def cells(self) -> tuple[tuple[Cell, ...], ...]:
@@ -72,66 +73,43 @@ class Table:
 
     @property
     def text(self) -> str:
-        """Columns of text: words to the left, numbers to the right."""
+        """Columns of text, however wide."""
         return "\n".join(self.lines())
 
     def lines(self, room: int | None = None) -> list[str]:
-        """The same in lines that are no longer than there is room for, if that is given.
+        """Columns of text, words to the left and numbers to the right.
 
-        Where there is too little, cells are folded between words; where a word would be cut for it, each row
-        is a list instead.
+        Where they do not fit into the room, they stand in bands one below the other, each with the first
+        columns again; where a band is too wide too, each row is a list.
         """
-        columns = [[name, *(row[i] for row in self.texts)] for i, name in enumerate(self.head)]
-        whole, gap, gaps = [max(map(len, column)) for column in columns], "  ", len(columns) - 1
-        widths: list[int] | None = whole
-        if room is not None and self.indent + sum(whole) + 2 * gaps > room:
-            gap, widths = " ", _fitting(columns, room - self.indent - gaps)
-        if widths is None:
+        columns = [(name, *(row[i] for row in self.texts)) for i, name in enumerate(self.head)]
+        widths = [max(map(len, column)) for column in columns]
+        most, first = math.inf if room is None else room, [*range(self.kept)]
+        bands = [[*first]]
+        for i in range(self.kept, len(columns)):
+            if len(bands[-1]) > self.kept and self._width(widths, [*bands[-1], i]) > most:
+                bands.append([*first])
+            bands[-1].append(i)
+        if max(self._width(widths, band) for band in bands) > most:
             return [
                 f"    {name}: {cell}" if i else f"  {cell}"
                 for row in self.texts
                 for i, (name, cell) in enumerate(zip(self.head, row, strict=True))
             ]
-        found = []
-        for row in (self.head, ["-" * width for width in widths], *self.texts):
-            cells = [
-                [c] if len(c) <= w else wrap(c, w, break_on_hyphens=False)
-                for c, w in zip(row, widths, strict=True)
+        found: list[str] = []
+        for band in bands:
+            told = [
+                [cell.ljust(widths[i]) if self.to_left(i) else cell.rjust(widths[i]) for cell in columns[i]]
+                for i in band
             ]
-            for line in zip_longest(*cells, fillvalue=""):
-                pads = (
-                    cell.ljust(width) if self.to_left(i) else cell.rjust(width)
-                    for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-                )
-                found.append((" " * self.indent + gap.join(pads)).rstrip())
+            head, *rows = zip(*told, strict=True)
+            rule = ["-" * widths[i] for i in band]
+            found += [""] * bool(found)
+            found += [(" " * self.indent + "  ".join(row)).rstrip() for row in (head, rule, *rows)]
         return found
 
-    def bands(self, room: int, kept: int) -> list[Table]:
-        """Tables of as many columns as there is room for, each with the first columns of this one.
-
-        Args:
-            kept: how many columns stand in each; a band has one more at least.
-        """
-        widths = [
-            max(map(len, (name, *(row[i] for row in self.texts)))) + 2 for i, name in enumerate(self.head)
-        ]
-        left = self.indent + sum(widths[:kept]) - 2
-        found: list[list[int]] = []
-        for i in range(kept, len(self.head)):
-            if not found or left + sum(widths[j] for j in (*found[-1], i)) > room:
-                found.append([])
-            found[-1].append(i)
-        if len(found) < 2:
-            return [self]
-        chosen = [(*range(kept), *band) for band in found]
-        return [
-            replace(
-                self,
-                head=tuple(self.head[i] for i in band),
-                rows=tuple(tuple(row[i] for i in band) for row in self.rows),
-            )
-            for band in chosen
-        ]
+    def _width(self, widths: Sequence[int], band: Sequence[int]) -> int:
+        return self.indent + sum(widths[i] + 2 for i in band) - 2
 
     @property
     def markdown(self) -> str:
@@ -154,6 +132,18 @@ Part = str | Table
 def text_of(parts: Sequence[Part]) -> str:
     """Parts as plain text, one below the other."""
     return "\n".join(part if isinstance(part, str) else part.text for part in parts)
+
+
+def text_for(stream: TextIO | None, parts: Sequence[Part]) -> str:
+    """The same for a stream; a terminal has tables as wide as it is, and verdicts in colours."""
+    if not is_terminal(stream):
+        return text_of(parts)
+    room = max(shutil.get_terminal_size().columns, 20)
+    text = "\n".join(part if isinstance(part, str) else "\n".join(part.lines(room)) for part in parts)
+    if not os.environ.get("NO_COLOR"):
+        for words, colour in COLOURS.items():
+            text = re.sub(rf"\b({words})\b", f"\x1b[{colour}m\\1\x1b[0m", text)
+    return text
 
 
 def csv_of(head: Iterable[str], lines: Iterable[Iterable[object]]) -> str:
@@ -188,29 +178,3 @@ def is_terminal(stream: TextIO | None) -> bool:
     """Whether a stream is a terminal that takes colours and lines that are written again."""
     dumb = os.environ.get("TERM", "dumb") in ("", "dumb", "unknown")
     return stream is not None and stream.isatty() and not dumb
-
-
-def laid_out(parts: Sequence[Part]) -> str:
-    """Parts as a terminal shows them: tables as wide as it is, verdicts in colours."""
-    room = max(shutil.get_terminal_size().columns, 20)
-    lines = [line for part in parts for line in ([part] if isinstance(part, str) else part.lines(room))]
-    text = "\n".join(lines) + "\n"
-    if not os.environ.get("NO_COLOR"):
-        for words, colour in COLOURS.items():
-            text = re.sub(rf"\b({words})\b", f"\x1b[{colour}m\\1\x1b[0m", text)
-    return text
-
-
-def _fitting(columns: Sequence[Sequence[str]], room: int) -> list[int] | None:
-    """Widths of columns that have room together; None where a word would be cut for it."""
-    widths = [max(len(word) for cell in column for word in cell.split() or [""]) for column in columns]
-    rest = room - sum(widths)
-    if rest < 0:
-        return None
-    # Whole cells in as many columns as there is room for, and what is left over to the next one.
-    lacking = [max(map(len, column)) - width for column, width in zip(columns, widths, strict=True)]
-    for i in sorted(range(len(widths)), key=lambda i: lacking[i]):
-        more = min(lacking[i], rest)
-        widths[i] += more
-        rest -= more
-    return widths
