@@ -1,13 +1,20 @@
 """The program as a shell runs it: a process of its own, with short scenes."""
 
+import json
 import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
 
 import pointcoord
+from validate.output.document import schema_text
 
 ROOT = Path(pointcoord.__file__).parent.parent
+CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))
 PROGRAM = [sys.executable, "-m", "pointcoord"]
 BOUNCE = (ROOT / "pointcoord" / "scenes" / "bounce.toml").read_text(encoding="utf-8")
 ENVIRONMENT = {
@@ -27,6 +34,14 @@ def short_scene(folder: Path, name: str = "short.toml", **changes: str) -> str:
     path = folder / name
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return str(path)
+
+
+def document(written: str | Path) -> dict[str, Any]:
+    """What the program wrote as JSON, into a file too: strict, and true to the schema that is shipped."""
+    text = written.read_text() if isinstance(written, Path) else written
+    data: dict[str, Any] = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+    CHECK.validate(data)
+    return data
 
 
 # Laws of the arm that lead the car past its dead point, and out of the range of angles.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -10,17 +11,15 @@ from pointcoord import AssemblyError, PointcoordError, Scene, built_in_scenes, s
 from pointcoord.drawing_stands import Standing
 from pointcoord.effects.plan import Plan, plan_effects
 from pointcoord.effects.registry import ALWAYS, EFFECTS
-from pointcoord.linkage.topology import Topology
 from pointcoord.mechanism.structure import bodies_in_words, joints_in_words
 from pointcoord.results.closing import ALLOWED
-from pointcoord.scene.scene_file import MechanismPart
 from pointcoord.simulation import effort, scene_mechanism
 from validate.closed_drawing import closed_drawing, warnings_of
 from validate.commands.usage import Command, load_scene, name_of, place_of_picture, told_as
 from validate.exit_status import ExitStatus
 from validate.output.console import Console
 from validate.output.picture import svg
-from validate.plain_text import shown
+from validate.plain_text import gathered, shown
 
 PICTURES = (".svg",)
 # Positions, velocities and so on, by time derivative.
@@ -55,138 +54,19 @@ def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
 def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Say what a scene would compute, and where its drawing stands."""
     console.require("it is where a plan goes")
-    scene = load_scene(options.scene)
+    scene, name = load_scene(options.scene), name_of(options.scene)
     plan = plan_effects(scene.effects, unreported=scene.unreported_points)
-    part, name, silent = scene.mechanism, name_of(options.scene), scene.unreported_points
     with told_as(name):
         scene_mechanism(scene)
-    side = f", {part.side} side" if part.structure.knuckles.get("knuckle") else ""
-    lines = [
-        f"{name}: {shown(scene.title)}" if scene.title else name,
-        f"mechanism: {part.name}{side}; inputs: {', '.join(scene.inputs)}",
-        *_mechanism(part),
-        f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s",
-        *(f"computed: {effect.gives}" for effect in ALWAYS),
-    ]
-    if silent:
-        lines.append(
-            f"of the points: {', '.join(scene.reported_points)}; add {', '.join(silent)} to points to have "
-            "them"
-        )
-    lines += [f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects]
-    if plan.left_out:
-        plain = [effect for effect in plan.left_out if not EFFECTS[effect].base]
-        made = [effect for effect in plan.left_out if EFFECTS[effect].base]
-        more = f"; derivatives of these, such as {made[0]} and {made[-1]}, {len(made)} in all" if made else ""
-        names = ", ".join(plain)
-        lines.append(f"left out: {names}{more}; name one under effects to have it (pointcoord help effects)")
-    console.say("\n".join([*lines, *_work(plan, part.topology), *_effort(scene, plan)]))
-    return _say_where_it_stands(scene, name, console)
-
-
-def _mechanism(part: MechanismPart) -> list[str]:
-    """Bodies, joints, freedoms and what can be driven."""
-    structure, topology = part.structure, part.topology
-    count = part.freedoms
-    others = [
-        name
-        for name, one in structure.inputs.items()
-        if name not in (part.driven or ()) and not one.moves_the_chassis
-    ]
-    lines = [f"bodies: {'; '.join(bodies_in_words(structure))}", "joints:"]
-    lines += [f"  {joint}" for joint in joints_in_words(structure)]
-    lines.append(
-        f"freedoms: {count}, held by {', '.join(topology.holding_inputs) or 'no input'}"
-        + (f"; could be driven as well: {', '.join(others)}" if others else "")
-    )
-    left_out = topology.left_labels
-    if left_out:
-        lines.append(
-            f"redundant: {', '.join(left_out)}; each follows from the other equations as drawn and is "
-            "held to at every answer"
-        )
-    return lines
-
-
-def _up_to(order: int) -> str:
-    """Positions and their time derivatives up to an order, in words."""
-    *first, last = STATES[: order + 1]
-    return " and ".join(filter(None, (", ".join(first), last)))
-
-
-def _work(plan: Plan, topology: Topology) -> list[str]:
-    """To which time derivative points are solved and evaluated for that."""
-    derivatives = plan.derivatives(topology)
-    groups = [
-        (_up_to(order), [name for name, highest in derivatives.items() if highest == order])
-        for order in sorted(set(derivatives.values()), reverse=True)
-    ]
-    each = (f"{words} of {', '.join(names)}" for words, names in groups)
-    every = len(derivatives) == len(topology.points) and len(groups) == 1
-    evaluated = f"{groups[0][0]} of every point" if every else "; ".join(each)
-    return [f"solved for: {_up_to(plan.derivative)}", f"evaluated: {evaluated}"]
-
-
-def _effort(scene: Scene, plan: Plan) -> list[str]:
-    """What the accuracy that is asked for makes the solver do."""
-    try:
-        found = effort(scene)
-    except PointcoordError as error:
-        return [f"takes: not known, because it cannot be solved: {error}"]
-    rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
-    way = found.why or "solved by series in time, which are few enough; a map of the inputs is not needed"
-    lines = [way, f"accuracy: positions to {found.tolerance:.3g} mm{rates}"]
-    if found.orders:
-        few, many = min(found.orders), max(found.orders)
-        order = f"order {few}" if few == many else f"orders {few} to {many}"
-        series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
-        if found.method == "map":
-            series += " in the inputs, each proven on a patch of their way,"
-        unknowns = [f"{found.moving} unknowns"]
-        if found.still:
-            unknowns.append(f"{found.still} more stand still and are solved once")
-        if found.not_needed:
-            unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
-        where = "on each patch" if found.method == "map" else "at each step"
-        lines.append(f"solved {where}: {'; '.join(unknowns)}")
-        lines.append(
-            f"takes: {series} of {order}, {sum(found.orders)} orders in all; {found.work.factorisations} "
-            f"factorisations, {found.start.factorisations} of them to assemble the start"
-        )
-    if not found.status.complete:
-        lines.append(f"up to t = {found.stop:.6g} s, where the motion stops")
-    return lines
-
-
-def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatus:
-    """The drawn inputs, how far each can go, the wheel's angles, and what closing the drawing moves."""
+    console.say("\n".join([*_mechanism(scene, name), *_computed(scene, plan), *_effort(scene, plan)]))
     try:
         with told_as(name):
             stands = standing(scene)
     except AssemblyError as error:
         console.complain(f"{name}: {error}")
         return ExitStatus.NO_VERDICT
-    units, topology = scene.mechanism.topology.input_units, scene.mechanism.topology
-    lines = ["as drawn:"]
-    for one, value in stands.inputs.items():
-        here = f"  {one} is {_told(value, units[one])}; the other inputs held, it"
-        ends = stands.reach[one]
-        if all(np.isinf(end.value) for end in ends):
-            lines.append(f"{here} goes all the way round")
-            continue
-        low, high = (
-            _told(end.value, units[one])
-            + (f", where it is held by {', '.join(end.limits[:3])}" if end.limits else "")
-            for end in ends
-        )
-        lines += [f"{here} reaches", f"    from {low}", f"    to   {high}"]
-    lines += [f"  {angle} is {_degrees(value)} deg" for angle, value in stands.angles.items()]
-    if topology.wheel_axis:
-        inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
-        lines.append(f"  the wheel turns about the line from {inner} to {centre}")
-    lines.append(f"  {stands.closing.words}")
-    console.say("\n".join(lines))
-    if stands.closing.changes_the_car and not topology.puts_in_place:
+    console.say("\n".join(_where_it_stands(scene, stands)))
+    if stands.closing.changes_the_car and not scene.mechanism.topology.puts_in_place:
         limit = f"{ALLOWED:.0%} of the car's size, {ALLOWED * stands.closing.size:.3g} mm"
         console.complain(
             f"{name}: mechanism.points: {stands.closing.words}: that is another car, which is refused; "
@@ -198,30 +78,122 @@ def _say_where_it_stands(scene: Scene, name: str, console: Console) -> ExitStatu
     return ExitStatus.AGREE
 
 
-def _out_of_reach(scene: Scene, stands: Standing) -> list[str]:
+def _mechanism(scene: Scene, name: str) -> Iterator[str]:
+    """Bodies, joints, freedoms and what can be driven."""
+    part, structure, topology = scene.mechanism, scene.mechanism.structure, scene.mechanism.topology
+    side = f", {part.side} side" if structure.knuckles.get("knuckle") else ""
+    yield f"{name}: {shown(scene.title)}" if scene.title else name
+    yield f"mechanism: {part.name}{side}; inputs: {', '.join(scene.inputs)}"
+    yield f"bodies: {'; '.join(bodies_in_words(structure))}"
+    yield from ("joints:", *(f"  {joint}" for joint in joints_in_words(structure)))
+    inputs = structure.inputs.items()
+    others = [n for n, one in inputs if n not in (part.driven or ()) and not one.moves_the_chassis]
+    could = f"; could be driven as well: {', '.join(others)}" if others else ""
+    held = ", ".join(topology.holding_inputs) or "no input"
+    yield f"freedoms: {part.freedoms}, held by {held}{could}"
+    if topology.left_labels:
+        labels, why = ", ".join(topology.left_labels), "each follows from the other equations as drawn"
+        yield f"redundant: {labels}; {why} and is held to at every answer"
+
+
+def _computed(scene: Scene, plan: Plan) -> Iterator[str]:
+    """What is computed, what is left out, and to which time derivative points are solved for that."""
+    silent, topology = scene.unreported_points, scene.mechanism.topology
+    yield f"instants: {scene.time.samples} from {scene.time.start:g} to {scene.time.stop:g} s"
+    yield from (f"computed: {effect.gives}" for effect in ALWAYS)
+    if silent:
+        points, more = ", ".join(scene.reported_points), ", ".join(silent)
+        yield f"of the points: {points}; add {more} to points to have them"
+    yield from (f"computed: {EFFECTS[effect].gives} ({effect})" for effect in plan.effects)
+    if plan.left_out:
+        plain = [effect for effect in plan.left_out if not EFFECTS[effect].base]
+        made = [effect for effect in plan.left_out if EFFECTS[effect].base]
+        more = f"; derivatives of these, such as {made[0]} and {made[-1]}, {len(made)} in all" if made else ""
+        how = "name one under effects to have it (pointcoord help effects)"
+        yield f"left out: {', '.join(plain)}{more}; {how}"
+    derivatives = sorted(plan.derivatives(topology).items(), key=lambda item: -item[1])
+    groups = gathered((_up_to(order), name) for name, order in derivatives)
+    every = len(derivatives) == len(topology.points) and len(groups) == 1
+    yield f"solved for: {_up_to(plan.derivative)}"
+    each = (f"{words} of {'every point' if every else ', '.join(names)}" for words, names in groups.items())
+    yield f"evaluated: {'; '.join(each)}"
+
+
+def _up_to(order: int) -> str:
+    """Positions and their time derivatives up to an order, in words."""
+    *first, last = STATES[: order + 1]
+    return " and ".join(filter(None, (", ".join(first), last)))
+
+
+def _effort(scene: Scene, plan: Plan) -> Iterator[str]:
+    """What the accuracy that is asked for makes the solver do."""
+    try:
+        found = effort(scene)
+    except PointcoordError as error:
+        yield f"takes: not known, because it cannot be solved: {error}"
+        return
+    by_map = found.method == "map"
+    yield found.why or "solved by series in time, which are few enough; a map of the inputs is not needed"
+    rates = f", rates to {found.part:.2g} of their size" if plan.derivative else ""
+    yield f"accuracy: positions to {found.tolerance:.3g} mm{rates}"
+    if found.orders:
+        few, many = min(found.orders), max(found.orders)
+        unknowns = [f"{found.moving} unknowns"]
+        if found.still:
+            unknowns.append(f"{found.still} more stand still and are solved once")
+        if found.not_needed:
+            unknowns.append(f"the {found.not_needed} of {', '.join(found.points_not_needed)} are not needed")
+        yield f"solved {'on each patch' if by_map else 'at each step'}: {'; '.join(unknowns)}"
+        series = "1 power series" if len(found.orders) == 1 else f"{len(found.orders)} power series"
+        series += " in the inputs, each proven on a patch of their way," if by_map else ""
+        yield (
+            f"takes: {series} of {f'order {few}' if few == many else f'orders {few} to {many}'}, "
+            f"{sum(found.orders)} orders in all; {found.work.factorisations} factorisations, "
+            f"{found.start.factorisations} of them to assemble the start"
+        )
+    if not found.status.complete:
+        yield f"up to t = {found.stop:.6g} s, where the motion stops"
+
+
+def _where_it_stands(scene: Scene, stands: Standing) -> Iterator[str]:
+    """The drawn inputs, how far each can go, the wheel's angles, and what closing the drawing moves."""
+    topology = scene.mechanism.topology
+    units = topology.input_units
+    yield "as drawn:"
+    for one, value in stands.inputs.items():
+        here, ends = f"  {one} is {_told(value, units[one])}; the other inputs held, it", stands.reach[one]
+        if all(np.isinf(end.value) for end in ends):
+            yield f"{here} goes all the way round"
+            continue
+        yield f"{here} reaches"
+        for word, end in zip(("from", "to  "), ends, strict=True):
+            held = f", where it is held by {', '.join(end.limits[:3])}" if end.limits else ""
+            yield f"    {word} {_told(end.value, units[one])}{held}"
+    # To a thousandth of a degree, and zero without a sign.
+    for angle, value in stands.angles.items():
+        yield f"  {angle} is {round(float(np.degrees(value)), 3) + 0.0:g} deg"
+    if topology.wheel_axis:
+        inner, centre = (f"{end}{_default(scene, end)}" for end in topology.wheel_axis)
+        yield f"  the wheel turns about the line from {inner} to {centre}"
+    yield f"  {stands.closing.words}"
+
+
+def _out_of_reach(scene: Scene, stands: Standing) -> Iterator[str]:
     """Inputs that the scene drives farther than they go with the others as drawn."""
-    told, units = [], scene.mechanism.topology.input_units
     for name, (low, high) in stands.reach.items():
         values = scene.functions[name].series(scene.instants, 0)[:, 0]
         least, most = float(values.min()), float(values.max())
         if least < low.value or most > high.value:
-            told.append(
-                f"the scene drives {name} from {_told(least, units[name])} to {_told(most, units[name])}, "
-                "beyond what it reaches with the others as drawn"
-            )
-    return told
+            unit = scene.mechanism.topology.input_units[name]
+            driven = f"the scene drives {name} from {_told(least, unit)} to {_told(most, unit)}"
+            yield f"{driven}, beyond what it reaches with the others as drawn"
 
 
 def _default(scene: Scene, point: str) -> str:
     """A word on a point that stands in for one that the scene leaves out."""
-    left_out = (name for name, other in scene.mechanism.topology.stand_ins.items() if other == point)
-    names = [name for name in left_out if name not in scene.mechanism.topology.points]
+    topology = scene.mechanism.topology
+    names = [n for n, other in topology.stand_ins.items() if other == point and n not in topology.points]
     return f" (the default of {names[0]})" if names else ""
-
-
-def _degrees(angle: float) -> str:
-    """An angle to a thousandth of a degree, and zero without a sign."""
-    return f"{round(float(np.degrees(angle)), 3) + 0.0:g}"
 
 
 def _told(value: float, unit: str) -> str:

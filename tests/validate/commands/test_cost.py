@@ -1,15 +1,14 @@
 """`pointcoord cost` as its users meet it: options, files, interruptions and endings."""
 
-import json
 import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import jsonschema
 import pytest
 from made_rows import kept, measured, study
+from program import document
 
 from validate.cli import main
 from validate.cost import study as studying
@@ -17,9 +16,7 @@ from validate.cost.report import NOTHING
 from validate.cost.scenes import STUDY_SCENES
 from validate.cost.study import Study
 from validate.cost.table import PARTS, Row, Store, measured_here, read_rows
-from validate.output.document import schema_text
 
-CHECK = jsonschema.Draft202012Validator(json.loads(schema_text()))
 ROWS = study()
 
 
@@ -42,12 +39,6 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 def told(capsys: pytest.CaptureFixture[str]) -> tuple[str, list[str]]:
     out, err = capsys.readouterr()
     return out, [line for line in err.splitlines() if not line.startswith("pointcoord: note: ")]
-
-
-def document(text: str) -> dict[str, Any]:
-    data: dict[str, Any] = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
-    CHECK.validate(data)
-    return data
 
 
 def test_a_report_from_rows_measures_nothing_and_ends_with_0(
@@ -120,7 +111,7 @@ def test_ctrl_c_keeps_and_names_what_was_measured(
     _, (line,) = told(capsys)
     assert f"{path} holds 1 row" in line
     assert f"{target} holds 1 row" in line
-    data = document(target.read_text())
+    data = document(target)
     assert (data["complete"], data["exit_status"], len(data["rows"])) == (False, 130, 1)
 
 

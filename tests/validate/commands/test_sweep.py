@@ -1,20 +1,18 @@
 """`pointcoord sweep`: what it writes is the designs one by one."""
 
 import csv
-import json
 import tracemalloc
 from pathlib import Path
 
-import jsonschema
 import numpy as np
 import pyarrow.parquet
 import pytest
+from program import document
 
 from pointcoord import Scene, simulate, sweep
 from pointcoord.results.named_columns import columns
 from validate.cli import main
 from validate.output.columns import write_sweep
-from validate.output.document import schema_text
 
 SCENE = "double-wishbone"
 VARY = ("--vary", "lower_ball_joint.z=-10,0,150", "--vary", "upper_ball_joint.y=0:1:2")
@@ -80,8 +78,7 @@ def test_the_summary_says_what_failed_and_how_far_numbers_range(
     out = capsys.readouterr().out
     assert "solved: 4 of 6 designs, at 5 instants each" in out
     assert "2 of 6 designs failed, the mechanism cannot be assembled; design 4 for one: the mech" in out
-    data = json.loads((tmp_path / "s.json").read_text())
-    jsonschema.validate(data, json.loads(schema_text()))
+    data = document(tmp_path / "s.json")
     assert (data["kind"], data["designs"], data["tried"], data["solved"]) == ("sweep", 6, 6, 4)
     assert (data["exit_status"], data["failed"]) == (3, [4, 5])
     assert data["failures"][0]["designs"] == 2

@@ -12,12 +12,12 @@ from html import unescape
 from pathlib import Path
 from typing import Any
 
-import jsonschema
 import made_rows
 import numpy as np
 import pytest
 from page_read import Read
 from program import PAST_ITS_END, short_scene
+from program import document as checked
 
 import validate.published
 from pointcoord import Scene, simulate
@@ -31,7 +31,7 @@ from validate.html.hard_cases import HardCases
 from validate.html.page import page
 from validate.html.run import FIRST, FURTHER, Drawings, Drawn, Run
 from validate.html.sections import sections
-from validate.output.document import Head, schema_text
+from validate.output.document import Head
 from validate.output.report import worst_rows
 from validate.paper.scenes import PAPER_SCENES
 from validate.paper.tables import TABLE_2, TABLE_3
@@ -59,13 +59,6 @@ def read(run: Run) -> Read:
 
 def read_file(folder: Path) -> Read:
     return Read((folder / "index.html").read_text(encoding="utf-8"))
-
-
-def checked(file: Path) -> dict[str, Any]:
-    """A document that keeps to the schema."""
-    document: dict[str, Any] = json.loads(file.read_text())
-    jsonschema.validate(document, json.loads(schema_text()))
-    return document
 
 
 def told(name: str, scene: Scene) -> Drawn:
@@ -187,7 +180,10 @@ def test_the_page_says_of_every_quantity_what_the_data_say(tmp_path: Path) -> No
 def test_a_solver_that_is_wrong_is_red_and_named_in_page_data_and_status(solver: Path) -> None:
     words = ["validate", "-q", "--solver", "made_solver:off_by_a_bit", "steer", "--report", str(solver)]
     assert main([*words, "--json", str(solver.parent / "run.json")]) == 1
-    document, same = checked(solver / "results.json"), json.loads((solver.parent / "run.json").read_text())
+    document, same = (
+        checked(solver / "results.json"),
+        json.loads((solver.parent / "run.json").read_text()),
+    )
     assert (document["exit_status"], document["verdict"]) == (1, "disagree")
     assert same | {"written": None} == document | {"written": None}
     shown = read_file(solver)

@@ -10,7 +10,7 @@ import jsonschema
 import numpy as np
 import pytest
 from counted_study import worked_out
-from program import PAST_ITS_END, short_scene
+from program import PAST_ITS_END, document, short_scene
 
 from validate.cli import main
 from validate.exit_status import ExitStatus, combined
@@ -22,18 +22,6 @@ from validate.studies.random_cars import random_cars
 from validate.studies.study import Study
 
 SCHEMA = json.loads(schema_text())
-CHECK = jsonschema.Draft202012Validator(SCHEMA)
-
-
-def no_constant(name: str) -> None:
-    raise AssertionError(f"{name} is no JSON")
-
-
-def document(text: str) -> dict[str, Any]:
-    """The text as strict JSON that keeps to the schema."""
-    data = json.loads(text, parse_constant=no_constant)
-    CHECK.validate(data)
-    return data
 
 
 def test_the_schema_is_one_and_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
@@ -76,8 +64,9 @@ def test_a_document_says_what_was_run_where_and_when(capsys: pytest.CaptureFixtu
 
 def test_numbers_that_do_not_exist_and_bytes_that_are_no_text_have_a_place_in_json() -> None:
     text = json_text({"a": [float("nan"), float("inf"), 1.0], "b": ({"c": -float("inf")},), "d": "\udcff"})
-    data = json.loads(text, parse_constant=no_constant)
-    assert data == {"a": [None, None, 1.0], "b": [{"c": None}], "d": "\\udcff"}
+    assert "NaN" not in text
+    assert "Infinity" not in text
+    assert json.loads(text) == {"a": [None, None, 1.0], "b": [{"c": None}], "d": "\\udcff"}
 
 
 def test_every_ending_of_a_comparison_keeps_to_the_schema(
@@ -132,8 +121,8 @@ def test_writing_on_the_way_takes_a_small_part_of_the_time(
         for _ in range(100):
             clock[0] += 0.5
             journal.keep()
-        assert document(target.read_text())["complete"] is False
+        assert document(target)["complete"] is False
     assert written[0] == 0.5
     assert len(written) <= 0.1 * clock[0] + 2
     assert max(np.diff(written)) <= 11.0
-    assert document(target.read_text())["complete"] is True
+    assert document(target)["complete"] is True
