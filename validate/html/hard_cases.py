@@ -15,7 +15,6 @@ from validate.hard.answer import Answer
 from validate.output.report import counted_as
 from validate.plain_text import shown, some_of
 
-ALLOWED = "a file that `pointcoord hard --json FILE` wrote"
 NAMED = 10  # cases that a sentence names
 
 
@@ -34,18 +33,9 @@ class Unexpected(BaseModel):
     outcome: str
     reason: str
 
-    @property
-    def words(self) -> str:
-        """For people."""
-        return f"{self.formulation} is {self.outcome} at {self.value:g}: {self.reason}"
-
 
 class Case(BaseModel):
-    """A hard case, tried; its texts are those of `validate.hard.case.Case`.
-
-    Attributes:
-        unexpected: answers that it does not allow.
-    """
+    """A hard case, tried; its texts are those of `validate.hard.case.Case`."""
 
     name: str
     group: str
@@ -104,16 +94,13 @@ class HardCases(BaseModel):
     def sentence(self) -> str:
         """What came of them in a few words."""
         scenes = sum(len({value for value, _ in one.answers}) for one in self.cases)
-        told = (
-            f"{counted_as(len(self.cases), 'hard case')} at {scenes} values compared with the many-digit "
-            "reference: "
-        )
-        found = [one.name for one in self.cases if any(a.outcome == "unjudged" for _, a in one.answers)]
-        unjudged = f"; some answers not judged: {some_of(found, NAMED)}" if found else ""
-        if self.as_expected:
-            return f"{told}all as expected{unjudged}"
-        other = some_of([one.name for one in self.cases if one.unexpected], NAMED)
-        return f"{told}disagrees, not as expected{': ' if other else ''}{other}{unjudged}"
+        count = counted_as(len(self.cases), "hard case")
+        other = [one.name for one in self.cases if one.unexpected]
+        came = "all as expected" if self.as_expected else "disagrees, not as expected"
+        named = f": {some_of(other, NAMED)}" if other and not self.as_expected else ""
+        left = [one.name for one in self.cases if any(a.outcome == "unjudged" for _, a in one.answers)]
+        unjudged = f"; some answers not judged: {some_of(left, NAMED)}" if left else ""
+        return f"{count} at {scenes} values compared with the many-digit reference: {came}{named}{unjudged}"
 
 
 def read_hard_cases(file: str) -> HardCases:
@@ -133,4 +120,5 @@ def read_hard_cases(file: str) -> HardCases:
         problem = "holds no hard cases"
     except (ValueError, RecursionError):
         problem = "is no JSON"
-    raise UsageError(f"--hard {shown(file)}: {shown(problem)}; allowed: {ALLOWED}")
+    allowed = "a file that `pointcoord hard --json FILE` wrote"
+    raise UsageError(f"--hard {shown(file)}: {shown(problem)}; allowed: {allowed}")

@@ -8,6 +8,7 @@ and (designs,) of what belongs to a design. The numbers of a design that could n
 
 from __future__ import annotations
 
+import re
 import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
@@ -37,6 +38,7 @@ SOLVED = "solved"
 # Rows that are computed or made text of together: every kind of file has the same bits, and as objects of
 # Python their numbers take some 10 MB.
 ROWS = 2048
+PLAIN = re.compile(r'"([^",\\]*)"')  # words that need no quotes in CSV
 # Numbers of a sweep's table that are copied at a time.
 PIECE = 2**20
 # Blocks of a motion in a group of rows of Parquet, which is compressed by itself: more make smaller files.
@@ -153,24 +155,19 @@ def _csv(blocks: Iterable[Block]) -> Iterator[str]:
 
 
 def _lines(block: list[NDArray[Any]]) -> str:
-    """Lines of numbers, each in as few digits as give its bits back, between columns of other kinds."""
-    numbers = [i for i, column in enumerate(block) if column.dtype.kind == "f"]
-    rows = np.stack([block[i] for i in numbers], axis=-1)
+    """Lines, each number in as few digits as give its bits back."""
+    if words := any(column.dtype.kind != "f" for column in block):
+        rows = list(zip(*(column.tolist() for column in block), strict=True))
+    else:
+        rows = np.stack(block, axis=-1).tolist()
     # Python's own texts of numbers take four times as long.
-    text = to_json(rows.tolist(), inf_nan_mode="constants").decode("ascii")
+    text = to_json(rows, inf_nan_mode="constants").decode()
     text = text.removeprefix("[[").removesuffix("]]").replace("],[", "\r\n")
-    if not np.isfinite(rows).all():
+    if words:
+        text = PLAIN.sub(r"\1", text)
+    if not all(np.isfinite(column).all() for column in block if column.dtype.kind == "f"):
         text = text.replace("NaN", "nan").replace("Infinity", "inf")
-    if len(numbers) < len(block):
-        before, after = (
-            [_words(c) for c in part] for part in (block[: numbers[0]], block[numbers[-1] + 1 :])
-        )
-        text = "\r\n".join(map(",".join, zip(*before, text.split("\r\n"), *after, strict=True)))
     return f"{text}\r\n"
-
-
-def _words(column: NDArray[Any]) -> list[str]:
-    return [f'"{word}"' if "," in word else word for word in map(str, column.tolist())]
 
 
 def _npz(stream: BinaryIO, blocks: Iterable[Block]) -> None:

@@ -113,15 +113,6 @@ def test_every_kind_of_file_gives_back_the_same_bits(
         assert np.abs(text - wanted[name]).max() <= most
 
 
-def test_parquet_without_pyarrow_is_refused_before_anything_is_solved(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "pyarrow.parquet", None)
-    assert main(["simulate", "steer", "-o", str(tmp_path / "m.parquet")]) == 2
-    assert "pip install 'pointcoord[parquet]'" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
 def test_instants_are_evenly_over_the_scene_s_time(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "steer", "--instants", "3", "-q"]) == 0
     times = [line.partition(",")[0] for line in capsys.readouterr().out.splitlines()]

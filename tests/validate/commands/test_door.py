@@ -11,8 +11,6 @@ from pathlib import Path
 import pytest
 from program import ENVIRONMENT, PROGRAM, ROOT, complaints, in_shell, run, short_scene
 
-from validate.cli import main
-
 LONG = "400000"  # samples that take far longer than any test waits
 
 
@@ -205,16 +203,6 @@ def test_a_validate_of_another_distribution_is_told_by_name(tmp_path: Path) -> N
     assert "pip uninstall configthing, then pip install --force-reinstall --no-deps pointcoord" in line
 
 
-def test_without_the_extra_one_line_names_it(tmp_path: Path) -> None:
-    missing = 'raise ModuleNotFoundError("No module named \'flint\'", name="flint")\n'
-    (tmp_path / "flint.py").write_text(missing)
-    done = with_fake(tmp_path, "hard", "--list")
-    assert (done.returncode, done.stdout) == (2, "")
-    line = only_line(done.stderr)
-    assert "'flint'" in line
-    assert "pip install 'pointcoord[validate]'" in line
-
-
 @pytest.mark.parametrize(
     ("words", "program"),
     [
@@ -289,13 +277,3 @@ def test_every_module_says_which_extra_it_lacks() -> None:
     lines = done.stdout.splitlines()
     assert len(lines) > 20  # the reference, the hard cases and the studies need them
     assert [line for line in lines if line.split()[1] != "True"] == []
-
-
-def test_new_says_which_car_it_copied_and_how_to_have_another(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A name is no kind of suspension: `new five_link` alone is no five-link."""
-    assert main(["new", str(tmp_path / "five_link")]) == 0
-    said = capsys.readouterr().out
-    assert "copied from double-wishbone" in said
-    assert "--from SCENE" in said

@@ -21,8 +21,14 @@ def same(one: Scene, other: Scene) -> bool:
 
 
 @pytest.mark.parametrize("scene", built_in_scenes())
-def test_a_copy_of_a_built_in_scene_is_that_scene(scene: str, tmp_path: Path) -> None:
+def test_a_copy_of_a_built_in_scene_is_that_scene_and_says_of_which(
+    scene: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A name is no kind of suspension: `new five_link` alone is no five-link."""
     assert same(*copied(scene, tmp_path / "mine"))
+    said = capsys.readouterr().out
+    assert f"copied from {scene}" in said
+    assert "--from SCENE" in said
 
 
 CORNER = """

@@ -1,6 +1,7 @@
 """What cannot be done is said in one line before anything is solved, and nothing is written."""
 
 import shlex
+import sys
 from pathlib import Path
 
 import pytest
@@ -223,6 +224,30 @@ def test_what_cannot_be_done_is_one_line_that_says_why_and_nothing_is_written(
         assert [part for part in parts if part not in said] == [], (line[:200], said)
         assert "n" * 61 not in said
         assert "defect" not in said
+    assert contents(folder) == before
+
+
+@pytest.mark.parametrize(
+    ("line", "package", "extra"),
+    [
+        ("simulate steer -o m.parquet", "pyarrow.parquet", "parquet"),
+        ("report OUT steer", "jinja2", "report"),
+        ("plot steer -o a.svg", "matplotlib", "plot"),
+        ("export steer", "validate.peers.mjcf", "peers"),
+    ],
+)
+def test_without_a_package_the_extra_is_named(
+    line: str,
+    package: str,
+    extra: str,
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    before = contents(folder)
+    assert main(line.split()) == 2
+    assert f"pip install 'pointcoord[{extra}]'" in capsys.readouterr().err
     assert contents(folder) == before
 
 

@@ -487,15 +487,8 @@ def test_the_page_loads_nothing_and_forbids_to_and_takes_names_as_text(bounce: D
     assert len(set(ids)) == len(ids)
 
 
-def test_a_folder_called_as_a_scene_can_be_had_and_without_its_packages_the_extra_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_folder_called_as_a_scene_can_be_had(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    with monkeypatch.context() as patch:
-        patch.setitem(sys.modules, "jinja2", None)
-        assert main(["report", "out", "steer"]) == 2
-        assert "pip install 'pointcoord[report]'" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
     assert main(["report", "-q", "./steer/", "steer"]) == 0
     assert (tmp_path / "steer" / "index.html").is_file()
 

@@ -7,7 +7,7 @@ import pytest
 from pointcoord import Scene
 from validate.comparison.compare import Outcome, compare
 from validate.output.report import HEAD, heading, outcome_parts
-from validate.output.table import text_of
+from validate.output.table import Table
 from validate.tables.units import degrees_of
 
 
@@ -18,18 +18,10 @@ def heaving() -> Outcome:
 
 
 def lines_of(outcome: Outcome) -> dict[str, list[str]]:
-    """The table's cells by quantity; its widths are those of the line of dashes."""
-    _, head, dashes, *lines = text_of(outcome_parts(outcome)).splitlines()
-    starts = [0] + [at + 2 for at in range(len(dashes)) if dashes[at : at + 2] == "  "]
-    ends = [*(start - 2 for start in starts[1:]), None]
-    rows = {}
-    for line in lines:
-        if line.startswith("  note: "):
-            break
-        cells = [line[start:end].strip() for start, end in zip(starts, ends, strict=True)]
-        rows[cells[0]] = cells[1:]
-    assert [head[start:end].strip() for start, end in zip(starts, ends, strict=True)] == [*HEAD]
-    return rows
+    """The table's cells by quantity."""
+    (table,) = (part for part in outcome_parts(outcome) if isinstance(part, Table))
+    assert table.head == HEAD
+    return {quantity: [*cells] for quantity, *cells in table.texts}
 
 
 def of_position(outcome: Outcome, **changes: tuple[float, float, str]) -> Outcome:

@@ -62,7 +62,8 @@ def _is_drawn(case: Case) -> bool:
 def _row(case: Case) -> tuple[str | Cell, ...]:
     verdict, told = "agrees", "as expected"
     if case.unexpected:
-        verdict, told = "disagrees", f"not as expected: {'; '.join(one.words for one in case.unexpected)}"
+        wrong = (f"{u.formulation} is {u.outcome} at {u.value:g}: {u.reason}" for u in case.unexpected)
+        verdict, told = "disagrees", f"not as expected: {'; '.join(wrong)}"
     return Cell(case.name, case.group), case.why, Cell(verdict, told, verdict), _answers(case)
 
 
