@@ -44,7 +44,7 @@ def page(run: Run, files: Mapping[str, str]) -> str:
     )
     # Our own text and plotly's, in which no user has a say: all that goes into the page as it is.
     as_it_is = jinja2.utils.markupsafe.Markup
-    made = [(section, blocks) for section in sections() if (blocks := section.blocks(run))]
+    made = [(section, blocks) for section in sections() if (blocks := tuple(section.blocks(run)))]
     names = dict.fromkeys(name for _, blocks in made for block in blocks for name in block.scripts)
     scripts = [_script(name) for name in names]
     hashes = (b64encode(sha256(script.encode()).digest()).decode() for script in scripts)

@@ -68,32 +68,31 @@ class Drawn:
         return (Solution("pointcoord", times, self.motion.numbers, Accuracy(np.ones(len(times)))),)
 
 
+@dataclass(frozen=True)
 class Drawings:
-    """Keeps the scenes of a run that are drawn; of the others tables tell, and their numbers are let go.
+    """The scenes of a run that are drawn; of the others tables tell, and their numbers are let go.
 
-    Args:
+    Attributes:
         count: how many scenes the run has.
     """
 
-    def __init__(self, count: int) -> None:
-        self.kept: list[Drawn] = []
-        self._count = count
+    count: int
+    kept: list[Drawn] = field(default_factory=list)
 
     def add(self, examined: Examined, scene: Scene | None) -> None:
         """Keep a scene if it is one of the first, or one of some more that were compared and do not agree."""
         disagrees = examined.outcomes and examined.status is not ExitStatus.AGREE
-        room = FIRST + FURTHER if disagrees or self._count <= FIRST + FURTHER else FIRST
-        if len(self.kept) < room:
-            self.kept.append(Drawn(examined, scene, None if scene is None else _motion(scene)))
-
-
-def _motion(scene: Scene) -> Motion | None:
-    try:
-        return simulate(scene)
-    except PointcoordError as error:
-        # Why it is refused is told already.
-        partial = error.partial
-        return partial if isinstance(partial, Motion) else None
+        room = FIRST + FURTHER if disagrees or self.count <= FIRST + FURTHER else FIRST
+        if len(self.kept) >= room:
+            return
+        motion = None
+        if scene is not None:
+            try:
+                motion = simulate(scene)
+            except PointcoordError as error:
+                # Why it is refused is told already.
+                motion = error.partial if isinstance(error.partial, Motion) else None
+        self.kept.append(Drawn(examined, scene, motion))
 
 
 @dataclass(frozen=True)

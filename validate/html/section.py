@@ -6,7 +6,7 @@ makes blocks of a run; a block is plain data and knows the template that draws i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -53,7 +53,7 @@ class Section:
     name: str
     title: str
     place: int
-    blocks: Callable[[Run], Sequence[Block]]
+    blocks: Callable[[Run], Iterable[Block]]
     folded: bool = False
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from validate.cost.report import Report
 from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
@@ -22,11 +21,9 @@ SCENES, TABLES, LINES = 8, 60, 120
 LINE = 1.5  # pixels, of a curve
 
 
-def _blocks(run: Run) -> Sequence[Block]:
-    return [] if run.cost is None else list(_told(run.cost, run.head.kind == "cost"))
-
-
-def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
+def _blocks(run: Run) -> Iterator[Block]:
+    if (cost := run.cost) is None:
+        return
     # Imported here: pandas takes half a second, and most pages tell of no cost.
     from validate.cost.findings import timed
     from validate.cost.looks import KEY, looks
@@ -51,7 +48,7 @@ def _told(cost: Report, of_this_run: bool) -> Iterator[Block]:
     yield from pictures
     if len(scenes) > SCENES:
         yield Paragraph(f"Drawn are the first {SCENES} of {len(scenes)} scenes.")
-    if of_this_run:
+    if run.head.kind == "cost":
         yield from (replace(one, rows=one.rows[:LINES], folded=True) for one in cost.tables()[:TABLES])
     for row in cost.rows:
         if row.verdict == "failed":

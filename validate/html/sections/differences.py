@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from validate.comparison.compare import Comparison, Outcome
 from validate.comparison.over_time import over_time
 from validate.html.plot import Panel, Plots, fewer, gaps
-from validate.html.run import Drawn, Run
+from validate.html.run import Run
 from validate.html.section import Block, Section, which
 from validate.output.report import about, pair_of, worst_rows
 
@@ -18,19 +18,15 @@ Array = NDArray[np.float64]
 
 
 def _blocks(run: Run) -> Sequence[Block]:
-    blocks = [block for one in run.drawn for block in _of_scene(one, run.points)]
-    return [*which(run), *blocks] if blocks else []
-
-
-def _of_scene(one: Drawn, points: int) -> Iterator[Block]:
-    if one.scene is None:
-        return
-    for outcome in one.examined.outcomes:
+    blocks: list[Block] = []
+    compared = ((one.scene, outcome) for one in run.drawn if one.scene for outcome in one.examined.outcomes)
+    for scene, outcome in compared:
         rows = worst_rows(outcome)
-        panels = [_panel(outcome, row, one.scene.instants, points) for row in rows]
+        panels = [_panel(outcome, row, scene.instants, run.points) for row in rows]
         if drawn := tuple(panel for panel in panels if panel is not None):
             apart = any(row.verdict == "disagrees" for row in rows)
-            yield Plots(f"{outcome.scene}: {pair_of(outcome)}", drawn, at_once=apart)
+            blocks.append(Plots(f"{outcome.scene}: {pair_of(outcome)}", drawn, at_once=apart))
+    return [*which(run), *blocks] if blocks else []
 
 
 def _panel(outcome: Outcome, row: Comparison, instants: Array, points: int) -> Panel | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -21,8 +21,9 @@ MOST = 300
 HEAD = ("number", "verdict", "largest difference", "tolerance", "at", "what would explain it, or why not")
 
 
-def _blocks(run: Run) -> Sequence[Block]:
-    return [block for name, file in run.record.files.items() for block in _of_file(run, name, file)]
+def _blocks(run: Run) -> Iterator[Block]:
+    for name, file in run.record.files.items():
+        yield from _of_file(run, name, file)
 
 
 def _of_file(run: Run, name: str, file: DataOutcome) -> Iterator[Block]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from validate.html.hard_cases import Case, HardCases
+from validate.html.hard_cases import Case
 from validate.html.plot import Panel, Plots, Trace, marks, panel, plain
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
@@ -28,14 +28,12 @@ FEWEST = 3
 MOST = 120
 
 
-def _blocks(run: Run) -> Sequence[Block]:
-    return [] if run.hard is None else list(_told(run.hard, run.head.kind == "hard"))
-
-
-def _told(hard: HardCases, of_this_run: bool) -> Iterator[Block]:
+def _blocks(run: Run) -> Iterator[Block]:
+    if (hard := run.hard) is None:
+        return
     # A run whose results say nothing of times has not noted when it began.
     when = "" if hard.started is None else f", {hard.started}"
-    whose = "" if of_this_run else f"Tried by `{hard.command_line}`{when}. "
+    whose = "" if run.head.kind == "hard" else f"Tried by `{hard.command_line}`{when}. "
     yield Paragraph(f"{whose}{hard.sentence}. {WORDS}")
     outcomes = dict.fromkeys(outcome for found in hard.counts.values() for outcome in found)
     rows = tuple((name, *(str(found.get(o, 0)) for o in outcomes)) for name, found in hard.counts.items())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from validate.html.run import Run
@@ -12,26 +12,25 @@ from validate.output.table import Table
 from validate.plain_text import shown
 
 
-def _blocks(run: Run) -> Sequence[Block]:
+def _blocks(run: Run) -> Iterator[Block]:
+    rows = tuple((name, shown(value)) for name, value in _told(run))
+    yield Table(("what", "value"), rows, caption="What this page was made by.")
+
+
+def _told(run: Run) -> Iterator[tuple[str, str]]:
     document = run.document
-    told = {
-        "command": document["command_line"],
-        "program": " ".join(document["program"].values()),
-        **({} if document["started"] is None else {"started": document["started"]}),
-        "exit status": f"{document['exit_status']}, {document['verdict']}",
-        **dict(_settings(run)),
-        # Where times were measured stands with them; where the page is made tells nothing of them.
-        **({} if run.head.kind == "cost" else dict(_flat(document["machine"]))),
-    }
-    rows = tuple((name, shown(value)) for name, value in told.items())
-    return [Table(("what", "value"), rows, caption="What this page was made by.")]
-
-
-def _settings(run: Run) -> Iterator[tuple[str, str]]:
+    yield "command", document["command_line"]
+    yield "program", " ".join(document["program"].values())
+    if document["started"] is not None:
+        yield "started", document["started"]
+    yield "exit status", f"{document['exit_status']}, {document['verdict']}"
     if pairs := dict.fromkeys(map(pair_of, run.record.outcomes)):
         yield "compared", "; ".join(pairs)
     if run.record.examined:
         yield "differences", held_to(run.record.factor)
+    # Where times were measured stands with them; where the page is made tells nothing of them.
+    if run.head.kind != "cost":
+        yield from _flat(document["machine"])
 
 
 def _flat(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

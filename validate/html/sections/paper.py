@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validate.ci.record import Record
 from validate.html.plot import OTHER, OURS, Panel, Plots, Trace, curve, marks, panel
 from validate.html.run import Run
 from validate.html.section import Block, Paragraph, Section
@@ -22,8 +21,17 @@ FIGURES = (
 DASHES = ("solid", "dash")
 
 
-def _blocks(run: Run) -> Sequence[Block]:
-    return [*(_of_paper(run.record.paper) if run.record.paper else ()), *_printed(run.record)]
+def _blocks(run: Run) -> Iterator[Block]:
+    record = run.record
+    if record.paper:
+        yield from _of_paper(record.paper)
+    # What the formulas as printed get wrong.
+    for part in printed_parts(record.examined, record.findings):
+        # A table has its caption itself.
+        if isinstance(part, Table):
+            yield part
+        elif not record.findings or not part.endswith("against the mended ones."):
+            yield Paragraph(part)
 
 
 def _of_paper(rows: Sequence[PaperRow]) -> Iterator[Block]:
@@ -65,16 +73,6 @@ def _panels(rows: Sequence[PaperRow]) -> Iterator[Panel]:
             crosses = marks("printed", times, printed, OTHER)
             rings = marks("computed", times, ours, OURS, "circle-open")
             yield panel(f"{words}, {component}, over time", "time [s]", f"[{unit}]", (crosses, rings))
-
-
-def _printed(record: Record) -> Iterator[Block]:
-    """What the formulas as printed get wrong."""
-    for part in printed_parts(record.examined, record.findings):
-        # A table has its caption itself.
-        if isinstance(part, Table):
-            yield part
-        elif not record.findings or not part.endswith("against the mended ones."):
-            yield Paragraph(part)
 
 
 SECTION = Section("paper", "The paper", 60, _blocks, folded=True)

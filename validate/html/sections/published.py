@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from validate.html.plot import OTHER, OURS, Plots, curve, marks, panel, plain
 from validate.html.run import Run
@@ -11,8 +11,9 @@ from validate.output.table import Cell, Table
 from validate.published.tables import MODELS, Column, Published
 
 
-def _blocks(run: Run) -> Sequence[Block]:
-    return [block for one in run.published for block in _of_table(one)]
+def _blocks(run: Run) -> Iterator[Block]:
+    for one in run.published:
+        yield from _of_table(one)
 
 
 def _of_table(one: Published) -> Iterator[Block]:
