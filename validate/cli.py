@@ -104,7 +104,6 @@ def _run(words: list[str], console: Console) -> ExitStatus:
     try:
         options = _parsed(words)
     except Answer as answer:
-        console.require("it is where the answer goes")
         console.say(str(answer).rstrip())
         return ExitStatus.AGREE
     options.command = ("pointcoord", *words)

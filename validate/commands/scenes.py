@@ -32,7 +32,6 @@ STATES = tuple(
 
 def run_scenes(options: argparse.Namespace, console: Console) -> ExitStatus:
     """List the built-in scenes with their titles."""
-    console.require("it is where the list goes")
     names = built_in_scenes()
     width = max(map(len, names))
     console.say("\n".join(f"{name.ljust(width)}  {Scene.load(name).title}" for name in names))
@@ -53,7 +52,6 @@ def run_draw(options: argparse.Namespace, console: Console) -> ExitStatus:
 
 def run_plan(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Say what a scene would compute, and where its drawing stands."""
-    console.require("it is where a plan goes")
     scene, name = load_scene(options.scene), name_of(options.scene)
     plan = plan_effects(scene.effects, unreported=scene.unreported_points)
     with told_as(name):

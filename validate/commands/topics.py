@@ -36,7 +36,6 @@ TOPICS = {
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
     """Print a page, or which there are."""
-    console.require("it is where the page goes")
     if options.topic is None:
         console.say("\n".join(f"{n.ljust(12)}{page(n).splitlines()[0].lstrip('# ')}" for n in TOPICS))
     elif options.topic in TOPICS:

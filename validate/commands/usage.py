@@ -20,8 +20,8 @@ from pointcoord import Scene, SceneError
 from validate.commands.pages import page
 from validate.errors import UsageError
 from validate.exit_status import HELP, ExitStatus
-from validate.output.console import Console
-from validate.output.files import require_known_ending, require_writable, write_content
+from validate.output.console import STANDARD_OUTPUT, Console
+from validate.output.files import OutputError, require_known_ending, require_writable, write_content
 from validate.plain_text import one_line, shown
 
 STANDARD_INPUT = "-"
@@ -158,10 +158,9 @@ def require_results(
         if other != option:
             raise UsageError(f"{other} and {option} are both {shown(target)}; give each a file of its own")
     console.quiet, console.mute = getattr(options, "quiet", False), "-" in wanted.values()
-    if (says and not console.quiet) or console.mute:
-        console.require(
-            "use --quiet, and name files for results" if says else f"use {next(iter(results))} FILE"
-        )
+    if sys.stdout is None and ((says and not console.quiet) or console.mute):
+        instead = "use --quiet, and name files for results" if says else f"use {next(iter(results))} FILE"
+        raise OutputError(STANDARD_OUTPUT, f"is closed; {instead}")
     for option, target in wanted.items():
         if target != "-":
             if endings and option in endings:

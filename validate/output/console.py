@@ -38,15 +38,6 @@ class Console:
         """The files that the run has written, in words."""
         return "; ".join(f"{target} holds {what}" for target, what in self.written.items())
 
-    def require(self, what_else: str) -> None:
-        """Refuse a closed standard output, before anything is solved.
-
-        Raises:
-            OutputError: it is closed; the message says what else can be done.
-        """
-        if sys.stdout is None:
-            raise OutputError(STANDARD_OUTPUT, f"is closed; {what_else}")
-
     def say(self, text: str) -> None:
         """Lines for people; nothing if the run is quiet or mute."""
         if not self.quiet and not self.mute:

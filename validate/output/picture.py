@@ -7,8 +7,7 @@ the topology.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from textwrap import wrap
 from xml.sax.saxutils import escape
 
@@ -48,50 +47,48 @@ text { font: 11px sans-serif; fill: #222 }
 """
 
 
-@dataclass(frozen=True)
-class View:
-    """A direction to look along: the car's axes that point right and up on the paper."""
-
-    title: str
-    right: Array
-    up: Array
-
-
 def svg(drawing: ClosedDrawing) -> str:
     """The picture of a scene's drawing; what closing moves by more than a pixel is drawn a second time."""
-    scene, topology = drawing.scene, drawing.mechanism.topology
-    points = {name: np.array(scene.mechanism.points[name]) for name in topology.points}
-    numbers = {name: str(i) for i, name in enumerate(points, 1)}
+    part, topology = drawing.scene.mechanism, drawing.mechanism.topology
+    points = {name: np.array(part.points[name]) for name in topology.points}
     width, top = 3 * VIEW + 4 * MARGIN, 2 * LINE + MARGIN
     lines = [
-        f"{numbers[name]}  {name}: {', '.join(f'{c:.6g}' for c in place)} mm"
+        f"{i}  {name}: {', '.join(f'{c:.6g}' for c in place)} mm"
         f"{' (on the chassis)' if name in topology.chassis else ''}"
-        for name, place in points.items()
+        for i, (name, place) in enumerate(points.items(), 1)
     ]
-    rows, below_lines = -(-len(lines) // 2), wrap(drawing.words, LETTERS)
-    height = top + VIEW + MARGIN + (rows + len(below_lines) + 3) * LINE
+    rows, below_lines = -(-len(lines) // 2), [KEY, *wrap(drawing.words, LETTERS)]
+    below = top + VIEW + MARGIN + LINE
+    height = below + (rows + len(below_lines) + 1) * LINE
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0f}" height="{height:.0f}" '
         f'viewBox="0 0 {width:.0f} {height:.0f}">',
         f'<style>{STYLE}</style><rect width="100%" height="100%" fill="#fff"/>',
-        _text(MARGIN, 1.5 * LINE, scene.title or "scene", "title"),
+        _text(MARGIN, 1.5 * LINE, drawing.scene.title or "scene", "title"),
     ]
-    up, right = np.array(scene.mechanism.up), np.array(scene.mechanism.right)
+    up, right = np.array(part.up), np.array(part.right)
     rearward = np.cross(right, up)
+    # What each is called, and the car's axes that point right and down on the paper.
     views = (
-        View(f"from behind: {_named(right)} right, {_named(up)} up", right, up),
-        View(f"from the left: {_named(rearward)} right, {_named(up)} up", rearward, up),
-        View(f"from above: {_named(right)} right, {_named(rearward)} down", right, -rearward),
+        (f"from behind: {_named(right)} right, {_named(up)} up", right, -up),
+        (f"from the left: {_named(rearward)} right, {_named(up)} up", rearward, -up),
+        (f"from above: {_named(right)} right, {_named(rearward)} down", right, rearward),
     )
     # One scale for all views, so that lengths can be compared between them.
     scale = VIEW / max(float(np.ptp([p @ a for p in points.values()])) for a in (right, up, rearward))
-    for i, view in enumerate(views):
-        corner = (MARGIN + i * (VIEW + MARGIN), top)
-        parts += _view(view, corner, scale, topology, points, drawing.places, numbers)
-    below = top + VIEW + MARGIN + LINE
+    for i, (title, across, down) in enumerate(views):
+        flat = {name: np.array([place @ across, place @ down]) for name, place in points.items()}
+        middle = 0.5 * (np.min([*flat.values()], axis=0) + np.max([*flat.values()], axis=0))
+        corner = np.array([MARGIN + i * (VIEW + MARGIN), top])
+        shift = corner + 0.5 * VIEW - scale * middle
+        drawn = {name: shift + scale * place for name, place in flat.items()}
+        closed = {
+            name: shift + scale * np.array([place @ across, place @ down])
+            for name, place in drawing.places.items()
+        }
+        parts += _view(title, corner, topology, drawn, closed)
     for i, line in enumerate(lines):
         parts.append(_text(MARGIN + (i // rows) * width / 2, below + (i % rows) * LINE, line))
-    below_lines = [KEY, *below_lines]
     for i, line in enumerate(below_lines):
         parts.append(_text(MARGIN, below + (rows + 0.5 + i) * LINE, line))
     return "\n".join([*parts, "</svg>", ""])
@@ -105,29 +102,14 @@ def _named(direction: Array) -> str:
     return f"({', '.join(f'{c:.3g}' for c in direction)})"
 
 
-def _view(
-    view: View,
-    corner: tuple[float, float],
-    scale: float,
-    topology: Topology,
-    points: Places,
-    closed: Places,
-    numbers: Mapping[str, str],
-) -> list[str]:
-    flat = {name: np.array([p @ view.right, -(p @ view.up)]) for name, p in points.items()}
-    middle = 0.5 * (np.min(list(flat.values()), axis=0) + np.max(list(flat.values()), axis=0))
-    centre = np.array(corner) + 0.5 * VIEW
-
-    def at(place: Array) -> Array:
-        return np.asarray(centre + scale * (np.array([place @ view.right, -(place @ view.up)]) - middle))
-
-    drawn = {name: at(p) for name, p in points.items()}
-    moved = {name: at(p) for name, p in closed.items()}
+def _view(title: str, corner: Array, topology: Topology, drawn: Places, moved: Places) -> list[str]:
+    """A view in its frame, of points where they are on the paper, (2,), as drawn and as closed."""
     room = 0.45 * MARGIN
+    frame = corner + np.array([[-room, -room], [VIEW + room, VIEW + room]])
+    (x, y), (side, _) = frame[0], frame[1] - frame[0]
     parts = [
-        f'<rect class="frame" x="{corner[0] - room:.1f}" y="{corner[1] - room:.1f}" '
-        f'width="{VIEW + 2 * room:.1f}" height="{VIEW + 2 * room:.1f}"/>',
-        _text(corner[0] - room, corner[1] - room - 4, view.title),
+        f'<rect class="frame" x="{x:.1f}" y="{y:.1f}" width="{side:.1f}" height="{side:.1f}"/>',
+        _text(x, y - 4, title),
     ]
     for body in topology.bodies.values():
         ends = " ".join(f"{x:.1f},{y:.1f}" for x, y in (drawn[name] for name in body))
@@ -141,29 +123,23 @@ def _view(
     for name, (x, y) in drawn.items():
         kind = "chassis" if name in topology.chassis else "moving"
         parts.append(f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="3"/>')
-    frame = np.array(corner) + np.array([[-room, -room], [VIEW + room, VIEW + room]])
-    return parts + [_text(x, y, text, "number") for x, y, text in _labels(drawn, numbers, frame)]
+    return [*parts, *_labels(drawn, frame)]
 
 
-def _labels(
-    drawn: Mapping[str, Array], numbers: Mapping[str, str], frame: Array
-) -> list[tuple[float, float, str]]:
+def _labels(drawn: Places, frame: Array) -> Iterator[str]:
     """A number beside every point, where there is room; points that fall together on the paper share one."""
     groups: list[tuple[Array, list[str]]] = []
-    for name, place in drawn.items():
-        for other, together in groups:
-            if np.abs(other - place).max() < TOGETHER:
-                together.append(numbers[name])
-                break
+    for i, place in enumerate(drawn.values(), 1):
+        near = (together for other, together in groups if np.abs(other - place).max() < TOGETHER)
+        if (together := next(near, None)) is not None:
+            together.append(str(i))
         else:
-            groups.append((place, [numbers[name]]))
-    found: list[tuple[float, float, str]] = []
+            groups.append((place, [str(i)]))
     taken = list(drawn.values())
     for place, together in groups:
         text = ", ".join(together)
-        wide = LETTER * len(text)
-        around = place + np.array(AROUND) * np.array([6.0 + 0.5 * wide, 11.0])
-        half = np.array([0.5 * wide, 6.0])
+        half = np.array([0.5 * LETTER * len(text), 6.0])
+        around = place + np.array(AROUND) * np.array([6.0 + half[0], 11.0])
         others = np.array([other for other in taken if np.abs(other - place).max() >= TOGETHER])
         others = others.reshape(-1, 2)  # none where all points fall together
         # A number is wider than it is high, and reaches further to its sides.
@@ -172,8 +148,7 @@ def _labels(
         clear[~((frame[0] <= around - half) & (around + half <= frame[1])).all(axis=1)] = 0.0
         best = around[int(np.argmax(clear))]
         taken.append(best)
-        found.append((best[0], best[1] + 4.0, text))
-    return found
+        yield _text(best[0], best[1] + 4.0, text, "number")
 
 
 def _line(kind: str, start: Array, end: Array) -> str:
