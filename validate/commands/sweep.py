@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +46,8 @@ EXAMPLES = (
     "POINT.AXIS=START:STOP:COUNT, =A,B,C, =normal:SIGMA or =uniform:HALF, in finite mm; == for places, not "
     "offsets"
 )
-KINDS = ("normal", "uniform")
+NORMAL = "normal"
+KINDS = (NORMAL, "uniform")
 
 
 def run(options: argparse.Namespace, console: Console) -> ExitStatus:
@@ -110,54 +110,39 @@ def _seen(blocks: Iterator[Sweep], summary: Summary, told: Told) -> Iterator[Swe
         yield block
 
 
-@dataclass(frozen=True)
-class _Vary:
-    """One `--vary`, read: values, or the kind and the size of what is random."""
-
-    coordinate: str
-    offsets: bool
-    values: Array
-    kind: str = ""
-
-
 def _designs(scene: Scene, options: argparse.Namespace) -> Designs:
     """What the command line asks for."""
     if bool(options.vary) == bool(options.designs):
         problem = "both --vary and --designs" if options.vary else "nothing varies"
         raise UsageError(f"{problem}; give --vary {EXAMPLES}, once or more, or --designs FILE.csv")
-    varied = [_read(text, scene) for text in options.vary]
-    random = [one for one in varied if one.kind]
+    varied: dict[str, Array | tuple[str, float]] = {}
+    for text in options.vary:
+        coordinate, values = _read(text, scene)
+        if coordinate in varied:
+            raise SweepError(f"--vary {shown(coordinate)}", "is given twice", "once")
+        varied[coordinate] = values
+    random = {name: one for name, one in varied.items() if isinstance(one, tuple)}
     if not random and (options.count is not None or options.seed is not None):
         raise UsageError("--count and --seed are for what is random: --vary POINT.AXIS=normal:SIGMA")
     if options.designs:
         return _designs_of_file(scene, options.designs)
-    names = [one.coordinate for one in varied]
-    if twice := [name for name in names if names.count(name) > 1]:
-        raise SweepError(f"--vary {shown(twice[0])}", "is given twice", "once")
     if not random:
-        places, offsets = (
-            {one.coordinate: one.values for one in varied if one.offsets is relative}
-            for relative in (False, True)
-        )
-        ordered = grid_of(scene, places, offsets).columns
-        # In the order of the command line, whichever are offsets.
-        return grid_of(scene, {name: ordered[name].values for name in names})
+        return grid_of(scene, {name: one for name, one in varied.items() if not isinstance(one, tuple)})
     if len(random) < len(varied):
         raise UsageError("--vary gives random values and a grid at once; give either")
-    if options.count is None or options.count > MOST_VALUES:
+    count = options.count
+    if count is None or count > MOST_VALUES:
         raise UsageError(f"how many designs at random? give --count N, 1 to {MOST_VALUES}")
-    generator, drawn = np.random.default_rng(options.seed or 0), {}
-    for one in varied:
-        size, count = float(one.values[0]), options.count
-        normal = one.kind == "normal"
-        drawn[one.coordinate] = (
-            generator.normal(0.0, size, count) if normal else generator.uniform(-size, size, count)
-        )
+    generator = np.random.default_rng(options.seed or 0)
+    drawn = {
+        name: generator.normal(0.0, size, count) if kind == NORMAL else generator.uniform(-size, size, count)
+        for name, (kind, size) in random.items()
+    }
     return designs_of(scene, offsets=drawn)
 
 
-def _read(text: str, scene: Scene) -> _Vary:
-    """One `--vary`."""
+def _read(text: str, scene: Scene) -> tuple[str, Array | tuple[str, float]]:
+    """The coordinate of one `--vary`, and where it is drawn, mm; of what is random its kind and its size."""
     what = f"--vary {shown(text)}"
     coordinate, _, values = text.partition("=")
     coordinate, offsets, values = coordinate.strip(), not values.startswith("="), values.removeprefix("=")
@@ -165,11 +150,14 @@ def _read(text: str, scene: Scene) -> _Vary:
         raise SweepError(what, "names no coordinate", ", ".join(meant))
     kind, _, size = values.partition(":")
     if kind.strip() in KINDS:
-        spread = finite(what, [size], EXAMPLES)
-        if not offsets or spread[0] < 0.0:
+        spread = float(finite(what, [size], EXAMPLES)[0])
+        if not offsets or spread < 0.0:
             raise SweepError(what, "is no spread about the drawing", "0 mm or more, after one =")
-        return _Vary(coordinate, True, spread, kind.strip())
-    return _Vary(coordinate, offsets, values_of(what, values, EXAMPLES))
+        return coordinate, (kind.strip(), spread)
+    places = values_of(what, values, EXAMPLES)
+    if offsets:
+        places = grid_of(scene, offsets={coordinate: places}).columns[coordinate].values
+    return coordinate, places
 
 
 def _designs_of_file(scene: Scene, path: str) -> Designs:
