@@ -31,22 +31,6 @@ def test_a_point_that_is_missing_or_no_number_is_refused_by_name(table: Points) 
 
 
 @by_car
-def test_a_drawing_that_loses_rank_is_refused_with_what_is_free_and_what_is_redundant(car: SampleCar) -> None:
-    """An arm drawn straight up: its height and its rod say the same."""
-    front = car.points["lower_arm_front"]
-    points = {**car.points, "lower_ball_joint": (front[0], front[1], front[2] + 300.0)}
-    with pytest.raises(MechanismError, match="is not determined: free at the drawing: ") as caught:
-        build_mechanism(car.topology, points, AXES)
-    rise = "rise of lower_ball_joint over lower_arm_front"
-    assert {rise, "link lower_ball_joint - lower_arm_front"} <= set(caught.value.names)
-    assert (
-        f"redundant or contradictory at the drawing: link lower_ball_joint - lower_arm_front, {rise}"
-        in str(caught.value)
-    )
-    assert "of lower_ball_joint" in str(caught.value).partition("redundant")[0]
-
-
-@by_car
 def test_a_link_without_length_is_refused_by_name(car: SampleCar) -> None:
     link = next(c for c in car.topology.constraints if isinstance(c, Link))
     points = {**car.points, link.start: car.points[link.end]}

@@ -15,11 +15,11 @@ RACK = {"polynomial": [0.0, 10.0]}
 RADIUS = 300.0
 
 
-def with_inputs(inputs: Mapping[str, object], wheel_radius: float | None = RADIUS, **laws: object) -> Scene:
+def with_inputs(inputs: Mapping[str, object], **laws: object) -> Scene:
     """A scene of the wishbone with further inputs that can be driven."""
     tables = tomllib.loads((MECHANISMS / f"{WISHBONE['type']}.toml").read_text())
     tables["inputs"] = {**tables["inputs"], **inputs}
-    own = {**WISHBONE, "type": None, "wheel_radius": wheel_radius}
+    own = {**WISHBONE, "type": None, "wheel_radius": RADIUS}
     return Scene.from_mapping(
         {
             "mechanism": {**own, **tables},
@@ -68,16 +68,6 @@ CONSTANT = {"constant": 1.5}
     ("inputs", "laws", "words"),
     [
         (
-            {},
-            {},
-            ("2 freedoms", "rack", "free are", "1 more of arm_angle, steering_wheel, wheel_travel"),
-        ),
-        (
-            {},
-            {"arm_angle": CONSTANT, "wheel_travel": CONSTANT},
-            ("2 freedoms", "3 are driven", "leave 1 out"),
-        ),
-        (
             {"again": {"travel": "rack"}},
             {"arm_angle": CONSTANT, "again": CONSTANT},
             ("rack and again both drive the travel of rack",),
@@ -87,14 +77,13 @@ CONSTANT = {"constant": 1.5}
             {"c": CONSTANT, "roll": ROLL},
             ("roll turns the chassis about wheel_centre, which it does not carry",),
         ),
-        ({"c": {"contact": ["wheel_axis_inner", "wheel_centre"]}}, {"c": CONSTANT}, ("wheel_radius",)),
     ],
 )
 def test_inputs_that_do_not_hold_the_mechanism_are_refused_by_name(
     inputs: dict[str, object], laws: dict[str, object], words: tuple[str, ...]
 ) -> None:
     with pytest.raises(SceneError) as caught:
-        with_inputs(inputs, None if "wheel_radius" in words else RADIUS, rack=RACK, **laws)
+        with_inputs(inputs, rack=RACK, **laws)
     assert all(word in str(caught.value) for word in words)
 
 

@@ -114,15 +114,3 @@ def test_a_scene_keeps_its_mechanism_when_the_file_is_gone(axle: Scene, tmp_path
     again = pickle.loads(pickle.dumps(axle))
     assert again == axle
     assert again.mechanism.plain(again.mechanism.driven) == axle.mechanism.plain(axle.mechanism.driven)
-
-
-def test_three_inputs_of_one_corner_are_named_before_anything_is_solved() -> None:
-    content = Scene.load("axle-steer").model_dump(exclude_none=True)
-    driven = {"left.arm_angle": 1.5, "left.wheel_travel": 0.0, "rack": 0.0}
-    content["inputs"] = {name: {"constant": value} for name, value in driven.items()}
-    with pytest.raises(SceneError) as caught:
-        Scene.from_mapping(content)
-    words = str(caught.value)
-    assert "the inputs left.arm_angle, left.wheel_travel, rack drive more" in words
-    assert "z of right.lower_ball_joint" in words.partition("leave free")[2]
-    assert "right.wheel_travel" in words.partition("instead one of")[2]

@@ -51,8 +51,6 @@ def test_a_scene_whose_inputs_are_constant_is_one_pose_and_needs_no_time(still: 
     motion = simulate(scene)
     for name, drawn in scene.mechanism.points.items():
         assert np.allclose(motion.position[name], [drawn], rtol=0.0, atol=2e-12)
-    with pytest.raises(SceneError, match="time: this key is missing"):
-        Scene.from_mapping({**content, "inputs": {"arm_angle": AROUND, "rack": HELD}})
 
 
 def test_units_and_tables_in_files_hold_for_terms_too(tmp_path: Path) -> None:
@@ -73,52 +71,40 @@ def test_units_and_tables_in_files_hold_for_terms_too(tmp_path: Path) -> None:
     assert np.abs(travel - [5.0, 25.0]).max() <= 4 * np.spacing(25.0)
 
 
-@pytest.mark.parametrize(
-    ("law", "words"),
-    [
-        (
-            {"constant": "draw"},
-            "arm_angle.constant: is 'draw' (did you mean 'drawn'?); allowed: a number, or \"drawn\"",
-        ),
-        ({"polynomial": [0.0, "up"]}, "arm_angle.polynomial.1: is 'up'; allowed: a number, or \"drawn\""),
-        ({"sum": [{"sine": {**AROUND["sine"], "offset": "up"}}]}, "arm_angle.sum.0.sine.offset: is 'up'; a"),
-        ({"table": {"times": [0, 1, 2, 3], "values": ["up"] * 4}}, "arm_angle.table.values.0: is 'up'; a"),
-        (
-            {"sine": {"amplitude": "drawn", "angular_frequency": 1.0}},
-            "arm_angle.sine.amplitude: Input",
-        ),
-        ({"sum": []}, "inputs.arm_angle.sum: Value should have at least 1 item"),
-        (
-            {"sum": [AROUND], "constant": 3.0},
-            "arm_angle: constant and sum given; allowed: exactly one",
-        ),
-        (
-            {"sum": [{"sweep": [0.0, "up"]}]},
-            "arm_angle.sum.0.sweep: is [0.0, 'up']; allowed: two",
-        ),
-        (
-            {"sum": [{"swep": [0.0, 1.0]}]},
-            "inputs.arm_angle.sum.0.swep: there is no such key (did you mean 'sweep'?)",
-        ),
-    ],
-)
-def test_what_is_no_law_is_refused_with_its_place(law: Any, words: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        Scene.from_mapping(wishbone(law))
-    assert words in str(caught.value)
+TIMES, VALUES = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0], [-50.0, -32.0, -7.5, 8.25, 31.0, 50.0]
+
+
+def wheel_travel(folder: Path, law: str) -> Path:
+    text = resources.files("pointcoord").joinpath("scenes", "wheel-travel.toml").read_text("utf-8")
+    path = folder / "car.toml"
+    path.write_text(text.replace("{ polynomial = [-50.0, 100.0] }", law))
+    return path
+
+
+@pytest.mark.parametrize("head", ["", "time [s],travel [mm]\n", "\n"])
+def test_a_table_beside_the_scene_is_the_one_in_it(tmp_path: Path, head: str) -> None:
+    lines = [f"{t!r},{v!r}\n" for t, v in zip(TIMES, VALUES, strict=True)]
+    (tmp_path / "bump.csv").write_text(head + "".join(lines))
+    beside = Scene.load(wheel_travel(tmp_path, '{ table = "bump.csv" }'))
+    inside = Scene.load(wheel_travel(tmp_path, f"{{ table = {{ times = {TIMES}, values = {VALUES} }} }}"))
+    assert beside.inputs == inside.inputs
 
 
 @pytest.mark.parametrize(
-    ("inputs", "words"),
+    ("text", "words"),
     [
-        (("arm_angle", "rack"), r"no input is called 'arm_angle' \(did you mean 'left.arm_angle'"),
-        (("rack",), "the axle has 4 freedoms, and 1 is driven: rack"),
+        ("t,z\n0,1\n1\n", "bump.csv: line 3: is '1'; allowed: two columns of numbers"),
+        ("0,down\n1,2\n", "bump.csv: line 1: is '0,down'; allowed"),
+        ("0,1\n0.5,up\n", "bump.csv: line 2: is '0.5,up'; allowed"),
+        ("", "inputs.wheel_travel.table.times: "),
+        (None, "bump.csv: cannot be read (No such file or directory)"),
     ],
 )
-def test_drawn_values_of_inputs_that_do_not_hold_the_car_hide_no_fault(
-    inputs: tuple[str, ...], words: str
+def test_a_file_that_is_no_table_is_refused_with_its_place(
+    tmp_path: Path, text: str | None, words: str
 ) -> None:
-    content = Scene.load("axle-steer").model_dump(exclude_none=True)
-    content["inputs"] = {name: {"constant": "drawn"} for name in inputs}
-    with pytest.raises(SceneError, match=words):
-        Scene.from_mapping(content)
+    if text is not None:
+        (tmp_path / "bump.csv").write_text(text)
+    with pytest.raises(SceneError) as caught:
+        Scene.load(wheel_travel(tmp_path, '{ table = "bump.csv" }'))
+    assert words in str(caught.value)

@@ -37,9 +37,6 @@ def bounce_text() -> str:
     return resources.files("pointcoord").joinpath("scenes", "bounce.toml").read_text("utf-8")
 
 
-# ------------------------------------------------------------------------------------------- tolerance
-
-
 @pytest.mark.parametrize("bad", [float("nan"), 0.0, "small", None, True])
 def test_no_public_way_leads_to_a_scene_of_a_meaningless_tolerance(bad: Any) -> None:
     ways: tuple[Callable[[], object], ...] = (
@@ -52,24 +49,6 @@ def test_no_public_way_leads_to_a_scene_of_a_meaningless_tolerance(bad: Any) -> 
         with pytest.raises(SceneError, match="tolerance: Input should be") as caught:
             way()
         assert caught.value.key == "tolerance"
-
-
-@pytest.mark.parametrize(
-    ("scene", "mechanism", "told"),
-    [
-        ({"axes": "iso"}, {}, r"axes: there is no such key \(it stands under \[mechanism\]\)"),
-        ({"stop": 1.0}, {}, r"stop: there is no such key \(it stands under \[time\]\)"),
-        ({"unit": "m"}, {}, r"unit: there is no such key \(did you mean 'units'\?\)"),
-        ({}, {"units": "m"}, r"mechanism.units: .* \(it stands at the top, above \[mechanism\]\)"),
-        ({}, {"axis": "iso"}, r"mechanism.axis: there is no such key \(did you mean 'axes'\?\)"),
-    ],
-)
-def test_a_key_of_another_table_is_told_where_it_stands(
-    scene: dict[str, str], mechanism: dict[str, str], told: str
-) -> None:
-    content = BOUNCE.model_dump(exclude_none=True)
-    with pytest.raises(SceneError, match=told):
-        Scene.from_mapping({**content, **scene, "mechanism": {**content["mechanism"], **mechanism}})
 
 
 def test_a_copy_with_other_values_is_checked_in_every_part() -> None:
@@ -86,35 +65,14 @@ def test_a_copy_with_other_values_is_checked_in_every_part() -> None:
     assert BOUNCE.model_copy() == BOUNCE
 
 
-def test_misspelt_keys_are_told_together_each_with_the_key_that_was_meant() -> None:
-    rack = {"table": {"time": [0, 1, 2, 3], "value": [0, 1, 2, 3]}}
-    with pytest.raises(SceneError) as caught:
-        BOUNCE.model_copy(update={"inputs": {**BOUNCE.inputs, "rack": rack}})
-    told = str(caught.value)
-    assert "rack.table.time: there is no such key (did you mean 'times'?), nor value (did you mean" in told
-    assert "missing" not in told
-
-
-def test_faults_are_told_up_to_a_number_and_all_are_counted() -> None:
-    many = {"polynomial": ["a"] * 9}
-    with pytest.raises(SceneError, match=r"\.0: .*\(and 8 more: polynomial\.1: .*; 3 others\)"):
-        BOUNCE.inputs["arm_angle"].model_copy(update=many)
-    # A key that is near to one that is given is no slip of that one.
-    with pytest.raises(SceneError, match="starts: there is no such key; allowed"):
-        BOUNCE.time.model_copy(update={"starts": 0.1})
-
-
 def test_a_tolerance_that_the_method_cannot_hold_is_noted_with_the_one_that_it_held() -> None:
     unit = float(scene_mechanism(BOUNCE).unit)
     finest, coarsest = (limit * unit / TRUNCATION_SHARE for limit in (FINEST, COARSEST))
     for tolerance, words in (
-        (1e-9, None),
         (finest * 1.01, None),
-        (finest * 0.99, f"{finest:.3g} mm was used"),
-        (1e-300, f"finer than the rounding of a sum of series: {finest:.3g} mm was used"),
+        (finest * 0.99, f"finer than the rounding of a sum of series: {finest:.3g} mm was used"),
         (coarsest * 0.99, None),
-        (coarsest * 1.01, f"{coarsest:.3g} mm was used"),
-        (50.0, f"tolerance of 50 mm is too coarse to keep to one branch: {coarsest:.3g} mm was used"),
+        (coarsest * 1.01, f"is too coarse to keep to one branch: {coarsest:.3g} mm was used"),
     ):
         motion = simulate(BOUNCE.model_copy(update={"tolerance": tolerance}))
         notes = [note for note in motion.notes if note != motion.closing.words]
@@ -123,9 +81,6 @@ def test_a_tolerance_that_the_method_cannot_hold_is_noted_with_the_one_that_it_h
     # Newton's method is no finer than it is asked to be, but each pose keeps to its branch by a proof.
     motion = simulate(BOUNCE.model_copy(update={"tolerance": 50.0}), "newton")
     assert motion.notes == (motion.closing.words,)
-
-
-# --------------------------------------------------------------------------------------------- numbers
 
 
 @pytest.mark.parametrize("kind", [np.uint8, np.float32, np.longdouble])
@@ -152,9 +107,6 @@ def test_a_number_of_numpy_is_a_number(kind: Callable[[int], Any]) -> None:
     assert type(scene.time.samples) is int
 
 
-# --------------------------------------------------------------------------------------------- instants
-
-
 @plain
 @given(
     start=st.decimals(-1000, 1000, places=3),
@@ -171,9 +123,6 @@ def test_instants_are_the_decimal_numbers_that_a_person_would_write(
         exact = Fraction(start) + Fraction(length) * i / steps
         assert instant == exact.numerator / exact.denominator  # rounded once
     assert (instants[0], instants[-1]) == (float(start), float(stop))
-
-
-# ------------------------------------------------------------------------------------------------- text
 
 
 @pytest.mark.parametrize("source", ["file", "stream"])
@@ -221,13 +170,12 @@ def part_with(part: str, name: str, value: object) -> Scene:
     return Scene.from_mapping({**CONTENT, part: {**CONTENT[part], name: value}})
 
 
+POINTS = {**CONTENT["mechanism"]["points"], STEERING: (1.0, 2.0, 3.0)}
 MISNAMED: dict[str, Callable[[], object]] = {
     "file": lambda: Scene.load(STEERING),
     "key": lambda: Scene.from_mapping({**CONTENT, STEERING: 1}),
     "key of time": lambda: part_with("time", STEERING, 1),
-    "point": lambda: part_with(
-        "mechanism", "points", {**CONTENT["mechanism"]["points"], STEERING: (1.0, 2.0, 3.0)}
-    ),
+    "point": lambda: part_with("mechanism", "points", POINTS),
     "input": lambda: part_with("inputs", STEERING, {"constant": 1}),
     "effect": lambda: Scene.from_mapping({**CONTENT, "effects": [STEERING]}),
     "value": lambda: Scene.from_mapping({**CONTENT, "tolerance": STEERING}),

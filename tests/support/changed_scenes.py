@@ -1,0 +1,39 @@
+"""Shipped scenes with some of their values changed."""
+
+from __future__ import annotations
+
+import csv
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from pointcoord import Scene
+
+Content = dict[str, Any]
+
+
+def content_of(name: str, mechanism: Mapping[str, Any] | None = None, **parts: Any) -> Content:
+    """A shipped scene as plain data, with other keys of its mechanism and other parts of its own."""
+    content = Scene.load(name).model_dump(exclude_none=True)
+    content["mechanism"] |= mechanism or {}
+    return content | parts
+
+
+def scene_with(name: str, mechanism: Mapping[str, Any] | None = None, **parts: Any) -> Scene:
+    """The scene of that."""
+    return Scene.from_mapping(content_of(name, mechanism, **parts), name)
+
+
+def change(content: Content, changes: str) -> Content:
+    """Content after changes `key = value` in TOML, or `key gone`, between semicolons; keys of tables have dots."""
+    for one in changes.split(" ; "):
+        key, given, value = one.partition(" = ")
+        *tables, last = next(csv.reader([key.strip().removesuffix(" gone")], delimiter="."))
+        box = content
+        for table in tables:
+            box = box[table]
+        if given:
+            box[last] = tomllib.loads(f"value = {value}")["value"]
+        else:
+            box.pop(last, None)
+    return content
