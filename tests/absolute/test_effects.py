@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mechanism_files import plain_scene
-from one_arm import CAR, ROLES, plain
+from one_arm import CAR, DRAWN, plain
 from shipped import Motion, shipped
 
 import absolute
@@ -77,74 +77,9 @@ def test_names_are_those_of_the_parts_and_of_both_wheels_of_an_axle() -> None:
     assert absolute.effect_names(absolute.compile(plain())) == tuple(absolute.EFFECTS)
 
 
-LOOSE = plain_scene("bounce", ["arm_angle", "rack"], wheel_radius=300.0)
-LOOSE["inputs"]["rack"] = {"height": "tie_rod_inner", "along": "left"}
-
-
 def lacking(*names: str, **changed: Any) -> dict[str, Any]:
     """The arm without some numbers of the car."""
     return plain(car={name: value for name, value in CAR.items() if name not in names} or None, **changed)
-
-
-@pytest.mark.parametrize(
-    ("described", "names", "words"),
-    [
-        (
-            plain(roles={"wheel_axis": ROLES["wheel_axis"]}),
-            ["toe", "damper_length"],
-            "effect 'damper_length' needs the role 'damper'.*two points",
-        ),
-        (plain(roles={}), ["hub_trail"], "effect 'hub_trail' needs the role 'steering_axis'"),
-        (
-            plain(roles={"damper": ROLES["damper"]}),
-            ["damper_length_by_travel"],
-            "effect 'damper_length_by_travel' needs the role 'wheel_axis'",
-        ),
-        (
-            plain(wheel_radius=None),
-            ["travel", "recession"],
-            "effect 'recession' needs wheel_radius.*mechanism.*mm",
-        ),
-        (plain(), ["camber", "lean"], r"there is no effect 'lean'.*'camber', 'camber_by"),
-        (axle(), ["camber"], r"there is no effect 'camber'.*'left.camber'"),
-        (plain(), ["track"], r"effect 'track' needs .* exactly two parts.* has none"),
-        (
-            axle(sides={"left": "left", "right": "left"}),
-            ["track"],
-            r"effect 'track' needs .* on opposite sides.* 'right': 'left'",
-        ),
-        (axle(car={}), ["ackermann"], "effect 'ackermann' needs wheelbase"),
-        (
-            plain_scene("five-link"),
-            ["toe_by_rack"],
-            r"effect 'toe_by_rack' needs exactly one driven input that is the travel.* are 0: \[\] of",
-        ),
-        (LOOSE, ["travel_by_travel"], "effect 'travel_by_travel' needs.* is not .* are 2: .*arm_angle"),
-        (LOOSE, ["roll_centre_height"], "effect 'roll_centre_height' needs.* is not .* are 2: .*arm_angle"),
-        (
-            lacking("brake_share"),
-            ["anti_brake"],
-            r"effect 'anti_brake' needs brake_share, and .* \[car\], for example, brake_share = 0.6, or",
-        ),
-        (
-            lacking("axle", "drive_share"),
-            ["anti_drive"],
-            r'.* axle and drive_share,.* axle = "front", drive_share = 0.5',
-        ),
-        (
-            lacking(*CAR),
-            ["anti_brake"],
-            ".* axle and wheelbase and centre_of_gravity_height and brake_share, and none",
-        ),
-    ],
-)
-def test_what_a_number_lacks_is_said_in_one_line(
-    described: dict[str, Any], names: list[str], words: str
-) -> None:
-    with pytest.raises((absolute.DescriptionError, absolute.InputError), match=f"^{words}") as refused:
-        solved(described, names)
-    assert "\n" not in str(refused.value)
-    assert refused.value.name
 
 
 def test_a_number_by_roll_needs_a_roll_that_is_driven() -> None:
@@ -165,21 +100,14 @@ def test_a_number_needs_nothing_of_the_others() -> None:
         assert solved(less, names) == solved(plain(), names)
 
 
-@pytest.mark.parametrize(
-    ("car", "words"),
-    [
-        ({"wheel_base": 2700.0}, r"car has 'wheel_base'; it must be one of \['axle', 'wheelbase', "),
-        ({"axle": "middle"}, r"axle is 'middle'; it must be one of \['front', 'rear'\]"),
-        ({"wheelbase": 0}, "wheelbase is 0; a length above 0 is needed, in mm"),
-        ({"wheelbase": True}, "wheelbase is True; a length"),
-        ({"centre_of_gravity_height": np.nan}, "centre_of_gravity_height is nan; a length above 0"),
-        ({"spring_rate": -1.0}, "spring_rate is -1.0; a rate above 0 is needed, in N/mm"),
-        ({"brake_share": 60}, "brake_share is 60; a number from 0 to 1 is needed"),
-        ({"drive_share": None}, "drive_share is None; a number from 0 to 1 is needed"),
-        (2700.0, r"car is 2700.0; a table of \['axle', "),
-    ],
-)
-def test_numbers_of_a_car_are_checked(car: Any, words: str) -> None:
-    with pytest.raises(absolute.DescriptionError, match=f"^{words}") as refused:
-        absolute.compile(plain(car=car))
-    assert "\n" not in str(refused.value)
+def test_forces_are_given_where_they_are_asked_for_and_none_of_a_damper_at_its_dead_point() -> None:
+    """Its line goes through the hinge of the arm."""
+    beyond = np.add(DRAWN["pivot_end"], np.subtract(DRAWN["pivot_end"], DRAWN["pivot"]))
+    described = plain({**DRAWN, "damper_top": beyond}, loads={"": {"force": [300.0, -900.0, 4000.0]}})
+    motion = Motion(described, {name: np.zeros((1, 3)) for name in described["inputs"]})
+    assert not motion.solve().rod_force
+    found = motion.solve(loads=True)
+    assert np.isnan(found.rod_force["damper"]).all()
+    assert np.isfinite(found.position["centre"]).all()
+    with pytest.raises(ValueError, match="read-only"):
+        found.rod_force["damper"][0] = 0.0

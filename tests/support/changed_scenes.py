@@ -25,7 +25,7 @@ def scene_with(name: str, mechanism: Mapping[str, Any] | None = None, **parts: A
 
 
 def change(content: Content, changes: str) -> Content:
-    """Content after changes `key = value` in TOML, or `key gone`, between semicolons; keys of tables have dots."""
+    """Content after changes, `key = value` in TOML or `key gone`, between `;`; dots lead into tables."""
     for one in changes.split(" ; "):
         key, given, value = one.partition(" = ")
         *tables, last = next(csv.reader([key.strip().removesuffix(" gone")], delimiter="."))
