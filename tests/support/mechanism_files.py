@@ -1,22 +1,18 @@
-"""Mechanism files and scenes as plain data, read apart from the packages.
-
-Tests plant faults in the tables of a file before they are made flat.
-"""
+"""Shipped mechanism files and scenes, and mechanisms as the plain descriptions that all models take."""
 
 from __future__ import annotations
 
-import copy
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import pointcoord
+from pointcoord.scene.scene_file import MechanismPart
 
 ROOT = Path(pointcoord.__file__).parent
 MECHANISMS = tuple(sorted(path.stem for path in (ROOT / "mechanisms").glob("*.toml")))
 SCENES = tuple(sorted(path.stem for path in (ROOT / "scenes").glob("*.toml")))
-AXES = ("up", "right", "down", "left", "forward", "rearward")
 
 Tables = dict[str, Any]
 Plain = dict[str, Any]
@@ -40,58 +36,19 @@ def plain_scene(name: str, driven: Iterable[str] | None = None, **changes: Any) 
 
 
 def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Plain:
-    """Tables of a mechanism file and a scene's mechanism, without parts, closures and stand-ins.
+    """Tables of a mechanism file and a scene's mechanism, flattened; numbers stay what they are.
 
     Args:
-        part: `points`, and where they are given `closure`, `up`, `right`, `side`, `wheel_radius`.
+        part: `points`, and where they are given `closure`, `up`, `right`, `side`, `wheel_radius`, `car`.
         driven: names of the inputs that are driven.
+    Raises:
+        ValidationError: the tables describe no mechanism.
     """
-    up, right = part.get("up", (0, 0, 1)), part.get("right", (0, 1, 0))
-    tables, given = _one_mechanism(copy.deepcopy(tables), dict(part["points"]), right)
-    for table, entries in tables.get("closures", {}).get(part.get("closure", "drawn"), {}).items():
-        tables[table] |= entries
-    slides = {name: _slide(slide) for name, slide in tables.get("slides", {}).items()}
-    for name, other in tables.get("stand_ins", {}).items():
-        if name not in given and name in tables["bodies"]["chassis"]:
-            given[name] = given[other]
-    absent = {name: other for name, other in tables.get("stand_ins", {}).items() if name not in given}
-    inputs = {name: full_input(tables["inputs"][name]) for name in driven}
-    return {
-        "name": tables["title"],
-        "bodies": {body: [p for p in ps if p not in absent] for body, ps in tables["bodies"].items()},
-        "rods": dict(tables.get("rods", {})),
-        "slides": slides,
-        "inputs": renamed(inputs, lambda name: absent.get(name, name)),
-        "roles": renamed(tables.get("roles", {}), lambda name: absent.get(name, name)),
-        "sides": tables.get("sides", {}),
-        "points": given,
-        "up": list(up),
-        "right": list(right),
-        "side": part.get("side", "left"),
-        "wheel_radius": part.get("wheel_radius"),
-        "rack_per_turn": part.get("rack_per_turn"),
-        "car": dict(part.get("car", {})),
-        "loads": {},
-    }
-
-
-def renamed(entry: Any, new: Callable[[str], str]) -> Any:
-    """An entry of a table with every name in its values changed."""
-    if isinstance(entry, dict):
-        return {key: renamed(value, new) for key, value in entry.items()}
-    if isinstance(entry, list | tuple):
-        return [renamed(value, new) for value in entry]
-    return new(entry) if isinstance(entry, str) else entry
-
-
-def _slide(slide: Tables) -> Tables:
-    return {
-        "points": slide.get("points", [slide.get("point")]),
-        "body": slide.get("body", "chassis"),
-        "through": slide["through"],
-        "along": slide["along"],
-        "turns": slide.get("turns", True),
-    }
+    given = {key: value for key, value in part.items() if value is not None and key != "type"}
+    found = MechanismPart.model_validate({**tables, **given}).plain(tuple(driven))
+    own = {name: given["points"].get(name, place) for name, place in found["points"].items()}
+    exact = {key: given[key] for key in ("up", "right", "wheel_radius", "car") if key in given}
+    return {**found, **exact, "points": own}
 
 
 def full_input(drive: Mapping[str, Any]) -> Tables:
@@ -102,52 +59,3 @@ def full_input(drive: Mapping[str, Any]) -> Tables:
     if "height" in drive:
         return {"along": "up", **drive}
     return {"on": "chassis", **drive} if drive.get("from") == "drawing" else dict(drive)
-
-
-def _one_mechanism(tables: Tables, given: Plain, right: Any) -> tuple[Tables, Plain]:
-    """All parts in one, and the points under their prefixed names."""
-    if "parts" not in tables:
-        return tables, given
-    whole: Tables = {key: dict(tables.get(key, {})) for key in ("rods", "slides", "roles", "stand_ins")}
-    whole["bodies"] = {**tables.get("bodies", {}), "chassis": []}
-    whole |= {"title": tables["title"], "inputs": dict(tables.get("inputs", {}))}
-    whole_car = {point for listed in tables.get("bodies", {}).values() for point in listed}
-    points: Plain = {name: place for name, place in given.items() if "." in name or name in whole_car}
-    whole["sides"] = {prefix: part.get("side", "left") for prefix, part in tables["parts"].items()}
-    for prefix, part in tables["parts"].items():
-        inner = mechanism_file(part["mechanism"])
-        words = {*AXES, "chassis", "drawing"}
-        names = {
-            key: _prefixed(inner.get(key, {}), prefix, words)
-            for key in whole
-            if key not in ("title", "sides")
-        }
-        whole["bodies"]["chassis"] += names["bodies"].pop("chassis")
-        for key, entries in names.items():
-            whole[key] |= entries
-        for name in {p for ps in whole["bodies"].values() for p in ps} | {
-            p for key in ("rods", "slides") for e in whole[key].values() for p in _points_of(e)
-        }:
-            own = name.removeprefix(f"{prefix}.")
-            if own != name and own in given:
-                place = given[own]
-                beside = (
-                    sum(a * b for a, b in zip(place, right, strict=True)) * 2 * bool(part.get("mirrored"))
-                )
-                mirrored = [a - beside * b for a, b in zip(place, right, strict=True)]
-                points.setdefault(name, mirrored)
-    whole["bodies"]["chassis"] += tables.get("bodies", {}).get("chassis", [])
-    return whole, points
-
-
-def _prefixed(entries: Tables, prefix: str, words: set[str]) -> Tables:
-    def put(name: str) -> str:
-        return name if name in words else f"{prefix}.{name}"
-
-    return {put(name): renamed(entry, put) for name, entry in entries.items()}
-
-
-def _points_of(entry: Any) -> list[str]:
-    if isinstance(entry, dict):
-        return [entry["point"]] if "point" in entry else list(entry["points"])
-    return list(entry)
