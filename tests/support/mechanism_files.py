@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pointcoord
-from pointcoord.scene.scene_file import MechanismPart
+from pointcoord.mechanism.file import MechanismFile
 
 ROOT = Path(pointcoord.__file__).parent
 MECHANISMS = tuple(sorted(path.stem for path in (ROOT / "mechanisms").glob("*.toml")))
@@ -42,13 +42,34 @@ def plain(tables: Tables, part: Mapping[str, Any], driven: Iterable[str]) -> Pla
         part: `points`, and where they are given `closure`, `up`, `right`, `side`, `wheel_radius`, `car`.
         driven: names of the inputs that are driven.
     Raises:
-        ValidationError: the tables describe no mechanism.
+        TableFault: the tables describe no mechanism.
     """
-    given = {key: value for key, value in part.items() if value is not None and key != "type"}
-    found = MechanismPart.model_validate({**tables, **given}).plain(tuple(driven))
-    own = {name: given["points"].get(name, place) for name, place in found["points"].items()}
-    exact = {key: given[key] for key in ("up", "right", "wheel_radius", "car") if key in given}
-    return {**found, **exact, "points": own}
+    parts = {
+        n: {**one, "mechanism": mechanism_file(one["mechanism"])}
+        for n, one in tables.get("parts", {}).items()
+    }
+    file = MechanismFile.of({**tables, "parts": parts}, tables["title"])
+    structure, right = file.structures[part.get("closure", "drawn")], part.get("right", (0, 1, 0))
+    points = {name: place for name, place in part["points"].items() if name in structure.points}
+    for prefix, mirrored in file.mirrored.items():
+        for name, place in part["points"].items():
+            out = 2 * mirrored * sum(a * b for a, b in zip(place, right, strict=True))
+            if prefix + name in structure.points:
+                points.setdefault(prefix + name, [a - out * b for a, b in zip(place, right, strict=True)])
+    for name, other in structure.stand_ins.items():
+        if name in structure.bodies["chassis"]:
+            points.setdefault(name, points[other])
+    return {
+        **structure.drawn_with(points).plain(tuple(driven)),
+        "points": points,
+        "up": list(part.get("up", (0, 0, 1))),
+        "right": list(right),
+        "side": part.get("side", "left"),
+        "wheel_radius": part.get("wheel_radius"),
+        "rack_per_turn": part.get("rack_per_turn"),
+        "car": dict(part.get("car", {})),
+        "loads": {},
+    }
 
 
 def full_input(drive: Mapping[str, Any]) -> Tables:
