@@ -6,31 +6,21 @@ scene of every mechanism and closure.
 
 from __future__ import annotations
 
-from functools import cache
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
-from every_effect import NUMBERS_OF_A_CAR
+from every_number import FAR, OF_A_TURN, TURNED, asked, exact, one_of_each
 from mechanism_files import SCENES, scene_file
 
 from pointcoord import Scene
 from pointcoord.effects.point_states import NAMED
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.comparison.compare import Outcome, compare_solutions
-from validate.formulations.protocol import FormulationError, Solution
-from validate.formulations.reference_solution import reference_solution, told_by
+from validate.formulations.protocol import FormulationError
+from validate.formulations.reference_solution import told_by
 from validate.formulations.registry import OUTSIDE, formulation
 
 OF_EVERY_NUMBER = ("pointcoord", "absolute")
 OTHERS = ("pointcoord-newton", "pointcoord-map", "relative", *OUTSIDE)
-SAMPLES = 4
-TURNED = Path(__file__).with_name("roll-pitch-heave.toml")
-CAR = {"axle": "rear", **NUMBERS_OF_A_CAR}
-LOAD = {"force": (-310.0, 1870.0, 3105.0), "moment": (4100.0, -73000.0, 21000.0)}
-# What an axle has only where both wheels are steered to the same side.
-OF_A_TURN = {"ackermann", "ackermann_error", "turning_radius"}
 # Redundant everywhere: claims of its numbers hold, and are too wide to test the reference.
 REDUNDANT = "bricard"
 # Motions that meet a singular pose after some instants: the scene, and its input from the drawing on.
@@ -39,43 +29,6 @@ BEYOND = {
     "the input has an end": ("bricard", "turn", [0.0, -0.6]),
     "the piston has a dead centre": ("slider-crank", "stroke", [15.0, 100.0]),
 }
-
-
-def load(name: str) -> Scene:
-    return Scene.load(TURNED if name == TURNED.stem else name)
-
-
-def one_of_each() -> list[str]:
-    """The last scene of each mechanism and closure."""
-    parts = {name: load(name).mechanism for name in SCENES}
-    return [*{(part.type, part.closure): name for name, part in parts.items()}.values()]
-
-
-@cache
-def asked(name: str, every: bool) -> Scene:
-    """A scene at few instants; or with every effect that its car has, given what they need."""
-    content: dict[str, Any] = load(name).model_dump(exclude_none=True, exclude={"points"})
-    # At the start of a scene an axle goes straight ahead, where it has no turning radius.
-    time = content["time"]
-    start = time["start"] + 0.05 * (time["stop"] - time["start"])
-    content["time"] = {**time, "start": start, "samples": SAMPLES}
-    if not every:
-        return Scene.from_mapping(content, name)
-    content["mechanism"].setdefault("wheel_radius", 300.0)
-    content["mechanism"]["car"] = {**CAR, **content["mechanism"].get("car", {})}
-    topology = load(name).mechanism.topology
-    wheels = [role.removesuffix("wheel_axis") for role in topology.roles if role.endswith("wheel_axis")]
-    content["mechanism"]["loads"] = {wheel.removesuffix("."): LOAD for wheel in wheels}
-    plain = Scene.from_mapping(content | {"effects": ()}, name)
-    # What loads make of one axle is enough: each rod of two wheels is a way of the car of its own.
-    effects = [one for one in plain.mechanism.effects if (name, one) != ("axle-roll", "loads")]
-    return Scene.from_mapping(content | {"effects": effects}, name)
-
-
-@cache
-def exact(name: str) -> Solution:
-    """With every effect, which the scene as it is may ask for fewer of."""
-    return reference_solution(asked(name, True))
 
 
 def compared(name: str, who: str, every: bool) -> Outcome:
@@ -100,7 +53,7 @@ def test_every_number_is_one_of_some_car() -> None:
     assert any("loads" in asked(name, True).effects for name in one_of_each())
 
 
-@pytest.mark.parametrize("name", [*one_of_each(), TURNED.stem])
+@pytest.mark.parametrize("name", [*one_of_each(), TURNED, FAR])
 @pytest.mark.parametrize("who", OF_EVERY_NUMBER)
 def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: str) -> None:
     outcome = compared(name, who, True)
@@ -112,7 +65,7 @@ def test_every_number_of_a_car_is_right_within_what_is_claimed(name: str, who: s
     assert not lacking or name != "axle-steer"
 
 
-@pytest.mark.parametrize("name", [*SCENES, TURNED.stem])
+@pytest.mark.parametrize("name", [*SCENES, TURNED])
 @pytest.mark.parametrize("who", OTHERS)
 def test_what_a_scene_asks_for_is_right_within_what_is_claimed(name: str, who: str) -> None:
     outcome = compared(name, who, False)

@@ -108,29 +108,6 @@ def test_an_effect_of_a_scene_that_reports_another_point_is_what_it_is_among_all
                 assert (np.abs(array - whole.numbers[quantity.name][name]) <= allowed).all(), name
 
 
-@pytest.mark.parametrize(
-    ("name", "points", "method"),
-    [
-        ("steer", ["wheel_centre", "rack_centre"], "map"),
-        ("bounce-on-a-heaving-chassis", STRUT, "series"),
-        ("double-wishbone", ["upper_ball_joint", "lower_arm_rear"], "newton"),
-    ],
-)
-def test_fewer_points_are_the_same_points_and_as_well_proven(
-    name: str, points: Sequence[str], method: str
-) -> None:
-    effects = ("velocity", "acceleration", "wheel_angles", "knuckle_rates")
-    few, whole = (simulate(scene(name, p, effects), method) for p in (points, None))
-    assert sorted(few.position) == sorted(points)
-    bounds = [motion.proof(rates=True).proven for motion in (few, whole)]
-    for quantity, channel in few.numbers.items():
-        assert set(channel) <= set(whole.numbers[quantity])
-        for number, found in channel.items():
-            allowed = bounds[0][quantity][number] + bounds[1][quantity][number]
-            assert np.isfinite(allowed).all()
-            assert (np.abs(found - whole.numbers[quantity][number]) <= allowed).all(), (quantity, number)
-
-
 def test_where_the_tie_rod_ends_the_motion_the_strut_goes_on_and_says_what_it_does_not_know() -> None:
     far = {
         "inputs": {"arm_angle": {"polynomial": [1.57, 0.1]}, "rack": {"polynomial": [0.0, 500.0]}},

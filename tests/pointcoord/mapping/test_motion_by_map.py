@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from every_effect import every_effect
 
 from pointcoord import (
     AssemblyError,
@@ -42,23 +41,6 @@ def largest_share(one: Motion, other: Motion) -> float:
             assert np.isfinite(allowed).all()
             worst = max(worst, float((apart / np.maximum(allowed, 1e-300)).max()))
     return worst
-
-
-@pytest.mark.parametrize("name", ["double-wishbone", "bounce-on-a-heaving-chassis"])
-def test_every_number_is_that_of_the_series_within_what_both_prove(name: str) -> None:
-    scene = every_effect(name)
-    mapped, series = simulate(scene, "map"), simulate(scene, "series")
-    assert (mapped.method, mapped.status.complete) == ("map", True)
-    # Not unless it is asked for, or series do not do.
-    assert simulate(scene).method == "series"
-    assert len(mapped.times) == len(series.times)
-    assert largest_share(mapped, series) <= 1.0
-    between = np.linspace(scene.time.start, scene.time.stop, 37)
-    one, other = mapped.at(between), series.at(between)
-    bound = mapped.proof_of(one).bound + series.proof_of(other).bound
-    assert (
-        np.abs(one.position["tie_rod_outer"] - other.position["tie_rod_outer"]).max(axis=-1) <= bound
-    ).all()
 
 
 @pytest.mark.parametrize(("name", "tolerance"), [("steer", 1e-9), ("double-wishbone", 1e-3)])

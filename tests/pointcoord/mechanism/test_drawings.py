@@ -4,31 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from sample_cars import PAPER_STRUT, SampleCar, by_drawn_car
 
 from pointcoord import Scene, SceneError, simulate
 from pointcoord.results.closing import NOTICED
 
 CAR = dict(Scene.load("off-axis-strut").mechanism.points)
-
-
-def test_the_collinear_strut_is_the_general_one_with_its_ball_joint_on_the_axis(
-    make_scene: Callable[..., Scene],
-) -> None:
-    angle = PAPER_STRUT.drawn_inputs["arm_angle"]
-    closed = simulate(make_scene([angle], [0.0], stop=0.0, samples=1)).position
-    car = {name: tuple(place[0].tolist()) for name, place in closed.items()}
-    straight, general = (
-        simulate(make_scene((1.4, 0.3, -0.1), (0.0, 30.0), stop=0.8, points=car, closure=closure))
-        for closure in ("collinear", "drawn")
-    )
-    bound = sum(np.maximum(one.bound, one.carried_bound) for one in (straight.proof(), general.proof()))
-    # The closed car is rounded to doubles at 500 mm, so both close it anew, up to `condition` times as far.
-    closing = 2 * np.finfo(float).eps * 512.0 * straight.proof().condition
-    for name, place in straight.position.items():
-        assert (np.abs(place - general.position[name]).max(axis=-1) <= bound + closing).all()
-    for name in ("camber", "kingpin"):
-        assert np.allclose(straight.wheel[name], general.wheel[name], rtol=0.0, atol=1e-11)
 
 
 def moved(name: str, by: tuple[float, float, float]) -> dict[str, tuple[float, ...]]:
@@ -66,16 +46,3 @@ def test_one_percent_of_the_size_is_the_limit_of_closing(
     else:
         # The rod's end keeps its distance from the top, so that it moves a little more than across.
         assert simulate(scene).closing.largest == pytest.approx(far, rel=0.01)
-
-
-@by_drawn_car
-def test_a_rack_without_a_centre_starts_at_the_drawn_tie_rod(
-    make_scene: Callable[..., Scene], car: SampleCar
-) -> None:
-    without = {name: place for name, place in car.points.items() if name != "rack_centre"}
-    one, other = (
-        simulate(make_scene([1.55], [0.0, 10.0], car=car, points=points, stop=1.0))
-        for points in ({**without, "rack_centre": without["tie_rod_inner"]}, without)
-    )
-    for name in one.position:
-        assert np.array_equal(one.position[name], other.position[name])

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from pointcoord import Scene, SceneError, kinematic_map, simulate, solve_poses
+from pointcoord import Scene, SceneError, simulate
 from pointcoord.mechanism.file import MECHANISMS
 from pointcoord.results.motion import Motion
 
@@ -35,30 +35,6 @@ GROUND = {
     "roll": {"turns": "chassis", "about": "upper_arm_front", "along": "forward"},
 }
 ROLL = {"sine": {"amplitude": 0.06, "angular_frequency": 5.0}}
-
-
-def height_over_ground(place: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Of the lowest point of the disc, above that of the drawing, of points as they are reported."""
-    axis = place["wheel_centre"] - place["wheel_axis_inner"]
-    lean = axis[..., 2] / np.linalg.norm(axis, axis=-1)
-    drawn = np.array(WISHBONE["points"]["wheel_centre"])[2] - RADIUS  # the axis is drawn level
-    return np.asarray(place["wheel_centre"][..., 2] - RADIUS * np.sqrt(1.0 - lean**2) - drawn)
-
-
-def test_motions_maps_and_poses_hold_the_height_of_the_contact_point_over_the_ground() -> None:
-    scene = with_inputs(GROUND, c={"polynomial": [0.0, 3.0]}, rack=RACK, roll=ROLL)
-    motion = simulate(scene)
-    # Heights of some 500 mm are found from three numbers that round, and the motion is proven to 1e-11 mm.
-    assert np.abs(height_over_ground(motion.position) - 3.0 * motion.times).max() < 1e-10
-    inputs = {name: f.series(motion.times, 0)[:, 0] for name, f in scene.functions.items()}
-    ranges = {name: (float(v.min()) - 0.01, float(v.max()) + 0.01) for name, v in inputs.items()}
-    others = [solve_poses(scene, inputs).position, kinematic_map(scene, ranges, 1e-6)(inputs).position]
-    for name, place in motion.position.items():
-        for other in others:
-            assert np.abs(other[name] - place).max() < 2e-6  # the map's bound of 1e-6, and a turn
-    held = kinematic_map(scene, {**ranges, "roll": (0.05, 0.05)}, 1e-6)
-    at = {name: values[0] for name, values in inputs.items() if name != "roll"}
-    assert abs(float(height_over_ground(held(at).position)) - at["c"]) < 2e-6
 
 
 CONSTANT = {"constant": 1.5}

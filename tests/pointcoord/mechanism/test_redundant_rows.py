@@ -11,7 +11,6 @@ from pointcoord import (
     Scene,
     SceneError,
     kinematic_map,
-    simulate,
     solve_poses,
     sweep,
 )
@@ -51,19 +50,6 @@ def bent_bricard() -> Scene:
     content = Scene.load("bricard").model_dump(exclude_none=True)
     content["mechanism"]["points"]["P1"] = [1000.0 + 1e-8, 0.0, 0.0]
     return Scene.from_mapping(content)
-
-
-def test_maps_and_unrelated_poses_of_redundant_mechanisms_are_those_of_the_motion() -> None:
-    scene = four_bar(0.0)
-    motion = simulate(scene)
-    turns = scene.functions["turn"].series(motion.times, 0)[:, 0]
-    mapped, poses = kinematic_map(scene, {"turn": (-0.1, 0.5)}), solve_poses(scene, {"turn": turns})
-    assert not poses.failures
-    for name, place in motion.position.items():
-        allowed = motion.proof().bound + poses.bound
-        assert (np.abs(place - poses.position[name]).max(axis=1) <= allowed).all()
-        allowed = motion.proof().bound + mapped.bound.position
-        assert (np.abs(place - mapped({"turn": turns}).position[name]).max(axis=1) <= allowed).all()
 
 
 def test_a_violated_row_is_named_by_maps_poses_and_sweeps() -> None:

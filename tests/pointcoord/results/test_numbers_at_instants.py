@@ -10,7 +10,6 @@ from every_effect import every_effect
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
 from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.point_states import STATES
 from pointcoord.effects.wheel_angles import TOE
 from pointcoord.results.by_series import ByChain
 
@@ -27,12 +26,6 @@ def solved(name: str, effects: tuple[str, ...] | None = None, **changes: object)
     if effects is not None:
         changes["effects"] = tuple(effect for effect in effects if effect in scene.mechanism.effects)
     return simulate(scene.model_copy(update=changes))
-
-
-def up_to_jerk(name: str, **changes: object) -> Motion:
-    """With every effect but the derivatives that follow on the jerk."""
-    every = every_effect(name).effects
-    return solved(name, tuple(effect for effect in every if effect not in STATES[4:]), **changes)
 
 
 def share_in_cells(motion: Motion, instants: np.ndarray) -> float:
@@ -61,32 +54,6 @@ def most_of_what_is_claimed(motion: Motion, samples: Samples) -> float:
             assert (proven[claimed == 0.0] == 0.0).all()
             worst = max(worst, float((proven[claimed > 0.0] / claimed[claimed > 0.0]).max(initial=0.0)))
     return worst
-
-
-@pytest.mark.parametrize(("name", "effects"), [(SCENES[0], ("knuckle_rates",)), (SCENES[1], EVERY)])
-def test_numbers_at_any_instants_are_as_near_the_exact_ones_as_they_claim(
-    name: str, effects: tuple[str, ...]
-) -> None:
-    motion = solved(name, effects)
-    anywhere = np.random.default_rng(7).uniform(motion.times[0], motion.times[-1], 900)
-    assert most_of_what_is_claimed(motion, motion.at(anywhere)) <= 1.0
-    close = np.linspace(motion.times[0], motion.times[-1], 60_000)
-    assert share_in_cells(motion, close) > 0.3
-    assert most_of_what_is_claimed(motion, some(motion.at(close), np.arange(0, 60_000, 97))) <= 1.0
-    assert most_of_what_is_claimed(motion, motion.at([motion.times[-1] / 3.0])) <= 1.0
-
-
-@pytest.mark.parametrize(("name", "tolerance"), [(SCENES[0], 1e-3), (SCENES[1], 1e-9)])
-def test_numbers_of_close_instants_are_as_near_the_exact_ones_as_they_claim(
-    name: str, tolerance: float
-) -> None:
-    motion = solved(name, tolerance=tolerance)
-    instants = np.linspace(motion.times[0], motion.times[-1], 150_000)
-    assert share_in_cells(up_to_jerk(name, tolerance=tolerance), instants) > 0.9
-    # The sixth derivative has the shortest cells.
-    assert share_in_cells(motion, instants) > 0.85
-    which = np.unique(np.concatenate([np.arange(0, 150_000, 773), np.arange(100)]))
-    assert most_of_what_is_claimed(motion, some(motion.at(instants), which)) <= 1.0
 
 
 def test_a_motion_that_begins_from_rest_keeps_the_digits_of_its_first_rates() -> None:
@@ -169,20 +136,6 @@ def test_results_are_written_where_they_are_wanted_and_nowhere_else() -> None:
             motion.at(np.zeros(4), out=wrong)
 
 
-@pytest.mark.parametrize("asked", [0.3, [], [[1.7, 0.2], [1.9, 0.2]]])
-def test_instants_of_any_shape_and_order_give_arrays_of_that_shape(asked: object) -> None:
-    motion, instants = solved("bounce"), np.array(asked, dtype=float)
-    samples = motion.at(instants)
-    assert np.array_equal(samples.times, instants)
-    for name, channel in samples.numbers.items():
-        for key, array in channel.items():
-            assert array.shape == (instants.shape if channel.quantity.of == "car" else (*instants.shape, 3))
-            for place in np.ndindex(instants.shape):
-                alone = motion.at(instants[place]).numbers[name][key]
-                # One instant or many: a product of matrices may sum its 21 terms in another order.
-                assert np.abs(array[place] - alone).max() <= 1e4 * EPS * max(1.0, np.abs(array).max())
-
-
 @pytest.mark.parametrize(("method", "size"), [("series", 7), ("newton", 1000)])
 def test_blocks_of_a_motion_are_its_parts_in_order(method: str, size: int) -> None:
     motion = simulate(Scene.load("bounce"), method)
@@ -235,7 +188,7 @@ def peak(work: Callable[[], object]) -> int:
 
 
 def test_many_instants_take_no_more_memory_than_their_results_and_some_blocks() -> None:
-    motion = up_to_jerk("bounce-on-a-heaving-chassis")
+    motion = solved("bounce-on-a-heaving-chassis", EVERY)
     # Two blocks live at once: the one that was given out, and the next.
     block = 8 * 16384 * (motion.height + 1)
     many, few = (peak(lambda n=n: [None for _ in motion.blocks(n)]) for n in (120_000, 40_000))

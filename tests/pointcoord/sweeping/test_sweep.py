@@ -22,7 +22,6 @@ from pointcoord import (
     sweep,
     sweep_blocks,
 )
-from pointcoord.effects.registry import EFFECTS
 from pointcoord.solve import series_in_inputs, taylor
 from pointcoord.sweeping import solving
 
@@ -54,39 +53,6 @@ def assert_same_as_alone(found: Sweep, number: int) -> None:
             assert (difference <= bound + theirs[quantity][name]).all(), (quantity, name, difference.max())
             # A number that is not this design's has a proof as wide as it is wrong.
             assert bound.max() <= 1e-8 * (1.0 + np.abs(array).max()), (quantity, name)
-
-
-@pytest.mark.parametrize(
-    ("scene", "varied"),
-    [
-        (WISHBONE, "lower_ball_joint.z"),
-        (STRUT, "tie_rod_outer.x"),
-        (few_instants(Scene.load("bounce"), 11), "lower_ball_joint.z"),
-    ],
-)
-def test_a_design_among_many_is_the_design_alone(scene: Scene, varied: str) -> None:
-    found = sweep(scene, offsets={varied: np.linspace(-4.0, 3.0, 40)})
-    assert found.solved.all()
-    point, _, axis = varied.partition(".")
-    for number in (0, 39):
-        own = found.scene(number)
-        assert_same_as_alone(found, number)
-        assert found.closing[number] == pytest.approx(simulate(own).closing.largest, rel=1e-9, abs=1e-12)
-        assert found.varied[varied][number] == own.mechanism.points[point]["xyz".index(axis)]
-
-
-@pytest.mark.parametrize(
-    ("name", "point"),
-    [("axle-opposed", "left.tie_rod_outer"), ("pushrod", "lower_ball_joint")],
-)
-def test_designs_have_gradients_and_what_else_is_along_a_way_as_each_has_alone(name: str, point: str) -> None:
-    content = few_instants(Scene.load(name), 5).model_dump(exclude_none=True)
-    load = {"force": [400.0, -2500.0, 4000.0]}
-    content["mechanism"] |= {"loads": {"left": load} if "." in point else load, "wheel_radius": 270.0}
-    along = [effect for effect in Scene.from_mapping(content).mechanism.effects if EFFECTS[effect].way]
-    assert "loads" in along
-    found = sweep(Scene.from_mapping({**content, "effects": along}), offsets={f"{point}.z": [-3.0, 0.0, 4.0]})
-    assert_same_as_alone(found, 2)
 
 
 def test_a_point_of_a_part_is_varied_by_its_whole_name() -> None:

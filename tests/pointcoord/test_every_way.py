@@ -1,0 +1,148 @@
+"""However a car is solved, every number that it has is within its proven bound of the many-digit reference.
+
+Of every mechanism and closure, of a car that rolls, pitches and heaves and of that car far from the origin.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections.abc import Callable, Mapping
+from functools import partial
+
+import numpy as np
+import pytest
+from every_number import FAR, OF_A_TURN, asked, exact, one_of_each
+from numpy.typing import NDArray
+
+from pointcoord import Samples, Scene, kinematic_map, simulate, solve_poses, sweep
+from pointcoord.bounds.proof import Proof
+from pointcoord.effects.point_states import NAMED, STATES
+from pointcoord.effects.registry import EFFECTS
+from pointcoord.method import METHODS
+
+Array = NDArray[np.float64]
+Numbers = Mapping[str, Mapping[str, Array]]
+Way = Callable[[Scene], tuple[Numbers, Numbers]]
+
+
+def bounds_of(proof: Proof) -> Numbers:
+    """What is proven and what is claimed before: neither may be passed."""
+    return {
+        quantity: {name: np.minimum(bound, proof.expected[quantity][name]) for name, bound in bounds.items()}
+        for quantity, bounds in proof.proven.items()
+    }
+
+
+def by_method(scene: Scene, method: str) -> tuple[Numbers, Numbers]:
+    motion = simulate(scene, method)
+    return motion.numbers, bounds_of(motion.proof(rates=True))
+
+
+def among(samples: Samples, which: Array) -> Samples:
+    numbers = {
+        quantity: channel.with_arrays({name: array[which] for name, array in channel.items()})
+        for quantity, channel in samples.numbers.items()
+    }
+    return Samples(samples.times[which], numbers)
+
+
+def among_close_instants(scene: Scene) -> tuple[Numbers, Numbers]:
+    motion, own = simulate(scene, "series"), scene.instants
+    beside = own[:, None] + (own[-1] - own[0]) * np.linspace(-0.005, 0.005, 600)
+    instants = np.unique(np.concatenate([np.clip(beside.ravel(), own[0], own[-1]), own]))
+    samples = among(motion.at(instants), np.searchsorted(instants, own))
+    return samples.numbers, bounds_of(motion.proof_of(samples, rates=True))
+
+
+def from_a_pickle(scene: Scene) -> tuple[Numbers, Numbers]:
+    motion = pickle.loads(pickle.dumps(simulate(scene, "series")))
+    samples = among(motion.at(scene.instants[::-1]), np.arange(len(scene.instants))[::-1])
+    return samples.numbers, bounds_of(motion.proof_of(samples, rates=True))
+
+
+def reporting_one_point(scene: Scene) -> tuple[Numbers, Numbers]:
+    return by_method(scene.model_copy(update={"points": (scene.mechanism.topology.moving[0],)}), "series")
+
+
+def as_a_design(scene: Scene) -> tuple[Numbers, Numbers]:
+    """Between two others of a sweep, which may be none."""
+    found = sweep(scene, offsets={f"{scene.mechanism.topology.moving[0]}.z": [-0.7, 0.0, 1.1]})
+    return found.of(1).numbers, bounds_of(found.proof(1, rates=True))
+
+
+def laws_of(scene: Scene) -> list[dict[str, Array]]:
+    """Values, rates and accelerations of the inputs."""
+    laws = {n: f.series(scene.instants, 2) * (1.0, 1.0, 2.0) for n, f in scene.functions.items()}
+    return [{name: law[:, order] for name, law in laws.items()} for order in range(3)]
+
+
+def by_a_map(scene: Scene, tolerance: float) -> tuple[Numbers, Numbers]:
+    values, rates, bends = laws_of(scene)
+    free = scene.mechanism.topology.required_inputs
+    ranges = {n: (float(v.min()) - 0.01, float(v.max()) + 0.01) for n, v in values.items() if n in free}
+    poses = kinematic_map(scene, ranges, tolerance)(values, rates, bends, bounds=True)
+    # Its inputs are rounded, as those of a motion are, of which the proof knows.
+    rounded = simulate(scene, "newton").proof(rates=True).proven
+    return poses.numbers, {
+        q: {n: off + rounded[q][n] for n, off in of.items()} for q, of in poses.bounds.items()
+    }
+
+
+def as_poses(scene: Scene, copies: int, tolerance: float) -> tuple[Numbers, Numbers]:
+    """A number of the car is off by what its pose is off times its sensitivity. A motion has proven
+    the product; the poses may be off by that, as many times as they are less exact."""
+    count, motion = len(scene.instants), simulate(scene)
+    found = solve_poses(scene, {n: np.tile(v, copies) for n, v in laws_of(scene)[0].items()}, tolerance)
+    proof, numbers = motion.proof(rates=True), {}
+    ratio = 1.0 + found.carried_bound.max() / proof.pose_bound.min()
+    for quantity, channel in found.numbers.items():
+        if channel.computed:
+            numbers[quantity] = {name: array[:count] for name, array in channel.items()}
+    bounds = {q: {n: ratio * proof.proven[q][n] for n in of} for q, of in numbers.items()}
+    off = (found.bound[:count, None], found.carried_bound[:count, None])
+    carried = scene.mechanism.topology.carried
+    return numbers, bounds | {"position": {n: off[n in carried] for n in found.position}}
+
+
+WAYS: dict[str, Way] = {
+    **{method: partial(by_method, method=method) for method in METHODS if method != "auto"},
+    "among close instants": among_close_instants,
+    "from a pickle, in another order": from_a_pickle,
+    "reporting one point": reporting_one_point,
+    "as a design of a sweep": as_a_design,
+    "by a coarse map": partial(by_a_map, tolerance=1e-3),
+    "by a fine map": partial(by_a_map, tolerance=1e-9),
+    "as few poses": partial(as_poses, copies=1, tolerance=1e-9),
+    "as many poses": partial(as_poses, copies=80, tolerance=1e-9),
+    "as coarse poses": partial(as_poses, copies=80, tolerance=1e-3),
+}
+MAPPED = tuple(way for way in WAYS if way.endswith(" map"))
+# Those of the most numbers are solved in some ways each; one of them has more inputs than a map.
+COSTLY = ("axle-roll", "axle-steer", FAR)
+CASES = [(name, way) for name in one_of_each() if name not in COSTLY for way in WAYS]
+CASES += [(COSTLY[k % 3 or 2 * (way in MAPPED)], way) for k, way in enumerate(WAYS)]
+
+
+def given(effect: str, way: str) -> bool:
+    """What a way is asked for: no loads, few of the derivatives of points, and of a map no gradients."""
+    late = STATES[3:] if way in MAPPED else STATES[len(NAMED) + 1 :]
+    few = () if way.startswith("as a design") else ("loads",)
+    return effect not in (*few, *late) and not (way in MAPPED and EFFECTS[effect].way)
+
+
+@pytest.mark.parametrize(("name", "way"), CASES)
+def test_every_number_is_within_its_proven_bound_of_the_reference(name: str, way: str) -> None:
+    truth, scene = exact(name).numbers, asked(name)
+    effects = [effect for effect in scene.effects if given(effect, way)]
+    numbers, bounds = WAYS[way](scene.model_copy(update={"effects": effects}))
+    for quantity, channel in numbers.items():
+        for own, found in channel.items():
+            if own in OF_A_TURN:
+                continue
+            right, bound = truth[quantity][own], np.broadcast_to(bounds[quantity][own], found.shape)
+            there = np.isfinite(right)
+            assert (np.isfinite(found) == there).all(), (quantity, own)
+            # The truth is rounded to doubles.
+            allowed = bound[there] + 2.0**-53 * np.abs(right[there])
+            assert (np.abs(found - right)[there] <= allowed).all(), (quantity, own)
+            assert np.isfinite(allowed).all(), (quantity, own)
