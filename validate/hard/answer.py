@@ -50,34 +50,29 @@ class Answer:
 def judged_answer(scene: Scene, answer: Solution, reference: Solution) -> Answer:
     """Compare all numbers of a solution with the reference, each by the bound that the solution gives."""
     rows = _compared(scene, answer, reference)
-    outcome: Outcome = "right"
-    if _wrong(rows):
-        outcome = "wrong" if _wrong(_compared(scene, _mended(answer, reference), reference)) else "noted"
     worst = max(rows, key=lambda row: np.inf if np.isnan(row.share) else row.share)
-    where = f"{QUANTITIES[worst.quantity].words} of {worst.name}"
-    if outcome != "right":
-        off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
-        where += (
-            f" {off if np.isfinite(worst.difference) else 'is not a number'} at t = {worst.instant:.6g} s"
-        )
-        where += f"; noted: {'; '.join(answer.notes)}" if outcome == "noted" else ""
+    reason = f"{QUANTITIES[worst.quantity].words} of {worst.name}"
+    outcome: Outcome = "right"
+    if _any_wrong(rows):
+        outcome = "wrong" if _any_wrong(_compared(scene, _mended(answer, reference), reference)) else "noted"
+        off = "is not a number"
+        if np.isfinite(worst.difference):
+            off = f"is off by {worst.difference:.2g} {worst.unit}, {worst.share:.2g} of what is allowed,"
+        reason += f" {off} at t = {worst.instant:.6g} s"
+    if outcome == "noted":
+        reason += f"; noted: {'; '.join(answer.notes)}"
     error = max(np.max(np.abs(answer.position[n] - place)) for n, place in reference.position.items())
-    return Answer(
-        formulation=answer.formulation,
-        outcome=outcome,
-        reason=where,
-        error=_finite(error),
-        bound=_finite(max(np.max(claim) for claim in answer.accuracy.claims["position"].values())),
-        share=_finite(worst.share),
-        condition=_finite(np.max(answer.accuracy.condition)),
-    )
+    bound = max(np.max(claim) for claim in answer.accuracy.claims["position"].values())
+    sizes = (error, bound, worst.share, np.max(answer.accuracy.condition))
+    finite = (float(size) if np.isfinite(size) else None for size in sizes)
+    return Answer(answer.formulation, outcome, reason, *finite)
 
 
 def _compared(scene: Scene, answer: Solution, reference: Solution) -> tuple[Comparison, ...]:
     return compare_solutions(scene, answer, reference, "hard", told_by(reference, scene)).rows
 
 
-def _wrong(rows: tuple[Comparison, ...]) -> bool:
+def _any_wrong(rows: tuple[Comparison, ...]) -> bool:
     """Whether a number is further off than the solution claims, or not given at all.
 
     However much it claims: the reference tells what a partner with a wide tolerance could not.
@@ -94,7 +89,3 @@ def _mended(answer: Solution, reference: Solution) -> Solution:
             true = reference.numbers[quantity]
             numbers[quantity] = {n: np.where(np.isfinite(x), x, true[n]) for n, x in arrays.items()}
     return answer.with_numbers(numbers)
-
-
-def _finite(number: float) -> float | None:
-    return float(number) if np.isfinite(number) else None

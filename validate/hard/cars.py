@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -17,17 +19,8 @@ from validate.cars.scene_content import Law, content_of
 from validate.formulations.reference_solution import reference_instant
 
 Array = NDArray[np.float64]
-FAR = np.array([3e6, -2e6, 2e6])  # mm
 ASKED = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster")
 SQUARE = 1.5707963267948966  # rad: the arm angle at which rise and angle are most nearly proportional
-
-# The paper's car with the axis of its strut 37 mm inboard of the ball joint, in whole millimetres and exactly
-# in line, and the spin axis of its wheel drawn by itself.
-BESIDE = PAPER | {
-    "strut_lower": (452.0, -270.0, 60.0),
-    "strut_rod_end": (456.0, -225.0, 265.0),
-    "wheel_axis_inner": (452.0, -330.0, 22.0),
-}
 
 
 def as_given(scene: Scene) -> Car:
@@ -38,47 +31,26 @@ def as_given(scene: Scene) -> Car:
     )
 
 
-PAPER_CAR = Car(PAPER, closure="collinear")
-# On one vertical line, so that a quarter turn about x or y, which permutes axes, lays the strut exactly flat.
-UPRIGHT_CAR = replace(
-    PAPER_CAR,
-    points=PAPER
-    | {
-        "strut_top": (450.0, -330.0, 470.0),
-        "strut_rod_end": (450.0, -330.0, 246.0),
-        "strut_lower": (450.0, -330.0, 20.0),
-    },
-)
-BESIDE_CAR = Car(BESIDE)
-# The same with the axis 400 mm beside the ball joint at the drawing: the slide runs out as the arm rises.
-WIDE_CAR = Car(BESIDE | {"strut_lower": (456.0, -20.0, 220.0), "strut_rod_end": (459.0, -140.0, 407.5)})
-# The strut beside its ball joint on the other side of the car, leaning every way.
-OTHER_CAR = turned(other_side(BESIDE_CAR), any_rotation(1))
-WISHBONE_CAR = as_given(Scene.load("double-wishbone"))
-# The same with a lower arm so short that the upper one can follow it to its dead points.
-SHORT_ARM_CAR = replace(
-    WISHBONE_CAR,
-    points=dict(WISHBONE_CAR.points)
-    | {"lower_arm_front": (-110.0, 580.0, 69.0), "lower_arm_rear": (90.0, 580.0, 78.0)},
-)
+def _cars() -> dict[str, Car]:
+    """The paper's strut, a double wishbone, and what `cars.toml` makes of them."""
+    cars = {
+        "paper": Car(PAPER, closure="collinear"),
+        "wishbone": as_given(Scene.load("double-wishbone")),
+    }
+    rows = tomllib.loads(files("validate.hard").joinpath("cars.toml").read_text(encoding="utf-8"))
+    for name, row in rows.items():
+        points = {**cars[row["of"]].points, **{point: tuple(place) for point, place in row["points"].items()}}
+        cars[name] = replace(cars[row["of"]], points=points, closure=row.get("closure", "drawn"))
+    other = other_side(cars["beside"])
+    # The strut beside its ball joint on the other side of the car, leaning every way; and far away.
+    cars["other"] = turned(other, any_rotation(1))
+    cars["turned"] = moved(turned(other, any_rotation(9)), np.array([3e6, -2e6, 2e6]))
+    return cars
 
 
-def _far(car: Car) -> Car:
-    """The car on the other side, turned about three axes and 4e6 mm from the origin."""
-    return moved(turned(other_side(car), any_rotation(9)), FAR)
-
-
-CARS: Mapping[str, Car] = {
-    "paper": PAPER_CAR,
-    "beside": BESIDE_CAR,
-    "wide": WIDE_CAR,
-    "other": OTHER_CAR,
-    "turned": _far(BESIDE_CAR),
-    "wishbone": WISHBONE_CAR,
-    "short-arm": SHORT_ARM_CAR,
-    "wishbone-turned": _far(WISHBONE_CAR),
-}
+CARS: Mapping[str, Car] = _cars()
 """Cars by the name that a case calls them by."""
+PAPER_CAR, BESIDE_CAR = CARS["paper"], CARS["beside"]
 
 
 def scene_content(

@@ -1,9 +1,8 @@
 """A hard case is a row: why it is hard, a scene made from one number that leads into it, what has to come.
 
 A family is such a row for every mechanism. The struts, on and beside their axis, are tried at every value of
-the parameter, the double wishbone at every fourth, all others at one: what is hard about a value is the same
-in each. Values are few: far from the singular place, at it, between them, and where `right` begins to be
-demanded.
+the number, the double wishbone at every fourth, all others at one: what is hard about a value is the same in
+each. Values are few: far from the singular place, at it, between them, and where `right` has to begin.
 """
 
 from __future__ import annotations
@@ -13,17 +12,20 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from validate.formulations.protocol import Solution
 from validate.hard.answer import Answer, Outcome
 from validate.hard.subjects import BESIDE, PAPER, SUBJECTS, WISHBONE, Content, Subject, hyphens
-from validate.hard.trial import OURS, Trial, try_scene
+from validate.hard.trial import MAP, NOT_ASKED, OURS, Trial, try_scene
+from validate.reference import InfeasibleError
 
-# Every case that pointcoord has to solve is tried by a map of the inputs too.
-MAP = "pointcoord-map"
 SOLVERS = (OURS, "pointcoord-newton", "absolute", "relative")
 # Why a model may refuse a mechanism, or no reference be had of it.
 HARD: Mapping[str, str] = {"bricard": "one of its rows depends on the others at every pose"}
 SceneAt = Callable[[Subject, float], Content]
+Judge = Callable[[Subject, float, Trial, Answer], Answer]
+Facts = Callable[[Subject, float], Mapping[str, float | str]]
 Values = Sequence[float]
+Every = Callable[[Subject], Values]
 
 
 @dataclass(frozen=True)
@@ -32,25 +34,21 @@ class Expected:
 
     Attributes:
         outcomes: those allowed.
-        right_from, right_to: for values of the parameter from here up, and from here down, only `right` is
-            allowed.
+        right_from: for values of the parameter from here up only `right` is allowed.
     """
 
     outcomes: tuple[Outcome, ...]
     right_from: float = float("inf")
-    right_to: float = float("-inf")
 
     @property
     def words(self) -> str:
         """In words."""
-        surely = [f"right from {self.right_from:g} up"] if self.right_from < float("inf") else []
-        surely += [f"right up to {self.right_to:g}"] if self.right_to > float("-inf") else []
-        return "; ".join((" or ".join(self.outcomes), *surely))
+        surely = f"; right from {self.right_from:g} up" if self.right_from < float("inf") else ""
+        return " or ".join(self.outcomes) + surely
 
     def met(self, value: float, outcome: Outcome) -> bool:
         """Whether an outcome is what had to come."""
-        surely = value >= self.right_from or value <= self.right_to
-        return outcome in (("right",) if surely else self.outcomes)
+        return outcome in (("right",) if value >= self.right_from else self.outcomes)
 
 
 RIGHT = Expected(("right",))
@@ -59,6 +57,12 @@ REFUSED = Expected(("refused",))
 # Of mechanisms that a model may refuse, and of which there may be no reference: then nothing is judged.
 IF_ANY = Expected(("right", "refused", "unjudged"))
 FAILS = Expected(("refused", "noted", "wrong"))
+ByFormulation = Mapping[str, Expected]
+
+
+def right_from(least: float) -> Expected:
+    """Right, or refused at less than a value."""
+    return replace(RIGHT_OR_REFUSED, right_from=least)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,16 +74,15 @@ class Case:
         group: heading that it is shown under.
         why: one sentence that says why it is hard.
         parameter: what tends to the singular place, with its unit.
-        values: of the parameter, evenly spaced in its logarithm.
+        values: of the parameter.
         scene: the content of the scene, of a mechanism and at a value.
         subject: the mechanism.
         expected: by formulation; a case tries the formulations named here.
-        judged: the trial at a value, with what else is measured, or asked of its answers.
+        judge: what becomes of an answer by what else is asked of it here.
+        facts: that say more of a value, by name with its unit.
         unit: of error and bound.
         given: whether the scene can be given to another solver.
         beyond: whether the scene has no pose at some instants, and `right` is a refusal that says so rightly.
-        also_answered: values at which the scene has an answer although `expected` allows a refusal as well;
-            they need not be among those that are tried.
     """
 
     name: str
@@ -89,21 +92,29 @@ class Case:
     values: tuple[float, ...]
     scene: SceneAt
     subject: Subject
-    expected: Mapping[str, Expected]
-    judged: Callable[[Subject, float, Trial], Trial] | None = None
+    expected: ByFormulation
+    judge: Judge | None = None
+    facts: Facts | None = None
     unit: str = "mm"
     given: bool = True
     beyond: bool = False
-    also_answered: tuple[float, ...] = ()
 
     def content(self, value: float) -> Content:
         """Of the scene at a value."""
         return self.scene(self.subject, value)
 
     def examine(self, value: float) -> Trial:
-        """Try one value."""
-        trial = try_scene(value, self.content(value), tuple(self.expected))
-        return trial if self.judged is None else self.judged(self.subject, value, trial)
+        """Try one value; by a map as well if it is one of the few, where there is something to compare."""
+        by_map = [MAP] if value in self.mapped else []
+        trial = try_scene(value, self.content(value), [*self.expected, *by_map])
+        facts = dict(self.facts(self.subject, value)) if self.facts else {}
+        answers = list(trial.answers[: len(self.expected)])
+        if self.judge is not None:
+            answers = [self.judge(self.subject, value, trial, answer) for answer in answers]
+        comparable = isinstance(trial.reference, Solution | InfeasibleError) or trial.reference is NOT_ASKED
+        if trial.scene is not None and comparable:
+            answers += trial.answers[len(self.expected) :]
+        return replace(trial, answers=tuple(answers), facts={**trial.facts, **facts})
 
     def without(self, formulations: Collection[str]) -> Case:
         """The same, tried by none of some formulations, such as those that are not installed."""
@@ -150,91 +161,66 @@ class Case:
         if not self.given or self.without_pose:
             return ()
         expected = self.expected.get(OURS) or next(iter(self.expected.values()))
-        needed = (v for v in self.values if expected.met(v, "right") and not expected.met(v, "refused"))
-        return tuple(dict.fromkeys((*needed, *self.also_answered)))
-
-
-def case(
-    scene: SceneAt,
-    parameter: str,
-    values: Values,
-    expected: Expected | Mapping[str, Expected] = RIGHT,
-    subject: Subject = PAPER,
-    *,
-    name: str = "",
-    why: str = "",
-    suffix: str | None = None,
-    **more: Any,
-) -> Case:
-    """A case, see `Case`.
-
-    Args:
-        expected: by formulation, or of each of `SOLVERS`.
-        name, why: the scene's own name, and the first paragraph of its text, if not given.
-        suffix: of the name; that of the mechanism if not given.
-    """
-    return Case(
-        name=(name or hyphens(whole(scene).__name__)) + (subject.suffix if suffix is None else suffix),
-        why=why or reason_of(scene),
-        parameter=parameter,
-        values=tuple(values),
-        scene=scene,
-        subject=subject,
-        expected=dict.fromkeys(SOLVERS, expected) if isinstance(expected, Expected) else expected,
-        **more,
-    )
-
-
-def whole(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function of which this one is a part with some arguments given."""
-    return whole(function.func) if isinstance(function, partial) else function
-
-
-def reason_of(function: Callable[..., Any]) -> str:
-    """Why a case is hard that a function makes: the first paragraph of its text."""
-    return " ".join((whole(function).__doc__ or "").partition("\n\n")[0].split())
+        return tuple(v for v in self.values if expected.met(v, "right") and not expected.met(v, "refused"))
 
 
 def family(
     scene: SceneAt,
     parameter: str,
-    values: Values | Callable[[Subject], Values],
-    expected: Expected | Mapping[str, Expected] = RIGHT,
+    values: Values | Every,
+    expected: Expected | ByFormulation | Callable[[Subject], Expected] = RIGHT,
     subjects: Sequence[Subject] = SUBJECTS,
+    *,
+    given: bool = True,
+    name: str = "",
+    why: str = "",
+    suffix: str | None = None,
     **more: Any,
 ) -> tuple[Case, ...]:
-    """A case for each of some mechanisms; see `case`. Of those that are hard by nature less is expected.
+    """A case for each of some mechanisms, see `Case`; those that are hard by nature are given to nobody.
 
     Args:
-        values: that the first mechanism is tried at, or of each.
+        values: all that a single mechanism or a strut is tried at, the others at some of them; or of each.
+        expected: by formulation, or of each of `SOLVERS`, of any mechanism or each.
+        name, why: the scene's own name, and the first paragraph of its text, if not given.
+        suffix: of the name; that of the mechanism if not given.
     """
-    return tuple(
-        case(
-            scene,
-            parameter,
-            values(one) if callable(values) else values_of(one, values),
-            expected_of(one, expected),
-            one,
+    made: Any = scene
+    while isinstance(made, partial):
+        made = made.func
+
+    def case(one: Subject) -> Case:
+        which = expected(one) if callable(expected) else expected
+        each = dict.fromkeys(SOLVERS, which) if isinstance(which, Expected) else which
+        refusable = set(each.values()) <= {REFUSED, RIGHT_OR_REFUSED}
+        some = values(one) if callable(values) else values
+        tried = values_of(one, some) if len(subjects) > 1 and not callable(values) else some
+        return Case(
+            name=(name or hyphens(made.__name__)) + (one.suffix if suffix is None else suffix),
+            why=why or reason_of(made),
+            parameter=parameter,
+            values=tuple(tried),
+            scene=scene,
+            subject=one,
+            expected=each,
+            given=given and (refusable or one.name not in HARD),
             **more,
         )
-        for one in subjects
-    )
+
+    return tuple(map(case, subjects))
 
 
-def expected_of(
-    subject: Subject, expected: Expected | Mapping[str, Expected]
-) -> Expected | Mapping[str, Expected]:
-    """What formulations may make of a mechanism; of one that is hard by nature, never wrong numbers."""
-    if subject.name not in HARD:
-        return expected
-    return IF_ANY if isinstance(expected, Expected) else dict.fromkeys(expected, IF_ANY)
+def reason_of(function: Callable[..., Any]) -> str:
+    """Why a case is hard that a function makes: the first paragraph of its text."""
+    return " ".join((function.__doc__ or "").partition("\n\n")[0].split())
 
 
 def values_of(subject: Subject, values: Values) -> Values:
     """Those of a family's values that a mechanism is tried at: all, every fourth and the last, or one."""
     if subject in (PAPER, BESIDE):
         return values
-    return coarse(values) if subject is WISHBONE else (values[len(values) // 2],)
+    every_fourth = tuple(dict.fromkeys((*values[::4], values[-1])))
+    return every_fourth if subject is WISHBONE else (values[len(values) // 2],)
 
 
 def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
@@ -242,11 +228,20 @@ def decades(low: int = -12, high: int = 0) -> tuple[float, ...]:
     return tuple(float(f"1e{k}") for k in (*range(high, low, -3), low))
 
 
-def coarse(values: Values) -> tuple[float, ...]:
-    """Every fourth value and the last."""
-    return tuple(dict.fromkeys((*values[::4], values[-1])))
+def every(
+    found: Callable[[Subject], Sequence[object]], first: int = 0, step: int = 1, sparse: int = 1
+) -> Every:
+    """A number, from 1, for each thing that a mechanism has; of most mechanisms for one amid them.
 
+    Args:
+        first, step: of the things of a strut or a wishbone.
+        sparse: of the wishbone's things one of so many.
+    """
 
-def counted(count: int) -> tuple[float, ...]:
-    """Numbers from 1 to a count, as values of a parameter."""
-    return tuple(float(n) for n in range(1, count + 1))
+    def values(subject: Subject) -> Values:
+        numbers = tuple(float(n) for n in range(1, len(found(subject)) + 1))
+        if not subject.level:
+            return values_of(subject, numbers)
+        return numbers[first :: step * (sparse if subject is WISHBONE else 1)]
+
+    return values

@@ -23,6 +23,7 @@ from validate.reference.route import CLEAR, reached
 
 NEAR = 1e-6  # of the range: what pointcoord's end is off by at most
 BEYOND = 1e-3  # of the range: how far beyond it the reference is asked
+Values = tuple[float, ...]
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class LastValue:
     ahead: bool
 
     def beyond(self, share: float) -> float:
-        """An input beyond this end by a share of the reach, rad or mm."""
+        """An input beyond this end by a share of the reach, or before it by a negative one, rad or mm."""
         return float(self.value + (1 if self.ahead else -1) * Fraction(share) * Fraction(self.reach))
 
 
@@ -55,7 +56,7 @@ def last_value(
     Raises:
         ValueError: no end is near the place where pointcoord sees it.
     """
-    there = subject.home if held is None else held
+    there = held or subject.home
     return _last_value(subject, driven, ahead, tuple(there[name] for name in subject.kinds))
 
 
@@ -75,34 +76,32 @@ def ends_of(subject: Subject) -> tuple[tuple[str, bool], ...]:
 
 
 @cache
-def _last_value(subject: Subject, driven: str, ahead: bool, values: tuple[float, ...]) -> LastValue:
+def _last_value(subject: Subject, driven: str, ahead: bool, values: Values) -> LastValue:
     held: dict[str, Fraction | float] = dict(zip(subject.kinds, values, strict=True))
     low, high = _seen(subject, driven, values)
-    reach, seen = high.value - low.value, high.value if ahead else low.value
-    outward = reach if ahead else -reach
-    beyond = held | {driven: Fraction(seen) + Fraction(BEYOND * outward)}
+    reach, seen = high.value - low.value, Fraction((low, high)[ahead].value)
+    beyond = held | {driven: seen + Fraction(BEYOND * (reach if ahead else -reach))}
     design = _drawn_at(subject, held)
     try:
         reached(design, CLEAR, design.driven({name: (value, 0, 0) for name, value in beyond.items()}))
     except InfeasibleError as fold:
         end = as_fraction(fold.inputs[driven], driven)
-        if abs(end - Fraction(seen)) <= Fraction(NEAR * reach):
+        if abs(end - seen) <= Fraction(NEAR * reach):
             return LastValue(end, reach, ahead)
-    raise ValueError(f"{driven} of {subject.name!r} has no end near {seen!r}")
+    raise ValueError(f"{driven} of {subject.name!r} has no end near {float(seen)!r}")
 
 
 def _drawn_at(subject: Subject, held: Mapping[str, Any]) -> Design:
     """The mechanism drawn at a pose, to many digits, so that one input alone leads from there to its end."""
-    scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.kinds, 0.0)))
-    plain = scene.mechanism.plain(tuple(subject.kinds))
+    plain = subject.plain
     if held != subject.drawn:
-        pose = reference_instant(scene, {name: (value, 0, 0) for name, value in held.items()})
+        pose = reference_instant(subject.scene, {name: (value, 0, 0) for name, value in held.items()})
         plain["points"] = {name: pose.position[name] for name in plain["points"]}
     return Design.from_plain(plain)
 
 
 @cache
-def _seen(subject: Subject, driven: str, values: tuple[float, ...]) -> tuple[End, End]:
+def _seen(subject: Subject, driven: str, values: Values) -> tuple[End, End]:
     """Both ends of an input as pointcoord sees them, the others held at these values."""
     held = dict(zip(subject.kinds, values, strict=True))
     there = subject.car if held == subject.drawn else drawn_at(subject.car, held)

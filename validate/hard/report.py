@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from itertools import groupby
 from typing import Any, get_args
 
 from validate.hard.answer import Answer, Outcome
-from validate.hard.case import MAP, Case
+from validate.hard.case import Case
 from validate.hard.run import Examined, as_expected, counts
+from validate.hard.trial import MAP
 from validate.output.report import counted_as
 from validate.output.table import Part, Table
 
@@ -31,25 +32,27 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
     case, values = result.case, result.case.values
     span = f"{values[0]:g}{f' to {values[-1]:g}' * (len(values) > 1)}, {counted_as(len(values), 'value')}"
     sizes = (f"error [{case.unit}]", f"bound [{case.unit}]", "of its bound", "condition")
-    head = ("formulation", "tried", *OUTCOMES, *sizes, "verdict")
     lines: list[Part] = [
         f"{case.name}: {case.why}",
         f"  parameter: {case.parameter}, {span}",
         f"  expected: {case.behaviour}",
-        Table(head, tuple(_row(result, name) for name in counts([result])), indent=2),
+        Table(
+            ("formulation", "tried", *OUTCOMES, *sizes, "verdict"),
+            tuple(_row(result, name) for name in counts([result])),
+            indent=2,
+        ),
     ]
     if every_value:
-        rows = (
-            (f"{t.value:g}", a.formulation, a.outcome, *_digits([a]), short(a.reason))
+        rows = tuple(
+            (f"{value:g}", a.formulation, a.outcome, *_digits([a]), short(a.reason))
+            for value, a in result.answers()
+        )
+        lines.append(Table(("value", "formulation", "outcome", *sizes, "verdict"), rows, indent=2))
+        lines += [
+            f"  at {t.value:g}: {', '.join(f'{k}: {v}' for k, v in t.facts.items())}"
             for t in result.trials
-            for a in t.answers
-        )
-        head = ("value", "formulation", "outcome", *sizes, "verdict")
-        lines.append(Table(head, tuple(rows), indent=2))
-        told = (
-            f"  at {t.value:g}: {', '.join(f'{k}: {v}' for k, v in t.facts.items())}" for t in result.trials
-        )
-        lines += [line for line, t in zip(told, result.trials, strict=True) if t.facts]
+            if t.facts
+        ]
     lines += [
         f"  NOT AS EXPECTED: {answer.formulation} is {answer.outcome} at {value:g}: {answer.reason}"
         for value, answer in result.unexpected
@@ -58,18 +61,18 @@ def case_parts(result: Examined, every_value: bool = False) -> tuple[Part, ...]:
 
 
 def _row(result: Examined, name: str) -> tuple[str, ...]:
-    given = result.answers(name)
-    outcomes = Counter(answer.outcome for _, answer in given)
-    other = any(answer.formulation == name for _, answer in result.unexpected)
-    verdict = "NOT as expected" if other else "as expected"
-    stop = next(((value, answer) for value, answer in given if answer.outcome == "refused"), None)
-    if stop is not None:
-        verdict += f"; gives up at {stop[0]:g}: {short(stop[1].reason)}"
-    return (
-        *(name, str(len(given)), *(str(outcomes[o] or ".") for o in OUTCOMES)),
-        *_digits([answer for _, answer in given]),
-        verdict,
-    )
+    given = [answer for _, answer in result.answers(name)]
+    verdict = "as expected"
+    if any(answer.formulation == name for _, answer in result.unexpected):
+        verdict = "NOT as expected"
+    refused = [(value, a) for value, a in result.answers(name) if a.outcome == "refused"]
+    verdict += "".join(f"; gives up at {value:g}: {short(a.reason)}" for value, a in refused[:1])
+    outcomes: Counter[Outcome] = Counter(answer.outcome for answer in given)
+    return (name, str(len(given)), *_outcomes(outcomes), *_digits(given), verdict)
+
+
+def _outcomes(found: Mapping[Outcome, int]) -> list[str]:
+    return [str(found.get(outcome) or ".") for outcome in OUTCOMES]
 
 
 def _digits(answers: Sequence[Answer]) -> list[str]:
@@ -98,10 +101,7 @@ def times_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
 
 def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     """Counts over all cases, and the verdict."""
-    rows = [
-        (name, str(sum(found.values())), *(str(found[o] or ".") for o in OUTCOMES))
-        for name, found in counts(results).items()
-    ]
+    rows = [(name, str(sum(found.values())), *_outcomes(found)) for name, found in counts(results).items()]
     trials = sum(len(result.trials) for result in results)
     lines: list[Part] = [
         f"{counted_as(len(results), 'case')}, {counted_as(trials, 'scene')}:",
@@ -112,18 +112,14 @@ def summary_parts(results: Sequence[Examined]) -> tuple[Part, ...]:
     if refused := Counter(answer.reason.partition(":")[0] for answer in of_map):
         kinds = ", ".join(f"{count} {kind}" for kind, count in refused.most_common())
         lines.append(f"Refused by the map, whose effort is bounded here: {kinds}.")
-    other = [result for result in results if result.unexpected or result.wrong]
     verdict = "All as expected: but for the formulas as printed, no number is wrong without a warning"
-    if other:
+    if other := [result for result in results if result.unexpected or result.wrong]:
         verdict = (
             f"NOT as expected: {counted_as(sum(len(r.unexpected) for r in other), 'answer')}, "
             f"{sum(len(r.wrong) for r in other)} wrong without a warning, in "
             f"{', '.join(result.case.name for result in other)}"
         )
-    unjudged = Counter(
-        r.case.name for r in results for t in r.trials for a in t.answers if a.outcome == "unjudged"
-    )
-    if unjudged:
+    if unjudged := Counter(r.case.name for r in results for _, a in r.answers() if a.outcome == "unjudged"):
         verdict += f"; {counted_as(unjudged.total(), 'answer')} not judged, in {', '.join(unjudged)}"
     return (*lines, f"{verdict}.")
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from validate.extras import MissingPackage
-from validate.formulations.protocol import Solution
-from validate.hard.answer import Answer
-from validate.hard.case import MAP, Case
-from validate.hard.trial import NOT_ASKED, Trial, asked_reference, compared, said, solved
-from validate.reference import InfeasibleError
+from validate.hard.answer import Answer, Outcome
+from validate.hard.case import Case
+from validate.hard.trial import Trial, said
 
 
 @dataclass(frozen=True)
@@ -23,9 +21,11 @@ class Examined:
     trials: tuple[Trial, ...]
     seconds: float
 
-    def answers(self, formulation: str) -> tuple[tuple[float, Answer], ...]:
-        """What a formulation answered, each with the value of the parameter."""
-        return tuple((t.value, a) for t in self.trials for a in t.answers if a.formulation == formulation)
+    def answers(self, formulation: str = "") -> tuple[tuple[float, Answer], ...]:
+        """What a formulation answered, or all did, each with the value of the parameter."""
+        return tuple(
+            (t.value, a) for t in self.trials for a in t.answers if formulation in ("", a.formulation)
+        )
 
     @property
     def unexpected(self) -> tuple[tuple[float, Answer], ...]:
@@ -39,7 +39,7 @@ class Examined:
 
 
 def examine(case: Case) -> Examined:
-    """Try all values of a case; a few of them by a map of the inputs too.
+    """Try all values of a case.
 
     Raises:
         MissingPackage: a formulation of the case is not installed.
@@ -50,29 +50,18 @@ def examine(case: Case) -> Examined:
 
 
 def tried(case: Case, value: float) -> Trial:
-    """A value tried, by a map too if it is one of the few.
+    """A value tried; a trial that fails says nothing of the formulations: it is counted, and the run goes on.
 
     Raises:
         MissingPackage: a formulation of the case is not installed.
     """
     try:
-        trial = case.examine(value)
+        return case.examine(value)
     except MissingPackage:
         raise
-    # A trial that fails says nothing of the formulations; it is counted, and the run goes on.
     except Exception as error:
         reason = f"the trial fails: {said(error)}"
         return Trial(value, tuple(Answer(name, "unjudged", reason) for name in case.expected))
-    if trial.scene is None or value not in case.mapped:
-        return trial
-    came, reference = solved(MAP, trial.scene), trial.reference
-    if isinstance(came, Solution) and reference is NOT_ASKED:
-        reference = asked_reference(trial.scene)
-    # Without a reference, or a proof that there is no pose, nothing can be compared.
-    if reference is not NOT_ASKED and not isinstance(reference, Solution | InfeasibleError):
-        return trial
-    by_map = compared(trial.scene, MAP, came, reference)
-    return replace(trial, answers=(*trial.answers, by_map))
 
 
 def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examined, ...]:
@@ -84,12 +73,11 @@ def run(cases: Sequence[Case], done: Callable[[Examined], None]) -> tuple[Examin
     return tuple(results)
 
 
-def counts(results: Iterable[Examined]) -> dict[str, Counter[str]]:
+def counts(results: Iterable[Examined]) -> dict[str, Counter[Outcome]]:
     """How often each formulation came to each outcome."""
-    found: dict[str, Counter[str]] = {}
-    for result in results:
-        for answer in (answer for trial in result.trials for answer in trial.answers):
-            found.setdefault(answer.formulation, Counter())[answer.outcome] += 1
+    found: dict[str, Counter[Outcome]] = {}
+    for _, answer in (one for result in results for one in result.answers()):
+        found.setdefault(answer.formulation, Counter())[answer.outcome] += 1
     return found
 
 

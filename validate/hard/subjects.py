@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
@@ -14,8 +14,6 @@ from validate.cars.scene_content import Law, content_of
 from validate.hard.cars import ASKED, CARS, SQUARE, as_given, drawn_angle
 
 Content = dict[str, Any]
-
-
 # angle: 0 to pi from a direction; turn: any number of turns from the drawing; length.
 Kind = Literal["angle", "turn", "length"]
 KINDS: Mapping[str, Kind] = {"arm": "angle", "turn": "turn"}
@@ -54,17 +52,19 @@ class Subject:
         return {name: "mm" if kind == "length" else "rad" for name, kind in self.kinds.items()}
 
     @cached_property
-    def plain(self) -> Mapping[str, Any]:
+    def scene(self) -> Scene:
+        """A scene of it, to look at."""
+        return Scene.from_mapping(self.absolute(dict.fromkeys(self.kinds, 0.0)))
+
+    @property
+    def plain(self) -> dict[str, Any]:
         """The mechanism as plain data."""
-        scene = Scene.from_mapping(self.absolute(dict.fromkeys(self.kinds, 0.0)))
-        return scene.mechanism.plain(tuple(self.kinds))
+        return self.scene.mechanism.plain(tuple(self.kinds))
 
     @cached_property
     def drawn(self) -> Mapping[str, float]:
         """The value of each input as drawn, rad or mm."""
-        if self.level:
-            return {"arm_angle": drawn_angle(self.car), "rack": 0.0}
-        return drawn_inputs(Scene.from_mapping(self.absolute(dict.fromkeys(self.kinds, 0.0))))
+        return {"arm_angle": drawn_angle(self.car), "rack": 0.0} if self.level else drawn_inputs(self.scene)
 
     @property
     def home(self) -> Mapping[str, float]:
@@ -78,7 +78,6 @@ class Subject:
         heave: Law | None = None,
         *,
         car: Car | None = None,
-        only: str = "",
         scale: float = 1.0,
         **settings: Any,
     ) -> Content:
@@ -87,14 +86,10 @@ class Subject:
         Args:
             rad, mm: laws of angles and of lengths, from home.
             car: in place of the mechanism as it is drawn.
-            only: the one input that moves; the others rest at home.
             scale: of the car over the mechanism as it is drawn.
         """
-        laws = {"rad": rad, "mm": mm}
         inputs = {
-            name: moved_by(
-                laws[unit] if only in ("", name) else 0.0, self.home[name] * (scale if unit == "mm" else 1.0)
-            )
+            name: moved_by(mm, scale * self.home[name]) if unit == "mm" else moved_by(rad, self.home[name])
             for name, unit in self.units.items()
         }
         return self.absolute(inputs | ({} if heave is None else {"heave": heave}), car, **settings)
@@ -124,12 +119,6 @@ def moved_by(law: Law, home: float) -> Law:
     return {"table": {**table, "values": [home + value for value in table["values"]]}}
 
 
-ARM_AND_RACK: Mapping[str, Kind] = {"arm_angle": "angle", "rack": "length"}
-LEVEL = {"arm_angle": SQUARE, "rack": 0.0}
-OF_CARS = {name: Subject(name, car, ARM_AND_RACK, LEVEL) for name, car in CARS.items()}
-PAPER, BESIDE, WISHBONE = OF_CARS["paper"], OF_CARS["beside"], OF_CARS["wishbone"]
-
-
 def _of_scene(scene: Scene) -> Subject:
     """The mechanism of a scene, driven by the inputs that the scene drives."""
     part = scene.mechanism
@@ -140,21 +129,26 @@ def _of_scene(scene: Scene) -> Subject:
     return Subject(part.name, as_given(scene), kinds, {}, heaves, tuple(scene.effects), parts)
 
 
-def _others() -> Iterator[Subject]:
+def _others() -> tuple[Subject, ...]:
     """Every other mechanism that is shipped, as the first scene of it draws it."""
-    seen = {subject.car.suspension for subject in OF_CARS.values()}
+    first: dict[str, Scene] = {}
     for scene in map(Scene.load, built_in_scenes()):
-        if scene.mechanism.name not in seen:
-            seen.add(scene.mechanism.name)
-            yield _of_scene(scene)
+        first.setdefault(scene.mechanism.name, scene)
+    cars = {car.suspension for car in CARS.values()}
+    return tuple(_of_scene(scene) for name, scene in first.items() if name not in cars)
 
 
-_EVERY = tuple(_others())
+ARM_AND_RACK: Mapping[str, Kind] = {"arm_angle": "angle", "rack": "length"}
+LEVEL = {"arm_angle": SQUARE, "rack": 0.0}
+OF_CARS = {name: Subject(name, car, ARM_AND_RACK, LEVEL) for name, car in CARS.items()}
+PAPER, BESIDE, WISHBONE = OF_CARS["paper"], OF_CARS["beside"], OF_CARS["wishbone"]
+_EVERY = _others()
 OTHERS = tuple(subject for subject in _EVERY if not subject.of_parts)
-# Two corners on one rack take thirty times the time of one: families of which they would repeat each corner's
-# answers leave them out.
-OF_PARTS = tuple(subject for subject in _EVERY if subject.of_parts)
 NAMED: Mapping[str, Subject] = {**OF_CARS, **{subject.name: subject for subject in _EVERY}}
+# Two corners on one rack take thirty times the time of one: they are tried in families of which they do not
+# repeat each corner's answers, and mostly rolling on the ground, which takes in all that the others have.
+OF_PARTS = tuple(subject for subject in _EVERY if subject.of_parts)
+ROLLING = NAMED["rolling_axle"]
 SUBJECTS = (PAPER, WISHBONE, *OTHERS)
 ALL = (*SUBJECTS, *OF_PARTS)
 HEAVING = tuple(subject for subject in SUBJECTS if subject.heaves)

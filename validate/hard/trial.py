@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from pointcoord import Scene, SceneError
-from pointcoord.method import MAP
+from pointcoord.method import MAP as BY_MAP
 from validate.extras import MissingPackage
 from validate.formulations.point_coordinates import PointCoordinates
 from validate.formulations.protocol import FormulationError, Solution
@@ -24,6 +24,8 @@ from validate.hard.answer import Answer, judged_answer
 from validate.reference import InfeasibleError, NoReferenceError
 
 OURS = "pointcoord"
+# Every case that pointcoord has to solve is tried by a map of the inputs too.
+MAP = "pointcoord-map"
 NOT_ASKED = NoReferenceError("not asked, as all refuse")
 # Factorisations of one map: some 0.3 s. Plain motions take a tenth of it; near folds no number is enough.
 MAP_EFFORT = 1000
@@ -34,8 +36,8 @@ class Trial:
     """One value of a parameter, tried by every formulation of the case.
 
     Attributes:
-        facts: what else was measured there, by name with its unit.
-        scene: None where it could not be read, or no other answer can be compared.
+        facts: what else is to be said of it, by name with its unit.
+        scene: None where it could not be read.
         came: a formulation's solution, or why there is none, by name.
         reference: at the scene's instants, or why there is none.
     """
@@ -52,10 +54,6 @@ class Trial:
         """Wrong numbers that their formulation gave as right; the printed formulas are there to be wrong."""
         return tuple(a for a in self.answers if a.outcome == "wrong" and a.formulation != "printed")
 
-    def noting(self, facts: Mapping[str, float | str]) -> Trial:
-        """With more facts."""
-        return replace(self, facts={**self.facts, **facts})
-
 
 def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[str]) -> Trial:
     """Solve a scene by each formulation and compare the answers with the reference.
@@ -69,11 +67,10 @@ def try_scene(value: float, content: Mapping[str, Any], formulations: Sequence[s
         refused = tuple(Answer(name, "refused", said(error)) for name in formulations)
         return Trial(value, refused, {"reference": "not asked"})
     came = {name: solved(name, scene) for name in formulations}
-    if not any(isinstance(one, Solution) for one in came.values()):
-        return Trial(value, tuple(compared(scene, *one, NOT_ASKED) for one in came.items()), {}, scene, came)
-    reference = asked_reference(scene)
+    asked = any(isinstance(one, Solution) for one in came.values())
+    reference = asked_reference(scene) if asked else NOT_ASKED
     answers = tuple(compared(scene, *one, reference) for one in came.items())
-    facts = {"reference": said(reference)} if isinstance(reference, Exception) else {}
+    facts = {"reference": said(reference)} if asked and isinstance(reference, Exception) else {}
     return Trial(value, answers, facts, scene, came, reference)
 
 
@@ -87,9 +84,9 @@ def solved(name: str, scene: Scene) -> Solution | Exception:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             one = formulation(name)
-            if isinstance(one, PointCoordinates) and one.method is MAP:
+            if isinstance(one, PointCoordinates) and one.method is BY_MAP:
                 # Given up early: thousands of hard cases have to be tried in little time.
-                one = replace(one, method=replace(MAP, map_effort=MAP_EFFORT))
+                one = replace(one, method=replace(BY_MAP, map_effort=MAP_EFFORT))
             return one.solve(scene)
     except MissingPackage:
         raise

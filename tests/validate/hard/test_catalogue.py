@@ -4,9 +4,11 @@ Hard cases go through the map of the inputs too, with bounded effort.
 """
 
 import math
+import re
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -21,12 +23,25 @@ from validate.formulations.registry import formulation
 from validate.hard import trial as trying
 from validate.hard.answer import Answer, judged_answer
 from validate.hard.cars import PAPER_CAR, scene_content
-from validate.hard.case import FAILS, MAP, REFUSED, RIGHT, Case, Expected, case, decades
+from validate.hard.case import FAILS, REFUSED, RIGHT, Case, Expected, family
+from validate.hard.catalogue import CASES
 from validate.hard.report import case_parts, summary_parts
 from validate.hard.run import as_expected, examine
-from validate.hard.subjects import Subject
-from validate.hard.trial import OURS, Trial, try_scene
+from validate.hard.subjects import PAPER, Subject
+from validate.hard.trial import MAP, OURS, Trial, try_scene
 from validate.output.table import text_of
+
+
+def test_cases_are_called_and_described_as_the_catalogue_promises() -> None:
+    names = [case.name for case in CASES]
+    assert len(set(names)) == len(names)
+    for case in CASES:
+        assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", case.name)
+        assert all((case.group, case.why, case.parameter, case.behaviour, case.expected))
+        assert len(set(case.values)) == len(case.values) > 0
+    groups = [group for group, _ in groupby(case.group for case in CASES)]
+    assert len(groups) < 2 * len(set(groups))
+
 
 MOVING = scene_content(PAPER_CAR, [1.5, 0.3], [0.0, 40.0], stop=0.2)
 
@@ -126,7 +141,7 @@ def test_a_crash_or_a_warning_is_a_wrong_answer_and_a_refusal_is_none(
     assert (answer.outcome, answer.reason) == (outcome, reason)
 
 
-def made(subject: Subject, value: float) -> dict[str, Any]:
+def made(*_: object) -> dict[str, Any]:
     """It is made."""
     return {}
 
@@ -134,10 +149,12 @@ def made(subject: Subject, value: float) -> dict[str, Any]:
 def made_case(answers: dict[float, Answer], expected: Expected = RIGHT, name: str = "absolute") -> Case:
     """A case with given answers."""
 
-    def judged(_: Subject, value: float, trial: Trial) -> Trial:
-        return Trial(value, (answers[value],), {"size": math.inf})
+    def judge(_: Subject, value: float, __: Trial, ___: Answer) -> Answer:
+        return answers[value]
 
-    return case(made, "a number", tuple(answers), {name: expected}, group="0. Made", judged=judged)
+    values = tuple(answers)
+    (case,) = family(made, "a number", values, {name: expected}, [PAPER], group="0. Made", judge=judge)
+    return case
 
 
 def test_a_wrong_number_without_warning_is_never_expected_but_of_the_printed_formulas() -> None:
@@ -166,11 +183,12 @@ def test_an_unexpected_refusal_and_a_failing_trial_are_reported() -> None:
     assert not as_expected([broken])
 
 
-STEERED = case(
+(STEERED,) = family(
     lambda _, value: scene_content(PAPER_CAR, [1.5, 0.1], value, stop=0.2, samples=2),
     "rack travel, mm",
-    decades(-6),
+    (1.0, 1e-3, 1e-6),
     {OURS: RIGHT},
+    [PAPER],
     name="steered",
     why="It is made.",
     group="0. Made",

@@ -1,7 +1,6 @@
 """`pointcoord hard` as its users meet it: text, JSON, exit status, and one line for every mistake."""
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,29 +10,30 @@ import pytest
 from validate.cli import main
 from validate.hard import catalogue
 from validate.hard.answer import Answer
-from validate.hard.case import RIGHT, Case, case
-from validate.hard.trial import Trial
+from validate.hard.case import RIGHT, Case, family
+from validate.hard.subjects import PAPER
 from validate.output.document import schema_text
 
 SCHEMA = json.loads(schema_text())
 
 
-def case_of(name: str, examine: Callable[[float], Trial], formulation: str = "absolute") -> Case:
-    """A case of one value."""
-    return case(
+def case_of(name: str, answer: Answer | None, formulation: str = "absolute") -> Case:
+    """A case of one value and answer; without one it is interrupted."""
+
+    def judge(*_: object) -> Answer:
+        if answer is None:
+            raise KeyboardInterrupt
+        return answer
+
+    (case,) = family(
         lambda *_: {},
-        "a number",
-        (1.0,),
-        {formulation: RIGHT},
+        *("a number", (1.0,), {formulation: RIGHT}, [PAPER]),
         name=name,
         why="It is made.",
         group="0. Made",
-        judged=lambda _, value, trial: examine(value),
+        judge=judge,
     )
-
-
-def interrupted(value: float) -> Trial:
-    raise KeyboardInterrupt
+    return case
 
 
 @pytest.fixture
@@ -41,8 +41,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> None:
     """A catalogue of two small cases, of which one goes wrong."""
 
     def wrong(name: str, formulation: str) -> Case:
-        answer = Answer(formulation, "wrong", "far off")
-        return case_of(name, lambda value: Trial(value, (answer,)), formulation)
+        return case_of(name, Answer(formulation, "wrong", "far off"), formulation)
 
     monkeypatch.setattr(catalogue, "CASES", (wrong("ours-fails", "pointcoord"), wrong("quiet", "absolute")))
 
@@ -97,8 +96,8 @@ def test_the_list_is_json_as_well(tmp_path: Path, capsys: pytest.CaptureFixture[
 def test_an_interrupted_run_leaves_the_cases_that_are_finished(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    right = Trial(1.0, (Answer("absolute", "right"),))
-    cases = (*(case_of(f"done-{i}", lambda value: right) for i in range(3)), case_of("stop", interrupted))
+    right = Answer("absolute", "right")
+    cases = (*(case_of(f"done-{i}", right) for i in range(3)), case_of("stop", None))
     monkeypatch.setattr(catalogue, "CASES", cases)
     target = tmp_path / "hard.json"
     assert main(["hard", "--json", str(target)]) == 130

@@ -10,15 +10,13 @@ from __future__ import annotations
 
 from functools import partial
 
-from validate.hard.cars import CARS, PAPER_CAR, SQUARE, scene_content
-from validate.hard.case import FAILS, RIGHT, SOLVERS, case, family
-from validate.hard.subjects import SUBJECTS, Content, Subject, hyphens
+from validate.hard.cars import PAPER_CAR, SQUARE, scene_content
+from validate.hard.case import FAILS, RIGHT, SOLVERS, family, values_of
+from validate.hard.subjects import NAMED, PAPER, SUBJECTS, Content, Subject, hyphens
 
 VALUES = (1e-1, 1e-4, 1e-7, 1e-12, 0.0)
 RACK_RATE = 150.0  # mm/s, the paper's steering scene
 PLANE_ANGLE = 1.760964175417552  # rad, where omega comes to lie in the knuckle's plane while the arm turns on
-# Of the two suspensions that the catalogue began with, the one at rest leans every way, or is far off too.
-LEANING = {"paper": CARS["other"], "wishbone": CARS["wishbone-turned"]}
 
 
 def arm_all_but_held(_: Subject, value: float) -> Content:
@@ -34,41 +32,43 @@ def omega_in_the_knuckle_plane(_: Subject, value: float) -> Content:
 def at_rest(subject: Subject, value: float) -> Content:
     """All inputs rest, so every rate is zero: rounding must not make a motion of it."""
     still = [value, 0.0, 0.0], [20.0 if subject.level else value, 0.0], 0.0 if subject.heaves else None
-    return subject.content(*still, car=LEANING.get(subject.name, subject.car), stop=1.0)
+    # The strut leans every way.
+    return subject.content(*still, car=NAMED["other"].car if subject is PAPER else None, stop=1.0)
 
 
 def hardly_moves(driven: str, subject: Subject, value: float) -> Content:
     """One input at this rate, all others at rest."""
-    content = subject.content()
-    inputs = {**content["inputs"], driven: {"polynomial": [subject.home[driven], value]}}
-    return {**content, "inputs": inputs}
+    return subject.absolute({**subject.home, driven: [subject.home[driven], value]})
 
 
-GROUP = "Body rates"
+_rates = partial(family, group="Body rates")
 _printed = partial(
-    case, values=VALUES, expected={**dict.fromkeys(SOLVERS, RIGHT), "printed": FAILS}, group=GROUP
+    _rates,
+    values=VALUES,
+    expected={**dict.fromkeys(SOLVERS, RIGHT), "printed": FAILS},
+    subjects=[PAPER],
 )
-INPUTS = {name: unit for subject in SUBJECTS for name, unit in subject.units.items()}
 
 CASES = (
-    _printed(arm_all_but_held, "rate of the arm while the rack is driven, rad/s; then the arm is held"),
-    _printed(
+    *_printed(
+        arm_all_but_held, parameter="rate of the arm while the rack is driven, rad/s; then the arm is held"
+    ),
+    *_printed(
         omega_in_the_knuckle_plane,
-        "distance of the turning arm from the angle at which it does, rad; then at it",
+        parameter="distance of the turning arm from the angle at which it does, rad; then at it",
     ),
     *(
         case
-        for name, unit in INPUTS.items()
-        for label in ("arm" if name == "arm_angle" else name,)
-        for case in family(
+        for name, unit in {name: unit for one in SUBJECTS for name, unit in one.units.items()}.items()
+        for label in (hyphens(name).removesuffix("-angle"),)
+        for case in _rates(
             partial(hardly_moves, name),
             f"rate of the {label}, {unit}/s; then at rest",
-            (1e-25, 1e-100, 1e-175, 1e-300, 0.0),
+            lambda one: values_of(one, (1e-25, 1e-100, 1e-175, 1e-300, 0.0)),
             subjects=[one for one in SUBJECTS if name in one.kinds],
-            name=f"{hyphens(label)}-hardly-moves",
+            name=f"{label}-hardly-moves",
             why=f"Only the {label} moves, slower and slower: rates keep their digits down to zero.",
-            group=GROUP,
         )
     ),
-    *family(at_rest, "arm angle from a right angle, rad; then at it", VALUES, group=GROUP),
+    *_rates(at_rest, "arm angle from a right angle, rad; then at it", VALUES),
 )

@@ -1,4 +1,4 @@
-"""Two assemblies close together, starts far from the drawing, large steps: the branch must be the drawing's.
+"""Two assemblies close together, drawings near their mirror image, large steps: the branch is the drawing's.
 
 Of the assemblies of a pose the one that is meant is reached from the drawing without a singular pose on the
 way. The reference is that assembly, so a solution that has jumped to another one is wrong however well its
@@ -14,40 +14,32 @@ is to be had of it nothing is judged here, and the tests of mechanisms hold it t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 
 from validate.cars.scene_content import Law, content_of
 from validate.hard.cars import drawn_angle, scene_content
-from validate.hard.case import REFUSED, Expected, Values, case, coarse, decades, expected_of
+from validate.hard.case import REFUSED, decades, family, right_from
 from validate.hard.cases.points import assembled, upper_arm_flat
 from validate.hard.last_values import ends_of, last_value
-from validate.hard.subjects import NAMED, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
+from validate.hard.subjects import BESIDE, OTHERS, PAPER, WISHBONE, Content, Subject, hyphens
 
-# Arm angle, rad, and rack travel, mm, at which the two sides of the tie rod just meet, by car: at less rack
-# travel the arm cannot pass this angle, at more it can.
-MEETINGS: Mapping[str, tuple[float, float]] = {
-    "paper": (0.6129246396239625, -0.00292320063271574),
-    "beside": (0.6117454829993613, -3.0987778880673007),
+# Arm angle, rad, and rack travel, mm, at which the two sides of the tie rod just meet: at less rack travel
+# the arm cannot pass this angle, at more it can. And half the motion through there, rad; a dead point is
+# 0.05 rad below it.
+MEETINGS = {
+    PAPER: (0.6129246396239625, -0.00292320063271574, 0.05),
+    BESIDE: (0.6117454829993613, -3.0987778880673007, 0.04),
 }
-# rad: half the motion through the place where the branches nearly meet; a dead point is 0.05 rad below it.
-WIDE = {"paper": 0.05, "beside": 0.04}
-# A motion through such a place takes half a second, so few values must do.
-FEW = (1.0, 1e-4, 1e-8, 1e-12)
-CLEAR = Expected(("right", "refused"), right_from=1e-6)
-# The product of vectors that tells the side of the paper's tie rod is 0.56 of their lengths. Assembling moves
-# no point by more than 200 mm times the parameter, which changes each vector of that product by twice as much
-# at most: at 0.1 by 40 mm of some 530, 430 and 150, 0.08 + 0.09 + 0.27 < 0.56 in all: no fold is on the way.
-# At 1 the lower point, 61 mm from the ball joint, is drawn so far aside that their line misses the top by
-# 440 mm, and that sum is above 4: the way back is each model's own, and a fold may lie on it.
-STRAIGHTENED = Expected(("right", "refused"), right_to=0.1)
+
+
+CLEAR = right_from(1e-6)
 
 
 def through_the_meeting(side: float, subject: Subject, share: float) -> Content:
     """The arm runs through the angle of the meeting, the rack `share` of 10 mm on one side of it."""
-    (angle, rack), wide = MEETINGS[subject.name], WIDE[subject.name]
+    angle, rack, wide = MEETINGS[subject]
     inputs: dict[str, Law] = {"arm_angle": (angle + wide, -2.0 * wide), "rack": rack + side * 10.0 * share}
     return subject.absolute(inputs, stop=1.0, samples=5)
 
@@ -86,16 +78,6 @@ def crooked_drawing(_: Subject, share: float) -> Content:
     return scene_content(car, (PAPER.drawn["arm_angle"], 0.1), (0.0, 10.0), stop=1.0)
 
 
-def far_start(driven: str, ahead: bool, subject: Subject, share: float) -> Content:
-    """The drawing is the start guess, and the first instant lies at the far end of the range.
-
-    It is a share of half the range from the last value of an input, the others at home.
-    """
-    last = last_value(subject, driven, ahead)
-    law = (last.beyond(-0.5 * share), (-0.01 if ahead else 0.01) * last.reach)
-    return subject.absolute({**subject.home, driven: law}, stop=1.0, samples=2)
-
-
 def whole_range(driven: str, subject: Subject, share: float) -> Content:
     """Two instants, and between them the whole range of an input: one step could leap over it."""
     low, high = (last_value(subject, driven, ahead).beyond(-0.5 * share) for ahead in (False, True))
@@ -107,13 +89,6 @@ BY_NATURE = {
     "n_four_bar": (-0.5 * math.pi, "its branches cross."),
     "bricard": (-math.pi / 6.0, "its ring goes no further."),
 }
-# Name, why, whether beyond that turn, whether it moves there from the drawing.
-NEAR_THE_LINE = (
-    ("held-near-the-line", "It rests near the pose where", False, False),
-    ("swept-near-the-line", "It moves from the drawing to near the pose where", False, True),
-    ("held-beyond-the-line", "It is to be beyond the pose where", True, False),
-    ("swept-through-the-line", "It is to move through the pose where", True, True),
-)
 
 
 def to_the_line(beyond: bool, moving: bool, subject: Subject, value: float) -> Content:
@@ -125,98 +100,65 @@ def to_the_line(beyond: bool, moving: bool, subject: Subject, value: float) -> C
     return subject.absolute({driven: goal})
 
 
-_branch = partial(case, group="Branches")
-_clear = partial(_branch, expected=CLEAR)
-BESIDE = NAMED["beside"]
 APPROACH = "The tie rod's two assemblies come near each other as the arm passes 35 degrees"
 MEET = f"{APPROACH} and meet, so that there is a gap that a large step may leap."
 NEARLY_MEET = f"{APPROACH}, and a step may end on the other one."
-# Name, why, side of the meeting, in words, what has to come, values of the paper's strut and of that beside.
-MEETING = (
-    ("branches-nearly-meet", NEARLY_MEET, 1.0, "beyond", CLEAR, (1.0, 1e-2, 1e-6, 1e-12), FEW),
-    ("branches-met", MEET, -1.0, "short of", REFUSED, (1e-1, 1e-3, 1e-7, 1e-12), (1e-1, 1e-9, 1e-12)),
-)
-FAR = "distance of the first instant from the end, in parts of half the range"
-ALL = "distance of both instants from their ends, in parts of half the range"
-# Mechanism, what the name says of the input, the input, at which end, values.
-FAR_STARTS = (
-    *((PAPER, *row, FEW[1:]) for row in (("high", "arm_angle", False), ("rack", "rack", True))),
-    *((WISHBONE, *row, FEW[::3]) for row in (("high", "arm_angle", False), ("rack", "rack", True))),
-    *((one, hyphens(name), name, True, (1e-4,)) for one in OTHERS for name, up in ends_of(one) if up),
-)
-# Mechanism, what the name says of the input, the input, values, and where there is an answer as well.
-WHOLE_RANGES: tuple[tuple[Subject, str, str, Values, Values], ...] = (
-    *((PAPER, *row, FEW[1::2], ()) for row in (("arm", "arm_angle"), ("rack", "rack"))),
-    *((WISHBONE, *row, FEW[2:], FEW[2:3]) for row in (("arm", "arm_angle"), ("rack", "rack"))),
-    *(
-        (one, hyphens(name), name, (1e-4,), ())
-        for one in OTHERS
-        for name in one.kinds
-        if {(name, False), (name, True)} <= set(ends_of(one))
-    ),
-)
-FLAT = (
-    (PAPER, "kingpin and rack", "tie rod's outer end over that plane, in parts of the paper's", decades()),
-    (WISHBONE, "the upper arm", "upper ball joint over that plane, in parts of the car's", coarse(decades())),
-)
+_branch = partial(family, group="Branches")
 
-CASES = (
-    *(
-        _branch(
-            partial(through_the_meeting, side),
-            f"rack travel {where} the meeting, in parts of 10 mm",
-            values,
-            expected,
-            subject,
-            name=name,
-            why=why,
-        )
-        for name, why, side, where, expected, *both in MEETING
-        for subject, values in zip((PAPER, BESIDE), both, strict=True)
-    ),
-    _branch(
+CASES = [
+    *_branch(
         crooked_drawing,
         "the strut's inner points off its line, in parts of 100 mm",
-        (1.0, 1e-1, 1e-6, 1e-12),
-        STRAIGHTENED,
-        also_answered=(1.0,),
-    ),
-    *(
-        _clear(partial(far_start, driven, ahead), FAR, values, subject=subject, name=f"far-start-{where}")
-        for subject, where, driven, ahead, values in FAR_STARTS
-    ),
-    *(
-        _clear(
-            *(partial(whole_range, driven), ALL, values),
-            subject=subject,
-            name=f"whole-range-{where}",
-            also_answered=also,
-        )
-        for subject, where, driven, values, also in WHOLE_RANGES
-    ),
-    *(
-        _clear(
-            *(partial(flat_drawing, side), f"height of the {parameter}", values),
-            subject=subject,
-            name=f"flat-drawing{label}",
-            why=f"The drawing is close to its mirror image in the plane of {plane}: rounding may choose.",
-        )
-        for subject, plane, parameter, values in FLAT
-        for label, side in (("", 1.0), ("-mirrored", -1.0))
-    ),
-    *(
-        case(
+        # At 1 a fold may lie on the way back. The product of vectors that tells the side of the tie rod is
+        # 0.56 of their lengths; assembling moves no point by more than 200 mm times this, and at 0.1 changes
+        # the vectors, some 530, 430 and 150 mm, by 40 at most: 0.08 + 0.09 + 0.27 < 0.56.
+        (1e-1, 1e-6, 1e-12),
+        subjects=[PAPER],
+    )
+]
+for subject, near, met in (
+    (PAPER, (1.0, 1e-2, 1e-6, 1e-12), (1e-1, 1e-3, 1e-7, 1e-12)),
+    (BESIDE, (1e-4, 1e-12), (1e-1, 1e-12)),
+):
+    for name, why, side, where, expected, values in (
+        ("branches-nearly-meet", NEARLY_MEET, 1.0, "beyond", CLEAR, near),
+        ("branches-met", MEET, -1.0, "short of", REFUSED, met),
+    ):
+        parameter = f"rack travel {where} the meeting, in parts of 10 mm"
+        scene = partial(through_the_meeting, side)
+        CASES += _branch(scene, parameter, values, expected, [subject], name=name, why=why)
+for subject in (PAPER, WISHBONE, *OTHERS):
+    for driven in subject.kinds:
+        if {(driven, False), (driven, True)} <= set(ends_of(subject)):
+            CASES += _branch(
+                partial(whole_range, driven),
+                "distance of both instants from their ends, in parts of half the range",
+                (1e-8,) if subject is WISHBONE else (1e-4,),
+                subjects=[subject],
+                name=f"whole-range-{hyphens(driven).removesuffix('-angle')}",
+            )
+for label, side in (("", 1.0), ("-mirrored", -1.0)):
+    CASES += _branch(
+        *(partial(flat_drawing, side), "height over the plane, in parts of the car's", decades()),
+        *(CLEAR, (PAPER, WISHBONE)),
+        name=f"flat-drawing{label}",
+        why="The tie rod's outer end, or a wishbone's upper ball joint, is drawn near the plane in which it "
+        "has a mirror image: rounding may choose.",
+    )
+for subject in (one for one in OTHERS if one.name in BY_NATURE):
+    for name, why, beyond, moving in (
+        ("held-near-the-line", "It rests near the pose where", False, False),
+        ("swept-near-the-line", "It moves from the drawing to near the pose where", False, True),
+        ("held-beyond-the-line", "It is to be beyond the pose where", True, False),
+        ("swept-through-the-line", "It is to move through the pose where", True, True),
+    ):
+        CASES += family(
             partial(to_the_line, beyond, moving),
             f"distance from it, in parts of the way from the drawing{', beyond' * beyond}",
             (1e-2,) if beyond else (1e-1, 1e-4),
-            REFUSED if beyond else expected_of(subject, Expected(("right", "refused"), right_from=1e-3)),
-            subject,
+            REFUSED if beyond else right_from(1e-3),
+            [subject],
             name=name,
             why=f"{why} {BY_NATURE[subject.name][1]}",
             group="Mechanisms that are hard by nature",
         )
-        for subject in OTHERS
-        if subject.name in BY_NATURE
-        for name, why, beyond, moving in NEAR_THE_LINE
-    ),
-)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, partial
@@ -21,30 +20,30 @@ import numpy as np
 from pointcoord import Scene
 from validate.cars.car import Car, as_tuple
 from validate.cars.scene_content import content_of
+from validate.hard.answer import Answer
 from validate.hard.cars import drawn_at
 from validate.hard.case import (
     IF_ANY,
     REFUSED,
     Case,
+    Every,
     Expected,
     Values,
-    counted,
     decades,
+    every,
     family,
     reason_of,
-    values_of,
+    right_from,
 )
 from validate.hard.last_values import last_value
 from validate.hard.subjects import ALL, BESIDE, Content, Kind, Subject, hyphens
-from validate.hard.trial import Trial
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
 AGAIN, PIVOT, LENGTH = "again", "second_pivot", "rod_length"
 Tables = dict[str, Any]
-# Two links that are nearly one differ by the distance of their pivots, and the condition number grows as its
-# inverse from some 30 on: at 1e-6 half of the digits are left.
-HELD = Expected(("right", "refused"), right_from=1e-6)
+Change = tuple[Content, frozenset[str], dict[str, str]]
+"""A changed mechanism at rest, what an error has to name one of, and the change as facts."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class Piece:
     def dropped(self, tables: Tables) -> None:
         """Take it out of some tables."""
         if self.point:
-            tables["bodies"][self.key] = [name for name in tables["bodies"][self.key] if name != self.point]
+            tables["bodies"][self.key].remove(self.point)
         else:
             del tables[self.table][self.key]
 
@@ -118,7 +117,8 @@ def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
 
 def tables_of(subject: Subject) -> Tables:
     """A mechanism's tables, to be changed."""
-    return {n: deepcopy(dict(subject.plain[n])) for n in ("bodies", "rods", "slides", "inputs", "roles")}
+    plain = subject.plain
+    return {name: plain[name] for name in ("bodies", "rods", "slides", "inputs", "roles")}
 
 
 @cache
@@ -140,25 +140,21 @@ def changed(
     return content_of(there, laws, stop=0.1, samples=2, effects=("velocity",))
 
 
-def named(trial: Trial, names: frozenset[str]) -> Trial:
-    """The trial with a refusal of pointcoord wrong that names nothing of what is at fault."""
-    answers = tuple(
-        replace(a, outcome="wrong", reason=f"names none of {', '.join(sorted(names))}: {a.reason}")
-        if a.formulation == "pointcoord" and a.outcome == "refused" and not any(n in a.reason for n in names)
-        else a
-        for a in trial.answers
+def named(answer: Answer, names: frozenset[str]) -> Answer:
+    """A refusal of pointcoord is wrong that names nothing of what is at fault."""
+    if (answer.formulation, answer.outcome) != ("pointcoord", "refused") or any(
+        name in answer.reason for name in names
+    ):
+        return answer
+    return replace(
+        answer, outcome="wrong", reason=f"names none of {', '.join(sorted(names))}: {answer.reason}"
     )
-    return replace(trial, answers=answers)
 
 
 def exchangeable(subject: Subject) -> tuple[Piece, ...]:
     """The pieces without which there is another rod left."""
-    rods = set(subject.plain["rods"])
-    return tuple(piece for piece in pieces(subject.plain) if rods - {piece.key})
-
-
-Change = tuple[Content, frozenset[str], dict[str, str]]
-"""A changed mechanism at rest, what an error has to name one of, and the change as facts."""
+    plain = subject.plain
+    return tuple(piece for piece in pieces(plain) if set(plain["rods"]) - {piece.key})
 
 
 def link_missing(subject: Subject, number: float) -> Change:
@@ -196,17 +192,27 @@ def link_twice_for_another(subject: Subject, number: float) -> Change:
 def input_twice(subject: Subject, gap: float) -> Change:
     """Two inputs drive one coordinate and contradict each other by less and less; at last they agree."""
     tables, first = tables_of(subject), next(iter(subject.kinds))
-    tables["inputs"][AGAIN] = deepcopy(tables["inputs"][first])
+    tables["inputs"][AGAIN] = dict(tables["inputs"][first])
     inputs = {**subject.drawn, AGAIN: subject.drawn[first] + gap}
     return changed(subject, tables, inputs), frozenset((AGAIN, first)), {}
 
 
 def contradictory_links(subject: Subject, share: float) -> Change:
     """A further link agrees with the others as drawn and nowhere else."""
-    return _with_third_link(subject, share, True), frozenset((AGAIN, PIVOT, *subject.kinds)), {}
+    rates = {"rad": 0.5, "mm": 50.0}
+    inputs = {name: [value, rates[subject.units[name]]] for name, value in subject.drawn.items()}
+    tables, pivot = _with_third_link(subject, share)
+    return changed(subject, tables, inputs, pivot), frozenset((AGAIN, PIVOT, *subject.kinds)), {}
 
 
-def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
+def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
+    """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
+    tables, pivot = _with_third_link(subject, share)
+    del tables["inputs"][next(iter(subject.kinds))]
+    return changed(subject, tables, subject.drawn, pivot)
+
+
+def _with_third_link(subject: Subject, share: float) -> tuple[Tables, dict[str, Any]]:
     """A rod beside one that holds a moving point to the chassis, its pivot a share of its length above."""
     tables, places = tables_of(subject), {n: np.array(p) for n, p in closed(subject).points.items()}
     chassis = tables["bodies"]["chassis"]
@@ -216,29 +222,17 @@ def _with_third_link(subject: Subject, share: float, driven: bool) -> Content:
         if (pair[0] in chassis) != (pair[1] in chassis)
     )
     # Along the hinge of a plane mechanism it would be the same link.
-    hinges = (
-        itertools.combinations([name for name in points if name in chassis], 2)
-        for points in subject.plain["bodies"].values()
-        if moving in points
-    )
     along_up = any(
         not np.cross(places[first] - places[last], subject.car.up).any()
-        for first, last in itertools.chain.from_iterable(hinges)
+        for points in tables["bodies"].values()
+        if moving in points
+        for first, last in itertools.combinations([name for name in points if name in chassis], 2)
     )
     aside = np.array(subject.car.right if along_up else subject.car.up)
     pivot = places[ground] + share * float(np.linalg.norm(places[moving] - places[ground])) * aside
     chassis.append(PIVOT)
     tables["rods"][AGAIN] = [PIVOT, moving]
-    rates = {"rad": 0.5, "mm": 50.0}
-    inputs = {name: [value, rates[subject.units[name]]] for name, value in subject.drawn.items()}
-    if not driven:
-        del tables["inputs"][next(iter(subject.kinds))]
-    return changed(subject, tables, inputs if driven else subject.drawn, {PIVOT: as_tuple(pivot)})
-
-
-def arm_held_by_a_third_link(subject: Subject, share: float) -> Content:
-    """A further link in place of an input holds the mechanism, by less and less; at last it is a copy."""
-    return _with_third_link(subject, share, False)
+    return tables, {PIVOT: as_tuple(pivot)}
 
 
 @cache
@@ -265,17 +259,12 @@ _links = partial(family, group=GROUP)
 def _changes(
     change: Callable[[Subject, float], Change],
     parameter: str,
-    values: Values | Callable[[Subject], Values],
+    values: Values | Every,
     subjects: Sequence[Subject],
     expected: Expected = REFUSED,
     name: str = "",
 ) -> tuple[Case, ...]:
     """Changes of mechanisms, of which pointcoord has to name what is at fault."""
-
-    def judged(subject: Subject, value: float, trial: Trial) -> Trial:
-        _, names, facts = change(subject, value)
-        return named(trial.noting(facts), names)
-
     return _links(
         lambda subject, value: change(subject, value)[0],
         parameter,
@@ -284,39 +273,28 @@ def _changes(
         subjects,
         name=name or hyphens(change.__name__),
         why=reason_of(change),
-        judged=judged,
+        judge=lambda subject, value, _, answer: named(answer, change(subject, value)[1]),
+        facts=lambda subject, value: change(subject, value)[2],
         given=False,
     )
-
-
-def _numbers(found: Callable[[Subject], Sequence[object]]) -> Callable[[Subject], Values]:
-    """A number for each thing that a mechanism has; of mechanisms after the second, one amid them."""
-
-    def values(subject: Subject) -> Values:
-        numbers = counted(len(found(subject)))
-        return numbers if subject.level else values_of(subject, numbers)
-
-    return values
 
 
 PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
 EVERY = (*ALL, BESIDE)
 WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
-PIECES = _numbers(lambda subject: pieces(subject.plain))
+PIECES = every(lambda subject: pieces(subject.plain))
+PAIRS = every(lambda subject: held_apart(subject.plain))
 
 CASES = (
     *_changes(link_missing, PIECE, PIECES, ALL),
     *_changes(link_missing, PIECE, PIECES, [BESIDE], name="constraint-missing"),
     *_changes(
-        link_twice,
-        "number of the pair of points that are held apart",
-        _numbers(lambda subject: held_apart(subject.plain)),
-        [one for one in EVERY if held_apart(one.plain)],
-        IF_ANY,
+        *(link_twice, "number of the pair of points that are held apart", PAIRS),
+        *([one for one in EVERY if held_apart(one.plain)], IF_ANY),
     ),
     *_changes(
-        *(link_twice_for_another, PIECE, _numbers(exchangeable)), [one for one in EVERY if exchangeable(one)]
+        *(link_twice_for_another, PIECE, every(exchangeable)), [one for one in EVERY if exchangeable(one)]
     ),
     *_changes(input_twice, "difference of their values, rad or mm", (*decades(), 0.0), WITH_RODS),
     # Two rows of n = 40 unknowns are told from one down to 64 n EPS = 6e-13 of their size: a link that is
@@ -330,11 +308,13 @@ CASES = (
         # The slide of a slider-crank goes along with a rod however long.
         [one for one in WITH_RODS if one.name != "slider_crank"],
     ),
+    # Two links that are nearly one differ by the distance of their pivots, and the condition number grows as
+    # its inverse from some 30 on: at 1e-6 half of the digits are left.
     *_links(
         arm_held_by_a_third_link,
         f"{PIVOT_AT}; then a copy of it",
         (*decades(), 0.0),
-        dict.fromkeys(SOLVERS, HELD),
+        dict.fromkeys(SOLVERS, right_from(1e-6)),
         # What is held by a link in place of its only input is driven by none.
         [one for one in WITH_RODS if len(one.kinds) > 1],
         given=False,

@@ -5,29 +5,27 @@ import pytest
 
 from pointcoord import Scene
 from validate.formulations.reference_solution import inputs_at, reference_instant
-from validate.hard.cars import CARS, SQUARE
-from validate.hard.cases.ends import near_end
+from validate.hard.cars import CARS
 from validate.hard.cases.reach import End
 from validate.hard.last_values import ends_of, last_value
 from validate.hard.subjects import NAMED, OTHERS
 from validate.reference import InfeasibleError, Instant
 
 WAYS = (False, True)
-CarEnd = tuple[str, str, bool, float | None]
+CarEnd = tuple[str, str, bool]
 ENDS: list[CarEnd] = [
-    *(("paper", "arm_angle", up, None) for up in WAYS),
-    *(("wishbone", "rack", up, SQUARE) for up in WAYS),
-    ("wide", "arm_angle", False, None),
-    *((subject.name, driven, up, None) for subject in OTHERS for driven, up in ends_of(subject)[:1]),
+    *(("paper", "arm_angle", up) for up in WAYS),
+    *(("wishbone", "rack", up) for up in WAYS),
+    ("wide", "arm_angle", False),
+    *((subject.name, driven, up) for subject in OTHERS for driven, up in ends_of(subject)[:1]),
 ]
 
 
 def pose(end: CarEnd, value: float) -> Instant:
     """The reference near an end; beyond it for a value below 0."""
-    name, driven, ahead, arm_angle = end
-    scene = Scene.from_mapping(
-        near_end(End(NAMED[name], driven, ahead), arm_angle, "held", NAMED[name], value)
-    )
+    name, driven, ahead = end
+    held = End(NAMED[name], driven, ahead, moving=False)
+    scene = Scene.from_mapping(held.near(held.subject, value))
     return reference_instant(scene, inputs_at(scene, 0.0))
 
 
