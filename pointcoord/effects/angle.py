@@ -7,14 +7,15 @@ as f is off by d with sin d = (p cos f - q sin f) / |(p, q)|.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import ClassVar, Literal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import S, angle
+from pointcoord.effects.car_number import Number
 from pointcoord.effects.corner import Corner, View, Wheel
 from pointcoord.effects.effect import Doubt, Point, Quantity
 from pointcoord.errors import UnknownName
@@ -26,47 +27,39 @@ Array = NDArray[np.float64]
 
 WHEEL = Quantity("wheel", "wheel angle", "rad", "car")
 AXES = {"wheel_axis": "the wheel's spin axis", "steering_axis": "the steering axis"}
+# As the page of effects has them.
 LETTERS = {"wheel_axis": "n", "steering_axis": "k"}
 
 
-@dataclass(frozen=True, eq=False)
-class Angle:
-    """An angle of a line of the car, in a plane of the car's axes; rad. See `car_number.Number`.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Angle(Number):
+    """An angle of a line of the car, in a plane of the car's axes; rad.
 
     Attributes:
-        name, words, sign, source: see `car_number.Number`.
         line: the axis that the topology names so, from its first point to its second.
         sine, cosine: the directions along which the line has the angle's sine and cosine.
         steepest: degrees beyond which a drawing looks misdrawn.
         steepest_by_default: the same where the line starts at a point that only stands in for its own.
     """
 
-    name: str
-    words: str
-    sign: str
     line: Literal["wheel_axis", "steering_axis"]
     sine: Direction
     cosine: Direction
     steepest: float = 180.0
     steepest_by_default: float = 180.0
-    source: str = ""
+    quantity: Quantity = WHEEL
+    needs_radius: bool = False
+    formula: Callable[..., Any] = field(init=False)
 
-    quantity: ClassVar[Quantity] = WHEEL
-    needs_radius: ClassVar[bool] = False
-    data: ClassVar[tuple[str, ...]] = ()
-    way: ClassVar[str] = ""
+    def __post_init__(self) -> None:
+        letter, seen = LETTERS[self.line], (d.replace("_", " ") for d in (self.sine, self.cosine))
+        components = ", ".join(f"{letter} . {direction}" for direction in seen)
+        made = {"formula": self._of_corner, "roles": (self.line,), "definition": f"atan2({components})"}
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
 
-    @property
-    def definition(self) -> str:
-        """Its two components, in the letters of the page of effects."""
-        line = LETTERS[self.line]
-        sine, cosine = (direction.replace("_", " ") for direction in (self.sine, self.cosine))
-        return f"atan2({line} . {sine}, {line} . {cosine})"
-
-    @property
-    def roles(self) -> tuple[str, ...]:
-        """Its line."""
-        return (self.line,)
+    def _of_corner(self, corner: Corner[S]) -> S:
+        return angle(*self.parts(corner.seen))
 
     @property
     def lengthwise(self) -> bool:
@@ -80,10 +73,6 @@ class Angle:
             raise UnknownName("role", self.line, ())
         start, end = ends
         return start, end
-
-    def formula(self, corner: Corner[S]) -> S:
-        """atan2(line . sine, line . cosine)."""
-        return angle(*self.parts(corner.seen))
 
     def parts(self, view: View[S]) -> tuple[S, S]:
         """What it is the angle of: line . sine and line . cosine."""

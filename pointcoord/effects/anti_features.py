@@ -13,12 +13,9 @@ from __future__ import annotations
 from typing import Any
 
 from pointcoord.effects.arithmetic import Dual, multiple, ratio
-from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
-from pointcoord.effects.effect import Quantity
 from pointcoord.effects.knuckle import contact_place, told_from_none, velocity_at
 
-SHARE = Quantity("load_share", "share of the load", "%", "car")
 PERCENT = 100.0
 
 
@@ -41,49 +38,3 @@ def _carried(corner: Corner[Dual[Any]], share: str, velocity: Any) -> Any:
     slope = ratio(corner.seen.along(velocity, "rearward"), up)
     part = multiple(PERCENT, car[share] * car["axle"])
     return part * slope * ratio(car["wheelbase"], height)
-
-
-def _number(
-    name: str, words: str, sign: str, definition: str, formula: Any, share: str, source: str
-) -> Number:
-    data = ("axle", "wheelbase", "centre_of_gravity_height", share)
-    roles = ("wheel_axis", "knuckle")
-    return Number(
-        name,
-        words,
-        sign,
-        definition,
-        formula,
-        roles,
-        quantity=SHARE,
-        data=data,
-        way=BY_TRAVEL,
-        power=0,
-        source=source,
-    )
-
-
-ANTI_FEATURES = CarNumbers.of(
-    "anti_features",
-    "what the links carry of the load that braking and driving shift, %",
-    _number(
-        "anti_brake",
-        "anti-dive of a front axle, anti-lift of a rear one, as it brakes",
-        "where the car dives or lifts less",
-        "100 s brake_share (v . rearward)/(v . up) wheelbase/(centre_of_gravity_height - `contact_travel`), "
-        "s = -1 in front and 1 behind, v of c fixed in the knuckle",
-        anti_brake,
-        "brake_share",
-        "within 0.0071 points of Lotus",
-    ),
-    _number(
-        "anti_drive",
-        "anti-lift of a front axle, anti-squat of a rear one, as it drives",
-        "where the car lifts or squats less",
-        "100 s drive_share (v . rearward)/(v . up) wheelbase/(centre_of_gravity_height - `contact_travel`), "
-        "v of W",
-        anti_drive,
-        "drive_share",
-        "Lotus, suspension-explorer",
-    ),
-)

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.angle import Angle
 from pointcoord.effects.corner import Corner, View, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.linkage.car_axes import CarAxes
@@ -30,7 +29,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-DIMENSION = Quantity("dimension", "dimension", "mm", "car")
 BY_TRAVEL, BY_RACK, BY_ROLL = "by_travel", "by_rack", "by_roll"
 # What a scene may say of the car, and how, for those who did not.
 SUCH_AS = {
@@ -50,9 +48,9 @@ KINDS = {
 }
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Number:
-    """A number by its formula; a length unless it says something else.
+    """A number by its formula, as `numbers.toml` has it.
 
     Attributes:
         name: in results and files. words: for people.
@@ -69,12 +67,12 @@ class Number:
 
     name: str
     words: str
-    sign: str
-    definition: str
+    sign: str = ""
+    definition: str = ""
     formula: Callable[..., Any]
     roles: tuple[str, ...] = ("wheel_axis",)
     needs_radius: bool = True
-    quantity: Quantity = DIMENSION
+    quantity: Quantity
     data: tuple[str, ...] = ()
     way: str = ""
     power: int = 1
@@ -90,11 +88,8 @@ class Number:
         return exact.scaled(unit**self.power).errors(found)
 
     def refusal(self, wheel: Wheel, drawn: Mapping[str, Point]) -> str:
-        """Why a drawing that has its roles does not have it, in words: it always does."""
+        """Why a drawing that has its roles does not have it, in words; empty if it does."""
         return ""
-
-
-CarNumber = Number | Angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +103,7 @@ class CarNumbers(Effect):
         of_axle: whether their formulas take two wheels, the left one and the right one.
     """
 
-    numbers: tuple[CarNumber, ...]
+    numbers: tuple[Number, ...]
     base: str = ""
     nowhere: str = ""
     of_axle: bool = False
@@ -118,7 +113,7 @@ class CarNumbers(Effect):
         cls,
         name: str,
         gives: str,
-        *numbers: CarNumber,
+        *numbers: Number,
         base: str = "",
         nowhere: str = "",
         of_axle: bool = False,

@@ -37,13 +37,11 @@ nowhere.
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from pointcoord.effects.arithmetic import Dual, cross, dot, ratio, times
-from pointcoord.effects.car_number import BY_TRAVEL, CarNumbers, Number
 from pointcoord.effects.corner import Corner
 from pointcoord.effects.knuckle import (
     angular_velocity,
@@ -144,95 +142,3 @@ def _meeting(left: Corner[Dual[Any]], right: Corner[Dual[Any]]) -> tuple[Any, An
         across = np.where(np.abs(across) > least, across, np.nan)
     share = ratio(r_h * w_h + r_u * w_u, across)
     return -(share * v_u), share * v_h
-
-
-def _number(
-    name: str, words: str, sign: str, definition: str, formula: Any, *roles: str, source: str = ""
-) -> Number:
-    every = ("wheel_axis", *roles, "knuckle")
-    return Number(name, words, sign, definition, formula, every, way=BY_TRAVEL, source=source)
-
-
-ROLL_CENTRE = CarNumbers.of(
-    "roll_centre",
-    "height of the roll centre above the contact point, mm",
-    _number(
-        "roll_centre_height",
-        "roll centre height",
-        "above the contact point",
-        "above c, where the line through c at right angles to the velocity of c, as a point of the knuckle, "
-        "meets the car's middle plane in the front view",
-        roll_centre_height,
-        source="within 0.08 mm of Lotus, whose rule is not published",
-    ),
-)
-ARM_ROLL_CENTRE = CarNumbers.of(
-    "arm_roll_centre",
-    "height of the roll centre by the lines of the arms above the contact point, mm",
-    _number(
-        "arm_roll_centre_height",
-        "roll centre height by the arms",
-        "above the contact point",
-        "`roll_centre_height` of the motion, of those that differ by a turn about k, that is a pure "
-        "rotation; up to 7 mm from the one before where the wheel steers as it travels",
-        arm_roll_centre_height,
-        "steering_axis",
-    ),
-    nowhere="the lower point of the steering axis stands still",
-)
-INSTANT_CENTRES = CarNumbers.of(
-    "instant_centres",
-    "swing arms and heights of the instant centres in the front and in the side view, mm",
-    _number(
-        "front_view_swing_arm",
-        "front-view swing arm",
-        "where the centre is inboard of the contact point",
-        "from c to the point of the transverse plane through c where the knuckle does not move in that "
-        "plane, as the wheel travels",
-        partial(swing_arm, "outboard"),
-    ),
-    _number(
-        "front_view_centre_height",
-        "height of the front-view centre",
-        "above the contact point",
-        "of that point above c",
-        partial(centre_height, "outboard"),
-    ),
-    _number(
-        "side_view_swing_arm",
-        "side-view swing arm",
-        "where the centre is behind the contact point",
-        "as `front_view_swing_arm`, in the plane through c along the car",
-        partial(swing_arm, "forward"),
-    ),
-    _number(
-        "side_view_centre_height",
-        "height of the side-view centre",
-        "above the contact point",
-        "of that point above c",
-        partial(centre_height, "rearward"),
-    ),
-    nowhere="the centre is at infinity",
-)
-AXLE = CarNumbers.of(
-    "axle",
-    "track and roll centre of the axle, mm",
-    _number("track", "track", "", "(right c - left c) . right", track),
-    _number(
-        "axle_roll_centre_height",
-        "height of the axle's roll centre",
-        "above the line through both contact points",
-        "above the line through both c, of P: where the two lines meet in the front view that each lead "
-        "through c at right angles to the velocity of c, as a point of its knuckle, as that wheel travels",
-        axle_roll_centre_height,
-    ),
-    _number(
-        "axle_roll_centre_offset",
-        "offset of the axle's roll centre",
-        "right of the car's middle plane",
-        "of P from the car's middle plane, through the origin of the axes",
-        axle_roll_centre_offset,
-    ),
-    nowhere="the lines of the two wheels are parallel",
-    of_axle=True,
-)

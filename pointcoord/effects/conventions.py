@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from pointcoord.effects.gradients import WAYS
+from pointcoord.effects.numbers import WAYS
 
 ConventionName = Literal["iso", "paper", "lotus", "optimumk", "adams"]
 

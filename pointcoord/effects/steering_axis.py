@@ -19,12 +19,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, Generic
 
 import numpy as np
 
-from pointcoord.effects.angle import WHEEL
 from pointcoord.effects.arithmetic import (
     Dual,
     S,
@@ -37,13 +35,10 @@ from pointcoord.effects.arithmetic import (
     sign_of,
     times,
 )
-from pointcoord.effects.car_number import BY_RACK, DIMENSION, CarNumbers, Number
 from pointcoord.effects.corner import Corner, View
-from pointcoord.effects.effect import Quantity
 from pointcoord.effects.knuckle import angular_velocity, at_rest
-from pointcoord.effects.wheel_angles import KINGPIN, LEAN_REARWARD
+from pointcoord.linkage.car_axes import Direction
 
-PITCH = Quantity("screw_pitch", "pitch of the screw axis", "mm/rad", "car")
 # Turns per rack travel of one radius of the wheel that rounding does not tell from none.
 LEAST = 1e-9
 
@@ -122,82 +117,6 @@ def hub_trail(axis: Axis[S]) -> S:
     return axis.view.along(axis.at_wheel, "rearward")
 
 
-LENGTHS: tuple[tuple[str, str, str, str, str, Callable[[Axis[S]], S]], ...] = (
-    (
-        "kingpin_offset",
-        "kingpin offset at ground",
-        "where the axis is inboard",
-        "from the axis at the height of c to c, along outboard",
-        "Lotus, Altair",
-        kingpin_offset,
-    ),
-    (
-        "scrub_radius",
-        "scrub radius",
-        "",
-        "the distance of c from the axis at its height",
-        "ISO 8855, 7.2.10",
-        scrub_radius,
-    ),
-    (
-        "mechanical_trail",
-        "mechanical trail",
-        "where the axis is ahead",
-        "from c to the axis at its height, along the tyre's own x",
-        "ISO 8855, 7.2.3",
-        mechanical_trail,
-    ),
-    (
-        "castor_offset",
-        "castor offset at ground",
-        "where the axis is ahead",
-        "from c to the axis at its height, along forward",
-        "Lotus, Altair",
-        castor_offset,
-    ),
-    (
-        "kingpin_offset_at_wheel",
-        "kingpin offset at the wheel centre",
-        "where the axis is inboard",
-        "from the axis at the height of W to W, along outboard",
-        "Lotus",
-        kingpin_offset_at_wheel,
-    ),
-    (
-        "hub_trail",
-        "hub trail",
-        "where the axis is behind",
-        "from W to the axis at its height, along rearward",
-        "Lotus",
-        hub_trail,
-    ),
-)
-"""Name, words, sign, definition, source and formula of each length of an axis."""
-
-
-def _of_role(formula: Callable[[Axis[S]], S], corner: Corner[S]) -> S:
-    return formula(steering_axis(corner))
-
-
-STEERING_AXIS = CarNumbers.of(
-    "steering_axis",
-    "scrub radius, kingpin offsets, trails, mm",
-    *(
-        Number(
-            name,
-            words,
-            sign,
-            definition,
-            partial(_of_role, formula),
-            ("steering_axis", "wheel_axis"),
-            formula not in (hub_trail, kingpin_offset_at_wheel),
-            source=source,
-        )
-        for name, words, sign, definition, source, formula in LENGTHS
-    ),
-)
-
-
 def screw_axis(corner: Corner[Dual[Any]]) -> Axis[Any]:
     """That axis, from W."""
     view, (turn, moved) = at_rest(corner.seen), _twist(corner)
@@ -220,62 +139,11 @@ def _twist(corner: Corner[Dual[Any]]) -> tuple[Any, Any]:
     return turn, moved
 
 
-def _length(formula: Callable[[Axis[Any]], Any], corner: Corner[Dual[Any]]) -> Any:
-    return formula(screw_axis(corner))
-
-
-def _lean(sine: Any, cosine: Any, corner: Corner[Dual[Any]]) -> Any:
-    axis = screw_axis(corner)
+def lean(sine: Direction, cosine: Direction, axis: Axis[S]) -> S:
+    """The angle of an axis that has its sine and its cosine along two directions of the car."""
     return angle(axis.view.along(axis.direction, sine), axis.view.along(axis.direction, cosine))
 
 
-def _number(
-    name: str,
-    words: str,
-    sign: str,
-    formula: Any,
-    quantity: Quantity,
-    power: int,
-    definition: str = "",
-    source: str = "suspension-explorer, Altair",
-) -> Number:
-    roles = ("wheel_axis", "knuckle")
-    return Number(
-        f"screw_{name}",
-        f"{words} of the screw axis",
-        sign,
-        definition or f"`{name}` with that axis in place of k",
-        formula,
-        roles,
-        True,
-        quantity,
-        (),
-        BY_RACK,
-        power,
-        source,
-    )
-
-
-SCREW_AXIS = CarNumbers.of(
-    "screw_axis",
-    "the knuckle's screw axis as the rack moves: angles, offsets, trails and pitch",
-    *(
-        _number(one.name, one.words, one.sign, partial(_lean, one.sine, one.cosine), WHEEL, 0)
-        for one in (KINGPIN, LEAN_REARWARD)
-    ),
-    *(
-        _number(name, words, sign, partial(_length, formula), DIMENSION, 1)
-        for name, words, sign, _, _, formula in LENGTHS
-    ),
-    _number(
-        "pitch",
-        "pitch",
-        "where it is a right-handed screw",
-        pitch,
-        PITCH,
-        1,
-        "how far the knuckle goes along the screw axis for a radian about it",
-        "",
-    ),
-    nowhere="the wheel does not turn as the rack moves",
-)
+def of_axis(axis: Callable[[Corner[S]], Axis[S]], formula: Callable[[Axis[S]], S], corner: Corner[S]) -> S:
+    """What a formula gives of an axis of a wheel."""
+    return formula(axis(corner))

@@ -1,4 +1,4 @@
-"""Names of mechanisms are said in mechanism files alone, those of effects in their own files and the page."""
+"""Names of mechanisms are said in mechanism files alone, those of effects in their files, tables and page."""
 
 import ast
 import re
@@ -10,6 +10,7 @@ from table_of_effects import rows, table
 
 import pointcoord
 from pointcoord.effects import registry
+from pointcoord.effects.numbers import CAR_NUMBERS, FILES
 from pointcoord.effects.point_states import FIRST_NUMBERED, STATES
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
@@ -58,8 +59,8 @@ def test_no_program_says_the_name_of_a_point_an_input_or_a_type() -> None:
 
 
 def own_files() -> dict[Path, list[str]]:
-    """The files of effects, as the registry imports them, with the names of their effects."""
-    found: dict[Path, list[str]] = {}
+    """The files of effects and of their formulas, with the effects that are named in them, not in a table."""
+    found: dict[Path, list[str]] = {Path(file.__file__ or ""): [] for file in FILES.values()}
     for node in TREES[Path(registry.__file__)].body:
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("pointcoord.effects."):
             path = PACKAGE.parent / Path(*(node.module or "").split(".")).with_suffix(".py")
@@ -74,7 +75,7 @@ OWN = own_files()
 # Kinds of effects may name the quantity that all of their kind give; conventions are about names.
 OF_KINDS = {
     PACKAGE / "effects" / f"{name}.py"
-    for name in ("gradients", "angle", "car_number", "conventions", "point_states", "registry")
+    for name in ("gradients", "angle", "car_number", "conventions", "numbers", "point_states", "registry")
 }
 # What a mechanism calls its parts, effects of them may be called too; a list pops.
 NAMES = {
@@ -96,7 +97,7 @@ def test_no_file_names_an_effect_or_what_it_gives_but_its_own() -> None:
     assert named(ast.parse("def f(x):\n    'toe'\n    return x.wheel, 'camber'")) == {"camber", "wheel"}
     # Gradients and states of points are made, each from one class.
     alone = (name for name, effect in EFFECTS.items() if not (effect.base or effect.reports_states))
-    assert sorted(name for names in OWN.values() for name in names) == sorted(alone)
+    assert sorted([*CAR_NUMBERS, *(name for names in OWN.values() for name in names)]) == sorted(alone)
     for path in TREES.keys() - OF_KINDS:
         own: set[str] = set()
         if path in OWN:

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord import sensitivity, sweep
-from pointcoord.effects.registry import RANKED_FIRST, number_called
+from pointcoord.effects.numbers import RANKED_FIRST
+from pointcoord.effects.registry import number_called
 from pointcoord.sweeping.sensitivity import numbers_named
 from validate.commands.table import meant_numbers
 from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as

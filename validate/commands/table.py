@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from pointcoord import Motion, PointcoordError, Scene, SweepError, UnknownName, solve_poses
 from pointcoord.effects.conventions import CONVENTIONS
 from pointcoord.effects.loads import LOADS
-from pointcoord.effects.registry import EFFECTS, READ_FIRST, number_called
+from pointcoord.effects.numbers import READ_FIRST
+from pointcoord.effects.registry import EFFECTS, number_called
 from pointcoord.wording import meant
 from validate.commands.solved import solved
 from validate.commands.usage import Command, load_scene, name_of, place_of_result, told_as

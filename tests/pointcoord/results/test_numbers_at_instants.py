@@ -9,8 +9,9 @@ import pytest
 from every_effect import every_effect
 
 from pointcoord import Motion, NotComputed, OutsideMotion, Samples, Scene, simulate
+from pointcoord.effects.numbers import CAR_NUMBERS
 from pointcoord.effects.plan import plan_effects
-from pointcoord.effects.wheel_angles import TOE
+from pointcoord.effects.registry import ANGLES
 from pointcoord.results.by_series import ByChain
 
 EPS = float(np.finfo(float).eps)
@@ -98,7 +99,7 @@ def test_close_instants_are_not_summed_over_where_a_table_of_the_chassis_jumps()
 
 
 def test_an_angle_that_jumps_is_read_on_its_own_side() -> None:
-    toe = replace(TOE, numbers=(replace(TOE.numbers[0], cosine="inboard"),))
+    toe = replace(CAR_NUMBERS["toe"], numbers=(replace(ANGLES["toe"], cosine="inboard"),))
     motion = solved("steer", inputs={"arm_angle": AT_REST, "rack": {"polynomial": [-40.0, 150.0]}})
     readout = replace(motion.solved.readout, plan=plan_effects(["toe"], {"toe": toe}))
     turned = replace(motion, solved=replace(motion.solved, readout=readout))

@@ -67,7 +67,14 @@ OURS = (
     CarNumbers.of(
         "flip",
         "camber from the other side, rad",
-        Angle("flip", "flipped camber", "where the wheel leans in", "wheel_axis", "up", "inboard"),
+        Angle(
+            name="flip",
+            words="flipped camber",
+            sign="where the wheel leans in",
+            line="wheel_axis",
+            sine="up",
+            cosine="inboard",
+        ),
     ),
 )
 

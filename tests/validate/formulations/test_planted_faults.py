@@ -20,10 +20,9 @@ import pointcoord.solve.taylor
 import validate.formulations.modelled
 from pointcoord import Scene
 from pointcoord.effects.knuckle_rates import ByEdges
+from pointcoord.effects.numbers import CAR_NUMBERS
 from pointcoord.effects.point_states import STATES
-from pointcoord.effects.registry import EFFECTS, QUANTITIES
-from pointcoord.effects.wheel_angles import KINGPIN
-from pointcoord.effects.wheel_angles import LEAN as CAMBER
+from pointcoord.effects.registry import ANGLES, EFFECTS, QUANTITIES
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.method import NEWTON
 from validate.comparison.compare import compare, compare_solutions
@@ -118,8 +117,8 @@ def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
 
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:
-    right = EFFECTS["wheel_angles"]
-    wrong = replace(right, numbers=(CAMBER, replace(KINGPIN, sine="outboard")))
+    right = CAR_NUMBERS["wheel_angles"]
+    wrong = replace(right, numbers=(ANGLES["camber"], replace(ANGLES["kingpin"], sine="outboard")))
     patch.setitem(EFFECTS, right.name, wrong)
 
 
