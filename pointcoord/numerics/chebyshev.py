@@ -70,13 +70,6 @@ def interpolation(degree: int) -> Interpolation:
     return Interpolation(points, coefficients, powers, slopes)
 
 
-@lru_cache(maxsize=8)
-def shares_beyond(degree: int, orders: int) -> Array:
-    """How much of x^m is made of T_k beyond a degree, for m below `orders`: the sum of their coefficients."""
-    laws = (np.polynomial.chebyshev.poly2cheb(np.eye(orders)[m]) for m in range(orders))
-    return np.array([np.abs(law[degree + 1 :]).sum() for law in laws])
-
-
 @lru_cache(maxsize=64)
 def binomials(orders: int) -> Array:
     """binomial(j, m), [j, m], for both below `orders`."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from math import factorial
 
 import numpy as np
@@ -15,10 +14,9 @@ from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.evaluation import sum_series
 from pointcoord.patches.patches import ProvenPatches
-from pointcoord.patches.reported_points import moving_points
 from pointcoord.patches.way_map import WayMap
 from pointcoord.results.readout import Readout
-from pointcoord.results.solved_scene import Places, SolvedScene
+from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.status import COMPLETE
 from pointcoord.time_functions import TimeFunction
 
@@ -54,30 +52,14 @@ class ByMap(SolvedScene):
         """Those along the way."""
         return self.way.patches
 
-    def fill_moving(self, instants: Array, places: Places, rows: Array) -> None:
-        """The patches have series of all points that move."""
-        wanted, tables = self._tables
-        for order, sums in enumerate(self.patches.sums(tables, self._inputs(instants))):
-            for i, name in enumerate(wanted[order]):
-                places[order, name][...] = sums[3 * i : 3 * i + 3]
-
-    fill_solved = fill_moving
-
-    @cached_property
-    def _tables(self) -> tuple[list[list[str]], list[Array]]:
-        """By derivative, the points that are wanted, and their coefficients, (P, powers, 3 points), mm."""
-        table, every = self.readout.table, moving_points(self.readout.mechanism.topology)
-        wanted = [
-            [name for d, name in (*table.moving, *table.spare) if d == order]
-            for order in range(self.readout.plan.derivative + 1)
-        ]
-        columns = [[3 * every.index(name) + axis for name in names for axis in range(3)] for names in wanted]
-        return wanted, [np.ascontiguousarray(self.patches.coefficients[..., c]) for c in columns]
+    def solved(self, instants: Array, derivatives: int) -> Sequence[Array]:
+        """The series of the patches composed with the laws."""
+        inputs = self._inputs(instants)[: derivatives + 1]
+        return self.patches.sums([self.patches.series] * len(inputs), inputs)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
-        inputs = self._inputs(instants)[: derivatives + 1]
-        unknown = self.patches.sums([self.patches.series] * len(inputs), inputs)
+        unknown = self.solved(instants, derivatives)
         laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
         known = self.readout.mechanism.known_series(laws)
         return [

@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
-from pointcoord.numerics.rounding import EPS
 from pointcoord.results.readout import ENOUGH, Readout
-from pointcoord.results.solved_scene import Places, SolvedScene
+from pointcoord.results.solved_scene import SolvedScene
 from pointcoord.solve.dense_output import SeriesRows, evaluate
 from pointcoord.solve.series_in_inputs import InputSeries
 from pointcoord.solve.taylor import Chain, last_magnitudes
@@ -26,15 +25,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# A coefficient of many designs up to this, of places whose size is 1, is what rounding leaves of rounding.
-NOTHING = EPS**2
-
 
 @dataclass(frozen=True, eq=False)
 class AtInstants(SolvedScene):
     """Solved at each instant by itself."""
 
-    solved: Solved
+    poses: Solved
     dense: ClassVar[bool] = False
 
     @classmethod
@@ -43,20 +39,17 @@ class AtInstants(SolvedScene):
         first, last = solved.times[[0, -1]].tolist() if len(solved.times) else (np.inf, -np.inf)
         return cls(readout, functions, solved.status, solved.work, first, last, (), solved)
 
-    def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
+    def solved(self, instants: Array, derivatives: int) -> list[Array]:
         """As they were solved for."""
-        mechanism = self.readout.mechanism
-        coordinates = self.coordinates(instants, self.readout.plan.derivative)
-        for (order, name), place in places.items():
-            place[...] = mechanism.unit * coordinates[order][:, mechanism.layout.span(name)].T
+        return [state.T for state in self.coordinates(instants, derivatives)]
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
         """As they were solved for."""
-        return self.solved.coordinates(instants)[: derivatives + 1]
+        return self.poses.coordinates(instants)[: derivatives + 1]
 
     def unsolved(self, instants: Array) -> Array:
         """What the tolerance let Newton's method leave."""
-        return self.solved.left[np.searchsorted(self.solved.times, instants)]
+        return self.poses.left[np.searchsorted(self.poses.times, instants)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,47 +72,24 @@ class ByChain(SolvedScene):
         orders = tuple(segment.order for segment in segments)
         return cls(readout, functions, chain.status, chain.work, *ends, orders, chain, notes=notes)
 
-    def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
+    def solved(self, instants: Array, derivatives: int) -> list[Array]:
         """The sums of their series."""
-        if isinstance(self.chain.segments[0], InputSeries):
-            self._fill_by_inputs(self.chain.segments[0], instants, places)
-            return
-        reported, needed = self._series
-        first = sum(name in self.readout.mechanism.topology.moving for _, name in self.readout.table.moving)
-        reported.sum(instants, rows[..., : 3 * first, :])
-        if len(places) > first:
-            sums = np.empty((*needed.shape, len(instants)))
-            needed.sum(instants, sums)
-            for i, state in enumerate(self.solved_states[first:]):
-                places[state][...] = sums[..., 3 * i : 3 * i + 3, :]
+        if isinstance(box := self.chain.segments[0], InputSeries):
+            coefficients = box.coefficients.swapaxes(-1, -2)
+            return [coefficients @ powers for powers in box.powers(instants, derivatives + 1)]
+        sums = np.empty((*self._series.shape, len(instants)))
+        self._series.sum(instants, sums)
+        return np.split(sums, self.readout.plan.derivative + 1, axis=-2)[: derivatives + 1]
 
     @cached_property
-    def _series(self) -> tuple[SeriesRows, ...]:
-        """Of the states of points that are solved for, mm: that are reported, and that are only needed."""
-        mechanism, topology = self.readout.mechanism, self.readout.mechanism.topology
-        first = sum(name in topology.moving for _, name in self.readout.table.moving)
-        unit, found = mechanism.unit[..., None, None], []
-        columns = [segment.coefficients * unit for segment in self.chain.segments]
-        for states in (self.solved_states[:first], self.solved_states[first:]):
-            wanted: list[list[int]] = [[] for _ in range(self.readout.plan.derivative + 1)]
-            for order, name in states:
-                wanted[order] += mechanism.layout.vector(name)
-            found.append(SeriesRows.of(self.chain, columns, wanted))
-        return tuple(found)
+    def _series(self) -> SeriesRows:
+        columns = [segment.coefficients[..., : self._count] for segment in self.chain.segments]
+        orders = range(self.readout.plan.derivative + 1)
+        return SeriesRows.of(self.chain, columns, [range(self._count)] * len(orders))
 
-    def _fill_by_inputs(self, box: InputSeries, instants: Array, places: Places) -> None:
-        """Of many designs whose powers are the same: one product for each state."""
-        mechanism, orders = self.readout.mechanism, range(max((order for order, _ in places), default=-1) + 1)
-        powers, series = box.powers(instants, len(orders)), dict[str, tuple[Numbers, Array]]()
-        for (order, name), place in places.items():
-            if name not in series:
-                own = box.coefficients[..., mechanism.layout.span(name)].transpose(1, 2, 0)
-                # Of two inputs many a point is moved by one alone, to rounding.
-                kept = np.flatnonzero(np.abs(own).reshape(len(own), -1).max(axis=-1) > NOTHING)
-                # Axis, designs, powers; the designs side by side in memory.
-                series[name] = kept, np.multiply(own[kept], mechanism.unit, order="C").transpose(1, 2, 0)
-            kept, shared = series[name]
-            np.matmul(shared, powers[order][kept], out=place.swapaxes(0, 1))
+    @property
+    def _count(self) -> int:
+        return self.readout.mechanism.map.unknowns
 
     def fill(self, times: Array, rows: Array) -> None:
         """By cells where instants of one car lie close together, unless it turns, and by blocks elsewhere."""

@@ -11,9 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from math import comb
-from types import EllipsisType
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -21,7 +19,6 @@ from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
 from pointcoord.errors import OutsideMotion
-from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.mechanism.freedoms import held_rows
 from pointcoord.numerics.counters import Work
 from pointcoord.results.readout import BLOCK, Readout
@@ -38,9 +35,6 @@ Places = Mapping[State, Array]
 
 # Of instants in any order, how many are computed before they are put where they belong: 9 MB of them.
 ORDERED = 2**13
-# Designs whose carried points are made at a time: at a hundred instants what lies between stays in a
-# second-level cache.
-CARRIED = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,20 +63,21 @@ class SolvedScene(ABC):
     """Whether it is known between the scene's instants too."""
 
     @abstractmethod
-    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """y and its derivatives up to one, or as many as were solved for, each (N, size), units per s^d.
+    def solved(self, instants: Array, derivatives: int) -> Sequence[Array]:
+        """The coordinates that are solved for, maybe with others after them, and their derivatives.
 
         Args:
             instants: shape (N,), s; they do not decrease.
+        Returns:
+            By derivative, each (..., coordinates, N), units per s^d.
         """
 
     @abstractmethod
-    def fill_solved(self, instants: Array, places: Places, rows: Array) -> None:
-        """Put the states of points that are solved for into their places, each (..., 3, N), mm per s^d.
+    def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
+        """y and its derivatives up to one, or as many as were solved for, each (..., N, size), units per s^d.
 
         Args:
-            places: in the order of `solved_states`.
-            rows: a table; the places of those that are reported are its first rows.
+            instants: shape (N,), s, in any order.
         """
 
     def summed(self, instants: Array) -> Sequence[Summed]:
@@ -106,29 +101,22 @@ class SolvedScene(ABC):
             coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
         )
 
-    def fill_moving(self, instants: Array, places: Places, rows: Array) -> None:
-        """Put the states of all points that move into their places."""
-        mechanism, solved = self.readout.mechanism, self.solved_states
-        carried = [state for state in places if state[1] in mechanism.topology.carried]
-        spare = [state for state in solved if state not in places]
-        room = np.empty((*mechanism.drawn.shape[:-1], 3 * len(spare), len(instants)))
-        whole = {**places} | {state: room[..., 3 * i : 3 * i + 3, :] for i, state in enumerate(spare)}
-        self.fill_solved(instants, {state: whole[state] for state in solved}, rows)
-        designs = len(mechanism.drawn) if mechanism.drawn.ndim > 1 else 0
-        parts: list[slice | EllipsisType] = [slice(low, low + CARRIED) for low in range(0, designs, CARRIED)]
-        for part in parts or [...]:
-            _carry(mechanism, part, carried, {state: place[part] for state, place in whole.items()})
-
-    @cached_property
-    def solved_states(self) -> list[State]:
-        """The states of points that are solved for which are reported, and then those that others need."""
-        table, carried = self.readout.table, self.readout.mechanism.topology.carried
-        wanted = (*table.moving, *table.spare)
-        reported = [state for state in table.moving if state[1] not in carried]
-        needed = [state for state in table.spare if state[1] not in carried]
-        for order, name in (state for state in wanted if state[1] in carried):
-            needed += [(d, carrier) for carrier in carried[name] for d in range(order + 1)]
-        return list(dict.fromkeys((*reported, *sorted(needed))))
+    def fill_moving(self, instants: Array, places: Places) -> None:
+        """Put the states of all points that move into their places, each (..., 3, N), mm per s^d."""
+        mechanism = self.readout.mechanism
+        layout, carried = mechanism.layout, mechanism.topology.carried
+        unit, y = mechanism.unit[..., None, None], self.solved(instants, self.readout.plan.derivative)
+        for (order, name), place in places.items():
+            if name in carried:
+                base, *others = (
+                    [each[..., layout.span(point), :] for each in y[: order + 1]] for point in carried[name]
+                )
+                e1, e2 = ([p - q for p, q in zip(other, base, strict=True)] for other in others)
+                a, b, c = (mechanism.carrier_weights[name][..., i, None, None] for i in range(3))
+                normal = sum(comb(order, i) * _cross(e1[i], e2[order - i]) for i in range(order + 1))
+                np.multiply(unit, a * e1[order] + b * e2[order] + c * normal + base[order], out=place)
+            elif name in mechanism.topology.moving:
+                np.multiply(unit, y[order][..., layout.span(name), :], out=place)
 
     def states(self, instants: Array, rows: Array | None = None) -> list[dict[str, Array]]:
         """By time derivative, the states of the points that the plan asks for (see `readout.States`).
@@ -146,7 +134,7 @@ class SolvedScene(ABC):
         if rows is None:
             rows = self.readout.room(len(instants))
         places = self.readout.places(rows)
-        self.fill_moving(instants, places, rows)
+        self.fill_moving(instants, places)
         return self.readout.by_derivative(places)
 
     def samples(self, times: Array, out: Array | None = None) -> Samples:
@@ -204,29 +192,9 @@ class SolvedScene(ABC):
         return prove(readout.mechanism, samples.times, reported, rates=rates, certain=certain)
 
 
-def _carry(mechanism: Mechanism, part: slice | EllipsisType, carried: Sequence[State], found: Places) -> None:
-    """Put together carried states of those of their carriers, (..., 3, N), mm.
-
-    Args:
-        part: which of the mechanism's cars they are of.
-    """
-    unit = mechanism.unit[part][..., None, None]
-    for order, name in carried:
-        base, *others = mechanism.topology.carried[name]
-        a, b, c = (mechanism.carrier_weights[name][part][..., i, None, None] for i in range(3))
-        e1, e2 = ([found[d, point] - found[d, base] for d in range(order + 1)] for point in others)
-        place, normal = found[order, name], np.zeros_like(e1[0])
-        for i in range(order + 1):
-            _add_cross(normal, comb(order, i), e1[i], e2[order - i])
-        # The weights are of lengths in the mechanism's units: of the cross product's square one is left.
-        place[...] = a * e1[order] + b * e2[order] + (c / unit) * normal + found[order, base]
-
-
-def _add_cross(total: Array, factor: float, a: Array, b: Array) -> None:
-    """Add factor a x b, all (..., 3, N)."""
+def _cross(a: Array, b: Array) -> Array:
+    """a x b, all (..., 3, N)."""
+    crossed = np.empty_like(a)
     for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
-        crossed = a[..., j, :] * b[..., k, :]
-        crossed -= a[..., k, :] * b[..., j, :]
-        if factor != 1.0:
-            crossed *= factor
-        total[..., i, :] += crossed
+        crossed[..., i, :] = a[..., j, :] * b[..., k, :] - a[..., k, :] * b[..., j, :]
+    return crossed
