@@ -7,10 +7,10 @@ What a scene gives and what is compared has one meaning, so that two people who 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Literal
 
-from pointcoord.effects.numbers import WAYS
+from pointcoord.effects.numbers import TABLES, WAYS
 
 ConventionName = Literal["iso", "paper", "lotus", "optimumk", "adams"]
 
@@ -23,7 +23,7 @@ class Convention:
         means: by name, our number of that meaning; a minus before it where it counts the other way.
     """
 
-    means: Mapping[str, str] = field(default_factory=dict)
+    means: Mapping[str, str]
 
     def number(self, name: str) -> tuple[str, int]:
         """Our number of a name, which may be a part's or a gradient's, and its sign.
@@ -39,28 +39,6 @@ class Convention:
 
 
 CONVENTIONS: Mapping[ConventionName, Convention] = {
-    # ISO 8855, and ours.
-    "iso": Convention(),
-    # Attia's, eqs. 16 and 17.
-    "paper": Convention(),
-    # The trail that Lotus prints as mechanical is this one times the cosine of the caster.
-    "lotus": Convention(
-        {
-            "travel": "contact_travel",
-            "scrub_radius": "kingpin_offset",
-            "mechanical_trail": "castor_offset",
-            "damper_per_wheel": "wheel_per_damper",
-        },
-    ),
-    # Its steer angle is its toe less the static setting.
-    "optimumk": Convention(
-        {
-            "toe": "-toe_by_arcsine",
-            "steer_angle": "-toe_change_by_arcsine",
-            "damper_per_wheel": "wheel_per_damper",
-        }
-    ),
-    # Adams/Car's turning tables.
-    "adams": Convention({"camber": "camber_by_arcsine"}),
+    name: Convention(means) for name, means in TABLES["conventions"].items()
 }
 """By name."""

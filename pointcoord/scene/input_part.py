@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from itertools import pairwise
 from math import isfinite
 from typing import Annotated, Any
@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field
 
 from pointcoord.mechanism.faults import TableFault
-from pointcoord.scene.scene_part import AS_LIST, Number, Part, Place
+from pointcoord.scene.scene_part import AS_LIST, Number, Part, Place, own_list
 from pointcoord.time_functions import Polynomial, Sine, Sum, Table, TimeFunction
 from pointcoord.wording import meant, shown
 
@@ -18,8 +18,7 @@ SUM, SWEEP = "sum", "sweep"
 LAWS = ("constant", "polynomial", "sine", "table", SUM)
 """The kinds of an input over time; a sweep is written as a polynomial before it is one."""
 DRAWN = "drawn"
-# Of a law that is a table, which of its keys are values of the input.
-VALUES = {"sine": "offset", "table": "values"}
+SPAN = ("start", "stop")
 
 
 def _no_word(value: object) -> object:
@@ -102,16 +101,50 @@ class InputPart(Part):
         return (*of_terms, *(() if self.table is None else (self.table,)))
 
 
-def stands_still(law: Any) -> bool:
-    """Whether a law as plain data is a constant, or a sum of such."""
-    return isinstance(law, Mapping) and (
-        [*law] == ["constant"] or ([*law] == [SUM] and all(map(stands_still, _terms(law))))
+def changed(law: Any, change: Callable[[Mapping[str, Any], Place], Any], place: Place = ()) -> Any:
+    """A law as plain data with something else for it or, if it is a sum, for each of its terms.
+
+    Args:
+        change: of a law that is no sum, and its place. place: of the law in the scene.
+    """
+    if not isinstance(law, Mapping):
+        return law
+    terms = law.get(SUM)
+    if len(law) == 1 and isinstance(terms, list | tuple):
+        return {SUM: [changed(term, change, (*place, SUM, i)) for i, term in enumerate(terms)]}
+    return change(law, place)
+
+
+def kinds_of(law: Any) -> set[str]:
+    """The kinds of laws that one as plain data is made of."""
+    found: set[str] = set()
+    changed(law, lambda one, place: found.update(one))
+    return found
+
+
+def with_values(law: Any, change: Callable[[Any], Any], keys: Collection[str]) -> Any:
+    """A law as plain data with something else for each of its values: of a table, those under some keys."""
+
+    def of_some(part: Any) -> Any:
+        part = own_list(part)
+        return list(map(of_some, part)) if isinstance(part, tuple) else change(part)
+
+    def of_one(law: Mapping[str, Any], place: Place) -> dict[str, Any]:
+        return {
+            kind: {key: of_some(own) if key in keys else own for key, own in part.items()}
+            if isinstance(part, Mapping)
+            else of_some(part)
+            for kind, part in law.items()
+        }
+
+    return changed(law, of_one)
+
+
+def with_drawn(law: Any, value: float) -> Any:
+    """A law as plain data with a number where it says "drawn": the value at which the input is drawn."""
+    return with_values(
+        law, lambda own: value if isinstance(own, str) and own == DRAWN else own, ("offset", "values")
     )
-
-
-def sweeps(law: Any) -> bool:
-    """Whether a law as plain data, or a term of it, is a sweep."""
-    return isinstance(law, Mapping) and (SWEEP in law or any(map(sweeps, _terms(law))))
 
 
 def swept(law: Any, time: Any, place: Place) -> Any:
@@ -123,59 +156,27 @@ def swept(law: Any, time: Any, place: Place) -> Any:
     Raises:
         TableFault: a sweep is no pair of numbers, or has no time to go through.
     """
-    if not sweeps(law):
-        return law
+    return changed(law, lambda one, place: _swept(one, time, (*place, SWEEP)), place)
+
+
+def _swept(law: Mapping[str, Any], time: Any, place: Place) -> Mapping[str, Any]:
     if SWEEP not in law:
-        terms = enumerate(_terms(law))
-        return {**law, SUM: [swept(term, time, (*place, SUM, i)) for i, term in terms]}
-    place, ends = (*place, SWEEP), law[SWEEP]
+        return law
+    ends = law[SWEEP]
     if len(law) > 1:
         others = " and ".join(key for key in law if key != SWEEP)
         raise TableFault(place, f"stands beside {others}", "one law alone")
     if not (_numbers(ends) and len(ends) == 2):
         raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
-    span = [_given_number(time, key) for key in ("start", "stop")]
-    if None in span or span[0] == span[1]:
+    span = [time.get(key) if isinstance(time, Mapping) else getattr(time, key, None) for key in SPAN]
+    if not _numbers(span) or span[0] == span[1]:
         raise TableFault(place, "has no time to go through", "time from a start to a later stop, or no time")
     (first, last), (start, stop) = (float(end) for end in ends), span
     slope = (last - first) / (stop - start)
     return {"polynomial": [first - slope * start, slope]}
 
 
-def says_drawn(law: Any) -> bool:
-    """Whether a law as plain data has the drawn value of its input for one of its values."""
-    return bool(with_drawn(law, 0.0) != law)
-
-
-def with_drawn(law: Any, value: float) -> Any:
-    """A law as plain data with a number where it says "drawn": the value at which the input is drawn."""
-    if not isinstance(law, Mapping):
-        return law
-    return {kind: _with_drawn(kind, part, value) for kind, part in law.items()}
-
-
-def _with_drawn(kind: str, part: Any, value: float) -> Any:
-    if isinstance(part, str):
-        return value if part == DRAWN else part
-    if isinstance(part, list | tuple):
-        return [with_drawn(each, value) if kind == SUM else _with_drawn(kind, each, value) for each in part]
-    if isinstance(part, Mapping) and kind in VALUES:
-        key = VALUES[kind]
-        return {**part, key: _with_drawn(key, part[key], value)} if key in part else part
-    return part
-
-
-def _terms(law: Mapping[str, Any]) -> tuple[Any, ...]:
-    terms = law.get(SUM)
-    return tuple(terms) if isinstance(terms, list | tuple) else ()
-
-
 def _numbers(value: object) -> bool:
     return isinstance(value, list | tuple) and all(
         isinstance(each, int | float) and not isinstance(each, bool) and isfinite(each) for each in value
     )
-
-
-def _given_number(time: Any, key: str) -> Any:
-    value = time.get(key) if isinstance(time, Mapping) else getattr(time, key, None)
-    return value if _numbers([value]) else None

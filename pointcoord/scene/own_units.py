@@ -6,9 +6,12 @@ What comes of it is a plain scene in mm; every result is in mm. Angles and times
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from functools import partial
 from typing import Any
 
 from pointcoord.mechanism.faults import TableFault
+from pointcoord.scene.input_part import with_values
+from pointcoord.scene.scene_part import own_list, own_number
 from pointcoord.wording import shown
 
 UNITS = {"mm": 1.0, "m": 1000.0, "in": 25.4}
@@ -22,6 +25,7 @@ AXES = {
 """Axes by name: ours; x forward, y left, z up (ISO 8855); x forward, y right, z down (SAE J670)."""
 
 OF_THE_MECHANISM = ("wheel_radius", "rack_per_turn")
+OF_A_LAW = ("amplitude", "offset", "values")
 # By what power of the unit of length each goes.
 OF_THE_CAR = {"wheelbase": 1, "centre_of_gravity_height": 1, "spring_free_length": 1, "spring_rate": -1}
 
@@ -73,7 +77,10 @@ def in_mm(content: dict[str, Any], lengths: Collection[str]) -> dict[str, Any]:
         content["mechanism"] = {**mechanism, **lengthy}
     inputs = content.get("inputs")
     if isinstance(inputs, Mapping):
-        content["inputs"] = {n: _law(factor, v) if n in lengths else v for n, v in inputs.items()}
+        content["inputs"] = {
+            name: with_values(law, partial(_times, factor), OF_A_LAW) if name in lengths else law
+            for name, law in inputs.items()
+        }
     return content
 
 
@@ -88,26 +95,11 @@ def _moments(factor: float, loads: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _law(factor: float, law: Any) -> Any:
-    """A law of an input with its values, not its times, so many times as large."""
-    if not isinstance(law, Mapping):
-        return law
-    of_time = {"sine": ("angular_frequency", "phase"), "table": ("times",)}
-
-    def parts(kind: str, value: Any) -> Any:
-        if kind == "sum" and isinstance(value, list | tuple):
-            return [_law(factor, term) for term in value]
-        if isinstance(value, Mapping):
-            return {n: v if n in of_time.get(kind, ()) else _times(factor, v) for n, v in value.items()}
-        return value if kind in of_time else _times(factor, value)
-
-    return {kind: parts(kind, value) for kind, value in law.items()}
-
-
 def _times(factor: float, value: Any) -> Any:
     """Numbers, lists and tables of them so many times as large."""
     if isinstance(value, Mapping):
         return {name: _times(factor, each) for name, each in value.items()}
-    if isinstance(value, list | tuple):
+    value = own_list(own_number(value))
+    if isinstance(value, tuple):
         return [_times(factor, each) for each in value]
     return factor * value if isinstance(value, int | float) and not isinstance(value, bool) else value

@@ -39,16 +39,7 @@ from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.results.even_instants import even_instants
 from pointcoord.scene.csv_table import beside, read_in
 from pointcoord.scene.drawing_doubts import drawing_doubts
-from pointcoord.scene.input_part import (
-    LAWS,
-    SWEEP,
-    InputPart,
-    says_drawn,
-    stands_still,
-    sweeps,
-    swept,
-    with_drawn,
-)
+from pointcoord.scene.input_part import LAWS, SWEEP, InputPart, kinds_of, swept, with_drawn
 from pointcoord.scene.own_units import in_directions, in_mm
 from pointcoord.scene.scene_part import (
     AS_LIST,
@@ -537,12 +528,13 @@ class Scene(Part):
             content = in_mm(content, _lengths(content.get("mechanism")))
         inputs = content["inputs"]
         if isinstance(inputs, Mapping):
-            if any(map(says_drawn, inputs.values())):
+            if any(with_drawn(law, 0.0) != law for law in inputs.values()):
                 values = _drawn_values(content.get("mechanism"), inputs)
                 inputs = {name: with_drawn(law, values.get(name, 0.0)) for name, law in inputs.items()}
-            if any(map(sweeps, inputs.values())):
+            kinds = set().union(*map(kinds_of, inputs.values()))
+            if SWEEP in kinds:
                 content.setdefault("time", PLAIN_TIME)
-            elif inputs and all(map(stands_still, inputs.values())):
+            elif kinds == {"constant"}:
                 content.setdefault("time", ONE_POSE)
             inputs = {n: swept(law, content.get("time"), ("inputs", n)) for n, law in inputs.items()}
         content["inputs"] = inputs

@@ -44,7 +44,7 @@ WORDS = {
 COMPLETE = ("missing", "too_short", "too_long", "value_error")
 
 
-def _own_number(value: object) -> object:
+def own_number(value: object) -> object:
     """A number of numpy's, or a fraction, as one of Python's own; a truth or an array is left as it is."""
     # By its exact type: a float of numpy's is one of Python's too, and would stay what it is.
     if type(value) in (float, int) or isinstance(value, bool | np.ndarray | np.complexfloating):
@@ -61,7 +61,7 @@ def _own_whole(value: object) -> object:
     return int(value) if isinstance(value, np.integer) else value
 
 
-def _own_list(value: object) -> object:
+def own_list(value: object) -> object:
     """What counts as a list, as a tuple: no text and no table."""
     if isinstance(value, str | bytes | bytearray | Mapping) or not hasattr(value, "__iter__"):
         return value
@@ -81,9 +81,9 @@ def _own_table(value: object) -> object:
     return tuple(map(_own_table, value)) if isinstance(value, list | tuple) else value
 
 
-AS_LIST = BeforeValidator(_own_list)
+AS_LIST = BeforeValidator(own_list)
 Text = Annotated[str, Field(strict=True)]
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False), BeforeValidator(_own_number)]
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False), BeforeValidator(own_number)]
 Positive = Annotated[Number, Field(gt=0.0)]
 NotZero = Annotated[Number, AfterValidator(_not_zero)]
 Share = Annotated[Number, Field(ge=0.0, le=1.0)]
