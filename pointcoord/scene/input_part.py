@@ -168,7 +168,9 @@ def _swept(law: Mapping[str, Any], time: Any, place: Place) -> Mapping[str, Any]
         raise TableFault(place, f"stands beside {others}", "one law alone")
     if not (_numbers(ends) and len(ends) == 2):
         raise TableFault(place, f"is {shown(ends)}", "two numbers, such as [-50.0, 50.0]")
-    span = [time.get(key) if isinstance(time, Mapping) else getattr(time, key, None) for key in SPAN]
+    span: list[Any] = [
+        time.get(key) if isinstance(time, Mapping) else getattr(time, key, None) for key in SPAN
+    ]
     if not _numbers(span) or span[0] == span[1]:
         raise TableFault(place, "has no time to go through", "time from a start to a later stop, or no time")
     (first, last), (start, stop) = (float(end) for end in ends), span
