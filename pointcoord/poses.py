@@ -73,28 +73,6 @@ class SolvedPoses(Named):
         return f"<SolvedPoses: {int(self.solved.sum())} within {largest:.2g} mm{failed}>"
 
 
-@dataclass(frozen=True)
-class Unrelated:
-    """Poses of one car in the chassis' frame.
-
-    Attributes:
-        places: of the points that move, (N, points, 3), mm from the mechanism's origin; NaN where there is
-            no pose.
-        bound: proven distance of every coordinate of a solved point to the exact assembly, once the origin
-            is added, (N,), mm, for what the inputs and the drawing mean, infinite where there is none.
-            carried_bound: the same of points that ride on a body.
-        failures: by number, what stopped a pose.
-        y: the coordinates, (N, size), those of the closed drawing where there is no pose; None where a map
-            gave places alone.
-    """
-
-    places: Array
-    bound: Array
-    carried_bound: Array
-    failures: Mapping[int, PointcoordError]
-    y: Array | None
-
-
 def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float | None = None) -> SolvedPoses:
     """Solve a scene's suspension at any inputs, whatever the scene's own laws and instants.
 
@@ -134,58 +112,40 @@ def solve_poses(scene: Scene, inputs: Mapping[str, ArrayLike], tolerance: float 
             raise InputOutOfRange(name, float(value[~np.isfinite(value)].flat[0]), "finite values")
     shape = np.broadcast_shapes(*(value.shape for value in values.values()))
     flat = {name: np.broadcast_to(value, shape).ravel() for name, value in values.items()}
-    require_the_drawn_car(scene, closing(mechanism, close_drawing(mechanism).y))
-    driving = {name: flat[name] for name in topology.required_inputs}
     wanted = scene.tolerance if tolerance is None else tolerance
     if not (np.isfinite(wanted) and wanted > 0.0):
         raise InputOutOfRange("tolerance", wanted, "a finite number of mm above 0")
+    closed = close_drawing(mechanism)
+    require_the_drawn_car(scene, closing(mechanism, closed.y))
+
     plan = plan_effects(name for name in scene.effects if EFFECTS[name].derivative == 0)
-    found = solve_unrelated(mechanism, driving, wanted, coordinates=plan.along_ways)
     chassis = ChassisMotion.of(mechanism, {})
     readout = Readout(mechanism, plan, chassis, scene.mechanism.axes)
-    rows = readout.room(len(found.bound))
+    count = int(np.prod(shape))
+    rows, bounds = readout.room(count), np.full((2, count), np.inf)
     places = readout.places(rows)
-    for i, name in enumerate(moving_points(topology)):
-        places[0, name][...] = found.places[:, i].T
-    farthest = np.max([np.sqrt((place**2).sum(axis=-2)) for place in places.values()], axis=0)
-    laws = {name: [value] for name, value in flat.items() if name in chassis.directions}
-    readout.complete(laws, readout.by_derivative(places), rows, found.y)
-    rows[:, ~np.isfinite(found.bound)] = np.nan
-    rounded, spread = _rounded(chassis, laws, farthest, float(np.abs(mechanism.origin).max()))
-    return SolvedPoses(
-        readout.named(np.zeros(len(found.bound)), rows).shaped(shape).numbers,
-        (spread * found.bound + rounded).reshape(shape),
-        (spread * found.carried_bound + rounded).reshape(shape),
-        dict(sorted(found.failures.items())),
-    )
-
-
-def solve_unrelated(
-    mechanism: Mechanism, inputs: Mapping[str, Array], tolerance: float, *, coordinates: bool = False
-) -> Unrelated:
-    """The poses of one car at any inputs, on the branch of its drawing, in the chassis' frame.
-
-    Args:
-        inputs: value of each input that drives the linkage, each (N,), rad or mm.
-        tolerance: bound that a pose should keep, mm; rounding may leave more.
-        coordinates: whether all coordinates are asked for, which a map does not give.
-    Raises:
-        AssemblyError: the drawing cannot be closed.
-        InputOutOfRange, UnknownName: as `Mechanism.known_series`.
-    """
-    closed = close_drawing(mechanism)
-    count = len(next(iter(inputs.values())))
-    rows = np.full((3 * len(moving_points(mechanism.topology)), count), np.nan)
-    bounds = np.full((2, count), np.inf)
-    y = np.tile(closed.y, (count, 1)) if coordinates else None
+    # The first rows of a table are those of the points that move.
+    moving = rows[: 3 * len(moving_points(topology))]
+    moving[...] = np.nan
+    driving = {name: flat[name] for name in topology.required_inputs}
+    # A map gives places and no coordinates, along which effects may take derivatives.
+    y = np.tile(closed.y, (count, 1)) if plan.along_ways else None
     rest = np.arange(count)
     # Where some rows are left out of the equations they are looked at pose by pose.
-    if count >= FEW and not coordinates and not mechanism.topology.left_out:
-        rest = rest[~_by_patches(mechanism, closed, inputs, tolerance, rows, bounds)]
+    if count >= FEW and y is None and not topology.left_out:
+        rest = rest[~_by_patches(mechanism, closed, driving, wanted, moving, bounds)]
     failures: dict[int, PointcoordError] = {}
     for low in range(0, len(rest), PATHS):
-        failures |= _by_paths(mechanism, closed, inputs, rest[low : low + PATHS], rows, bounds, y)
-    return Unrelated(rows.T.reshape(count, -1, 3), bounds[0], bounds[1], failures, y)
+        failures |= _by_paths(mechanism, closed, driving, rest[low : low + PATHS], moving, bounds, y)
+
+    farthest = np.max([np.sqrt((place**2).sum(axis=-2)) for place in places.values()], axis=0)
+    laws = {name: [value] for name, value in flat.items() if name in chassis.directions}
+    readout.complete(laws, readout.by_derivative(places), rows, y)
+    rows[:, ~np.isfinite(bounds[0])] = np.nan
+    rounded, spread = _rounded(chassis, laws, farthest, float(np.abs(mechanism.origin).max()))
+    solved, carried = ((spread * bound + rounded).reshape(shape) for bound in bounds)
+    numbers = readout.named(np.zeros(count), rows).shaped(shape).numbers
+    return SolvedPoses(numbers, solved, carried, dict(sorted(failures.items())))
 
 
 def _by_patches(
