@@ -198,7 +198,7 @@ class CloseInstants:
         others of their derivative.
         """
         table = self.solved.readout.table
-        found = {3 * i: (0.0, order) for i, (order, _) in enumerate(table.moving)}
+        found = {row: (0.0, order) for (order, _), row in table.states.items() if row < table.first_still}
         kind = self.solved.readout.plan.derivative
         for effect in table.computed:
             for quantity in effect.quantities:
@@ -218,16 +218,13 @@ class CloseInstants:
         readout, table = self.solved.readout, self.solved.readout.table
         count = len(table.reported)
         added = np.zeros((table.height, len(readout.chassis.functions) * count + 1))
-        for first, (derivative, name) in table.states:
-            if first >= table.first_still and derivative == 0:
-                added[first : first + 3, -1] = readout.mechanism.drawn_places[name]
-        for place, derivative in enumerate(table.reported):
-            for part in table.states_of(derivative):
-                points = added[part].reshape(-1, 3, added.shape[-1])
-                for i, name in enumerate(readout.chassis.functions):
-                    points[..., i * count + place] = readout.chassis.directions[name]
-                if derivative == 0:
-                    points[..., -1] += readout.mechanism.origin
+        for (derivative, name), first in table.states.items():
+            place = added[first : first + 3]
+            for i, law in enumerate(readout.chassis.functions):
+                place[:, i * count + table.reported.index(derivative)] = readout.chassis.directions[law]
+            if derivative == 0:
+                stands = readout.mechanism.drawn_places[name] if first >= table.first_still else 0.0
+                place[:, -1] = readout.mechanism.origin + stands
         return added
 
 

@@ -17,7 +17,7 @@ from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.slopes import ByInput, Way, moved_along
 from pointcoord.results.samples import Channel, Samples
-from pointcoord.results.table import State, Table, triples, vectors
+from pointcoord.results.table import State, Table, vectors
 
 Array = NDArray[np.float64]
 Slopes = Mapping[Way, tuple[Mapping[str, Array], Mapping[str, Array]]]
@@ -82,12 +82,12 @@ class Readout:
         Those of the chassis' points, which stand in its frame, are filled in.
         """
         table, drawn = self.table, self.mechanism.drawn_places
-        found = {state: rows[..., first : first + 3, :] for first, state in table.states}
-        spare = (*table.spare, *table.spare_still)
-        beside = np.empty((*rows.shape[:-2], 3 * len(spare), rows.shape[-1]))
-        found |= {state: beside[..., 3 * i : 3 * i + 3, :] for i, state in enumerate(spare)}
-        for order, name in (*table.still, *table.spare_still):
-            found[order, name][...] = drawn[name][..., None] if order == 0 else 0.0
+        found = {state: rows[..., first : first + 3, :] for state, first in table.states.items()}
+        beside = np.empty((*rows.shape[:-2], 3 * len(table.spare), rows.shape[-1]))
+        found |= {state: beside[..., 3 * i : 3 * i + 3, :] for i, state in enumerate(table.spare)}
+        for (order, name), place in found.items():
+            if name in self.mechanism.topology.chassis:
+                place[...] = drawn[name][..., None] if order == 0 else 0.0
         return found
 
     def by_derivative(self, places: Mapping[State, Array]) -> list[dict[str, Array]]:
@@ -127,16 +127,14 @@ class Readout:
             # The states may be views of the table, which those of the turned car are written into.
             in_chassis = [{name: state.copy() for name, state in of.items()} for of in states[:2]]
             states = self.chassis.turned_by(laws, states)
-            for first, (derivative, point) in self.table.states:
+            for (derivative, point), first in self.table.states.items():
                 vectors(rows, first)[...] = states[derivative][point]
         added = self.added(laws)
         self.compute(states, in_chassis, added, rows, slopes)
         for derivative in self.table.reported:
             more = added[derivative]
             if more is not None:
-                for part in self.table.states_of(derivative):
-                    places = triples(rows, part)
-                    places += more.swapaxes(-1, -2)[..., None, :, :]
+                self.table.add(rows, derivative, more)
 
     def compute(
         self,

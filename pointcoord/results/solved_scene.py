@@ -95,11 +95,10 @@ class SolvedScene(ABC):
     @property
     def work(self) -> Work:
         """What solving took, and what reading takes of each instant."""
-        table = self.readout.table
-        return self.solving + Work(
-            derivatives_evaluated=self.readout.plan.derivative + 1,
-            coordinates_evaluated=3 * (len(table.moving) + len(table.spare)),
-        )
+        table, chassis = self.readout.table, self.readout.mechanism.topology.chassis
+        moving = [name for _, name in (*table.states, *table.spare) if name not in chassis]
+        derivatives = self.readout.plan.derivative + 1
+        return self.solving + Work(derivatives_evaluated=derivatives, coordinates_evaluated=3 * len(moving))
 
     def fill_moving(self, instants: Array, places: Places) -> None:
         """Put the states of all points that move into their places, each (..., 3, N), mm per s^d."""

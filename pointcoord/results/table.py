@@ -26,23 +26,20 @@ class Table:
     """The rows of a table.
 
     Attributes:
-        moving: states that are reported of points that move: three rows each from row 0, first
-            those of points that are solved for, then those of points that are carried.
-        still: the same of the chassis' points, in the last rows.
-        spare: states of points that move that are only needed; they are in no table.
-        spare_still: likewise of points of the chassis.
+        states: the first of the three rows of every state that is reported: from row 0 on those of points
+            that move, in the last rows the chassis'; of each by derivative.
+        spare: states that are only needed; they are in no table.
         places: by quantity and name the rows of every number, in the order of results.
         computed: the effects that compute their numbers from states.
-        height: how many rows there are.
+        first_still: the row from which on the chassis' points are. height: how many rows there are.
         reported: the derivatives of points that are reported.
     """
 
-    moving: tuple[State, ...]
-    still: tuple[State, ...]
+    states: Mapping[State, int]
     spare: tuple[State, ...]
-    spare_still: tuple[State, ...]
     places: Mapping[str, Mapping[str, slice]]
     computed: tuple[Effect, ...]
+    first_still: int
     height: int
     reported: tuple[int, ...]
 
@@ -54,22 +51,12 @@ class Table:
             highest: time derivative of each point that is needed.
         """
         points = plan.reported(topology)
-        reported = {e.derivative: e.quantities[0].name for e in plan.computed if e.reports_states}
-        solved, carried, still = (
-            tuple((d, point) for d in sorted(reported) for point in kind if point in points)
-            for kind in (topology.moving, topology.carried, topology.chassis)
-        )
-        moving = (*solved, *carried)
-        spare, spare_still = (
-            tuple(
-                (d, point)
-                for d in range(plan.derivative + 1)
-                for point in kind
-                if highest.get(point, -1) >= d and not (d in reported and point in points)
-            )
-            for kind in ((*topology.moving, *topology.carried), topology.chassis)
-        )
-        height = 3 * len(moving)
+        named = {e.derivative: e.quantities[0].name for e in plan.computed if e.reports_states}
+        reported = tuple(sorted(named))
+        kinds = (*topology.moving, *topology.carried), topology.chassis
+        moving, still = ([(d, p) for d in reported for p in kind if p in points] for kind in kinds)
+        states = {state: 3 * i for i, state in enumerate(moving)}
+        height = 3 * len(states)
         places: dict[str, dict[str, slice]] = {q.name: {} for e in plan.computed for q in e.quantities}
         computed = tuple(effect for effect in plan.computed if not effect.reports_states)
         for effect in computed:
@@ -82,31 +69,24 @@ class Table:
                 for name in (name for name in those if name not in places[quantity.name]):
                     places[quantity.name][name] = slice(height, height + rows)
                     height += rows
-        first = {state: 3 * i for i, state in enumerate(moving)}
-        first |= {state: height + 3 * i for i, state in enumerate(still)}
-        for d, named in reported.items():
-            places[named] = {p: slice(first[d, p], first[d, p] + 3) for p in points}
+        first_still = height
+        states |= {state: height + 3 * i for i, state in enumerate(still)}
         height += 3 * len(still)
-        return cls(moving, still, spare, spare_still, places, computed, height, tuple(sorted(reported)))
+        for d, quantity_name in named.items():
+            places[quantity_name] = {p: slice(states[d, p], states[d, p] + 3) for p in points}
+        needed = ((d, point) for d in range(plan.derivative + 1) for kind in kinds for point in kind)
+        spare = tuple((d, p) for d, p in needed if highest.get(p, -1) >= d and (d, p) not in states)
+        return cls(states, spare, places, computed, first_still, height, reported)
 
-    @property
-    def first_still(self) -> int:
-        """The row from which on the chassis' points are."""
-        return self.height - 3 * len(self.still)
-
-    @property
-    def states(self) -> list[tuple[int, State]]:
-        """The first row of every reported state, and which it is."""
-        moving = [(3 * i, state) for i, state in enumerate(self.moving)]
-        return moving + [(self.first_still + 3 * i, state) for i, state in enumerate(self.still)]
-
-    def states_of(self, derivative: int) -> list[slice]:
-        """The rows of a reported derivative of all points."""
-        found: list[slice] = []
-        for first in (first for first, (d, _) in self.states if d == derivative):
-            begun = found.pop().start if found and found[-1].stop == first else first
-            found.append(slice(begun, first + 3))
-        return found
+    def add(self, rows: Array, derivative: int, more: Array) -> None:
+        """Add the same, (..., N, 3), to a reported derivative of all points in a table."""
+        place = self.reported.index(derivative)
+        moving = 3 * sum(first < self.first_still for first in self.states.values())
+        for low, high in ((0, moving), (self.first_still, self.height)):
+            step = (high - low) // len(self.reported)
+            part = rows[..., low + place * step : low + (place + 1) * step, :]
+            points = part.reshape(*part.shape[:-2], step // 3, 3, part.shape[-1])
+            points += more.swapaxes(-1, -2)[..., None, :, :]
 
     def numbers(self, rows: Array) -> dict[str, dict[str, Array]]:
         """A table's numbers by quantity and name, of points and bodies (..., N, 3), of the car (..., N).
@@ -127,12 +107,6 @@ class Table:
 def vectors(rows: Array, first: int) -> Array:
     """Three rows as vectors (..., N, 3), a view."""
     return rows[..., first : first + 3, :].swapaxes(-1, -2)
-
-
-def triples(rows: Array, part: slice) -> Array:
-    """Rows of points as an array (..., points, 3, N), a view."""
-    chosen = rows[..., part, :]
-    return chosen.reshape(*chosen.shape[:-2], chosen.shape[-2] // 3, 3, chosen.shape[-1])
 
 
 def _seen(rows: Array, place: slice) -> Array:
