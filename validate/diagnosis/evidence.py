@@ -5,7 +5,7 @@ Numbers are by row: the pair of a quantity and a point, body or angle.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -18,7 +18,7 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
-from validate.comparison.compare import SMALLEST, Outcome, Pair
+from validate.comparison.compare import SMALLEST, Outcome, Pair, gaps_between
 from validate.comparison.given import given as given_numbers
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Numbers, Solution
@@ -27,8 +27,6 @@ Array = NDArray[np.float64]
 Row = tuple[str, str]
 Rows = Mapping[Row, Array]
 
-# Instants of which one at an end may be left out, and that are looked through twice more in a second or two.
-FEWEST_LATE, MOST_LATE = 8, 2000
 MOST_DISTINCT = 32  # numbers that are counted; more than any fault is fitted by
 # How many times what may be left of it a difference is, to be explained; a smaller one may be chance.
 CLEAR = 4.0
@@ -68,11 +66,6 @@ def _in_digits(amount: Array | float) -> str:
     return f"{amount:.6g}" if np.ndim(amount) == 0 else f"({', '.join(f'{c:.6g}' for c in np.ravel(amount))})"
 
 
-def nearest(instants: Array, to: Array) -> NDArray[np.intp]:
-    """Of each of some instants the place of the nearest of all, which rise."""
-    return np.searchsorted(0.5 * (instants[1:] + instants[:-1]), to)
-
-
 def some_of(count: int, most: int) -> NDArray[np.intp]:
     """The places of so many of `count` instants at most, evenly."""
     return np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.intp))
@@ -93,11 +86,25 @@ def _apart_by(step: float, numbers: Array) -> int:
     return count
 
 
+def motion_of(scene: Callable[[], Scene], solve: Callable[[Scene], Motion] = simulate) -> Motion | None:
+    """The motion of a scene that may be none, or be refused: then there is no motion."""
+    with suppress(PointcoordError):
+        return solve(scene())
+    return None
+
+
 class Solved:
     """A scene's own motion, solved when it is first asked for, with every point."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
+        self._others: dict[Hashable, Motion | None] = {}
+
+    def other(self, key: Hashable, solve: Callable[[], Motion | None]) -> Motion | None:
+        """The motion of another car, solved once: several suppositions ask for the same."""
+        if key not in self._others:
+            self._others[key] = solve()
+        return self._others[key]
 
     @cached_property
     def fine(self) -> Scene:
@@ -108,17 +115,13 @@ class Solved:
     @cached_property
     def ends(self) -> Scene:
         """The same at its first and last instant: motions are read between them."""
-        time = self.scene.time
-        return self.fine.model_copy(
-            update={"time": time.model_copy(update={"samples": min(2, time.samples)})}
-        )
+        samples = min(2, self.scene.time.samples)
+        return self.fine.model_copy(update={"time": self.scene.time.model_copy(update={"samples": samples})})
 
     @cached_property
     def motion(self) -> Motion | None:
         """Its motion; None where pointcoord refuses it."""
-        with suppress(PointcoordError):
-            return simulate(self.ends)
-        return None
+        return motion_of(lambda: self.ends)
 
 
 def numbers_not_given(numbers: Numbers, given: Collection[Row]) -> dict[Row, Array]:
@@ -186,46 +189,24 @@ class Evidence:
 
     def at(self, places: slice | NDArray[np.intp], theirs: slice | None = None) -> Evidence:
         """The same at some of the instants; the given numbers from other ones, where these are stated."""
-        held, allowed, own, not_given, given = (
-            {row: array[some] for row, array in rows.items()}
-            for rows, some in (
-                *((rows, places) for rows in (self.held, self.allowed, self.own, self.not_given)),
-                (self.given, places if theirs is None else theirs),
-            )
-        )
+
+        def of(rows: Rows, some: slice | NDArray[np.intp] = places) -> Rows:
+            return {row: array[some] for row, array in rows.items()}
+
         return replace(
             self,
             times=self.times[places],
-            given=given,
-            held=held,
-            allowed=allowed,
-            own=own,
+            given=of(self.given, places if theirs is None else theirs),
+            held=of(self.held),
+            allowed=of(self.allowed),
+            own=of(self.own),
             known={point: path[places] for point, path in self.known.items()},
-            not_given=not_given,
+            not_given=of(self.not_given),
         )
 
     def thinned(self, count: int) -> Evidence:
         """The same at so many instants at most, evenly."""
         return self.at(some_of(len(self.times), count))
-
-    def joined(self, rows: Sequence[Row], at: slice | NDArray[np.intp] = slice(None)) -> tuple[Array, Array]:
-        """The given numbers of rows at some instants, one after the other, and how far each may be off."""
-        off = [self.allowed[row] + self.own.get(row, 0.0) for row in rows]
-        numbers = [self.given[row] for row in rows]
-        given, off_by = (np.concatenate([array[at].ravel() for array in part]) for part in (numbers, off))
-        return given, off_by
-
-    def in_words(self, row: Row, amount: Array | float) -> str:
-        """An amount of a row with its unit, and in the one that it is given in."""
-        said = f"{_in_digits(amount)} {self.units.get(row, length_or_angle(row))}"
-        if row not in self.theirs:
-            return said
-        unit, factor = self.theirs[row]
-        return f"{said} ({_in_digits(amount / factor)} {unit})"
-
-    def without_units(self) -> Evidence:
-        """The same after a fault of units: the held numbers are in none that is known."""
-        return replace(self, units=dict.fromkeys(self.held, "in its own unit"), theirs={})
 
     def after(self, rows: Mapping[Row, tuple[Array, Array]], wrong: tuple[Row, ...]) -> Evidence:
         """The same with other numbers to hold the given ones against: values, and what they may differ."""
@@ -244,12 +225,37 @@ class Evidence:
         wrong = (row for row, held in self.held.items() if there.left(row, held, self.allowed[row]) > 1.0)
         return replace(there, wrong=tuple(wrong))
 
+    def without_units(self) -> Evidence:
+        """The same after a fault of units: the held numbers are in none that is known."""
+        return replace(self, units=dict.fromkeys(self.held, "in its own unit"), theirs={})
+
+    def in_words(self, row: Row, amount: Array | float) -> str:
+        """An amount of a row with its unit, and in the one that it is given in."""
+        said = f"{_in_digits(amount)} {self.units.get(row, length_or_angle(row))}"
+        if row not in self.theirs:
+            return said
+        unit, factor = self.theirs[row]
+        return f"{said} ({_in_digits(amount / factor)} {unit})"
+
+    def off_by(self, row: Row) -> Array:
+        """How far a row's numbers may be from the held ones."""
+        return np.asarray(self.allowed[row] + self.own.get(row, 0.0))
+
+    def joined(self, rows: Sequence[Row], at: slice | NDArray[np.intp] = slice(None)) -> tuple[Array, Array]:
+        """The given numbers of rows at some instants, one after the other, and how far each may be off."""
+        given, off_by = (
+            np.concatenate([array[at].ravel() for array in part])
+            for part in ([self.given[row] for row in rows], [self.off_by(row) for row in rows])
+        )
+        return given, off_by
+
+    def stacked(self, rows: Sequence[Row], of: Callable[[Row], Array]) -> Array:
+        """Numbers of rows of one shape below each other, (rows * N, 3 or 1)."""
+        return np.concatenate([of(row).reshape(len(self.times), -1) for row in rows])
+
     def left(self, row: Row, value: Array, allowed: Array) -> float:
         """The largest difference of given numbers from others, in parts of what is allowed."""
-        gap = np.abs(self.given[row] - value)
-        if QUANTITIES[row[0]].unit == "rad":
-            gap = np.minimum(gap, np.abs(2.0 * np.pi - gap))
-        gap = np.where(np.isfinite(gap), gap, np.inf)
+        gap = gaps_between(self.given[row], value, QUANTITIES[row[0]].unit)
         with np.errstate(over="ignore"):  # nothing but zeros allows nothing
             return float(np.max(gap / (allowed + self.own.get(row, 0.0)), initial=0.0))
 
@@ -257,12 +263,8 @@ class Evidence:
         """Whether a row is so far off that what is allowed of it does not explain it, nor rounding."""
         if self.left(row, self.held[row], allowed) <= CLEAR:
             return False
-        gap = np.abs(self.given[row] - self.held[row])
-        return not bool((gap <= ROUNDING * self.largest(row[0])).all())
-
-    def largest(self, quantity: str) -> float:
-        """The largest held number of a quantity."""
-        return max(float(np.abs(self.held[r]).max(initial=0.0)) for r in self.held if r[0] == quantity)
+        largest = max(float(np.abs(self.held[r]).max(initial=0.0)) for r in self.held if r[0] == row[0])
+        return not bool((np.abs(self.given[row] - self.held[row]) <= ROUNDING * largest).all())
 
     def rounded(self, row: Row, *others: Array | float) -> Array:
         """What is allowed of numbers that were computed again, from the held ones or from the drawing.
@@ -294,51 +296,16 @@ class Evidence:
 
         One number of each axis is none to tell anything by.
         """
+        sides = [self.stacked(rows, part.__getitem__) for part in (self.held, self.given)]
+        allowed = self.stacked(rows, self.off_by)
+        off = ~(np.abs(sides[1] - sides[0]) <= allowed)
         counts = []
-        for numbers in self.both:
-            values: dict[int, list[Array]] = {}
-            steps: dict[int, float] = {}
-            for row in rows:
-                part = numbers[row].reshape(len(self.times), -1)
-                allowed = self.allowed[row] + self.own.get(row, 0.0)
-                off = ~(np.abs(self.given[row] - self.held[row]) <= allowed).reshape(part.shape)
-                # Two numbers of which each may be off by what is allowed, on both sides.
-                step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(part).max(initial=0.0)))
-                for axis in range(part.shape[1]):
-                    values.setdefault(axis, []).append(part[off[:, axis], axis])
-                    steps[axis] = max(steps.get(axis, 0.0), step)
-            apart = (_apart_by(steps[axis], np.concatenate(some)) for axis, some in values.items())
+        for numbers in sides:
+            # Two numbers of which each may be off by what is allowed, on both sides.
+            step = max(4.0 * float(allowed.max()), 1e-9 * float(np.abs(numbers).max(initial=0.0)))
+            apart = (_apart_by(step, axis[there]) for axis, there in zip(numbers.T, off.T, strict=True))
             counts.append(sum(max(count - 1, 0) for count in apart))
         return min(counts)
-
-    @property
-    def both(self) -> tuple[Rows, Rows]:
-        """The held and the given numbers."""
-        return self.held, self.given
-
-    @property
-    def moving_all_wrong(self) -> bool:
-        """Whether every number that changes disagrees, and several do, at not too many instants."""
-        moving = [row for row, values in self.held.items() if np.ptp(values, axis=0).max(initial=0.0) > 0.0]
-        few = FEWEST_LATE < len(self.times) <= MOST_LATE
-        return few and len(self.wrong) > 1 and set(moving) <= set(self.wrong)
-
-    def without_a_late_sample(self) -> Iterator[tuple[str, Evidence]]:
-        """The same without an end, if every row is one late or early; in words."""
-        ends = (
-            ("one sample late", slice(1, None), slice(None, -1)),
-            ("one sample early", slice(None, -1), slice(1, None)),
-        )
-        for words, theirs, ours in ends:
-            late = self.at(ours, theirs)
-            limits = {
-                "start": float(late.times[0]),
-                "stop": float(late.times[-1]),
-                "samples": len(late.times),
-            }
-            time = self.scene.time.model_copy(update=limits)
-            scene = self.scene.model_copy(update={"time": time})
-            yield words, replace(late, scene=scene, solved=Solved(scene), parted=True)
 
     @property
     def telling(self) -> tuple[tuple[Row, ...], ...]:
@@ -351,11 +318,6 @@ class Evidence:
         return tuple(filter(None, of_a_pose)) or (first,)
 
     @property
-    def first_wrong(self) -> tuple[Row, ...]:
-        """The first of these, that tell most."""
-        return self.telling[0]
-
-    @property
     def beside(self) -> tuple[Row, ...]:
         """The rows that agree, of quantities of which others disagree."""
         return tuple(r for r in self.held if r[0] in self.wrong_quantities and r not in self.wrong)
@@ -365,7 +327,7 @@ class Evidence:
         """The quantities of which a row disagrees."""
         return tuple(dict.fromkeys(row[0] for row in self.wrong))
 
-    @cached_property
+    @property
     def axes(self) -> CarAxes:
         """The car's directions."""
         return axes_of(self.scene)
@@ -378,7 +340,4 @@ class Evidence:
             if row[1] == point and kind_of(row) == "point" and order(row) == 0:
                 return array
         motion = self.solved.motion if self.over_time else None
-        if motion is None:
-            return None
-        (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)
-        return np.asarray(motion.at(self.times).numbers[quantity][point])
+        return None if motion is None else np.asarray(motion.at(self.times).numbers["position"][point])

@@ -15,9 +15,10 @@ units, a shift, every row one late) is undone, and the car is looked for again.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from validate.comparison.compare import Explanation, Outcome
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order, together
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds import KINDS, UNIT
+from validate.diagnosis.kinds.motions import without_a_late_sample
 from validate.formulations.protocol import Solution
 
 # By how many times a fault must lower a difference that it does not explain whole. What is fitted to noise
@@ -103,9 +105,8 @@ def _undone(evidence: Evidence, found: Iterable[_Found]) -> Iterator[tuple[str, 
     for fault in (*(one.hypothesis for one in found), *hidden):
         if fault.undo is not None:
             yield fault.kind, fault.words, evidence.undone(fault.rows, fault.undo)
-    if evidence.moving_all_wrong:
-        for words, undone in evidence.without_a_late_sample():
-            yield "sample", words, undone
+    for words, undone in without_a_late_sample(evidence):
+        yield "sample", words, undone
 
 
 def _may_hide(evidence: Evidence, fault: Hypothesis) -> bool:
@@ -130,13 +131,10 @@ def _explained(evidence: Evidence) -> list[_Found]:
             left = tuple(row for row in evidence.wrong if row not in one.rows)
             if left and one.whole:
                 found += _supposed(evidence.after(one.hypothesis.rows, left), "numbers")
-    if left := _open(evidence, found):
-        # What is found from all numbers, such as a shift, may be another one of those that are left.
-        found += _supposed(replace(evidence, wrong=left), "numbers")
-    if left := _open(evidence, found):
-        found += _pairs(replace(evidence, wrong=left))
-    if left := _open(evidence, found):
-        found += _supposed(replace(evidence, wrong=left), "last")
+    # What is found from all numbers, such as a shift, may be another one of those that are left.
+    for search in (partial(_supposed, stage="numbers"), _pairs, partial(_supposed, stage="last")):
+        if left := _open(evidence, found):
+            found += search(replace(evidence, wrong=left))
     return list(_best(_ranked(found)))
 
 
@@ -251,11 +249,8 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
     That rewards whatever makes theirs small beside it; so a fault counts for no more than the factor by which
     one number leaves more than it does, and none has another unit whose factor is not the one that fits best.
     """
-    would_be = {row: hypothesis.rows[row][0] for row in rows}
-    ours, theirs, then = (
-        np.concatenate([part[row].reshape(len(evidence.times), -1) for row in rows])
-        for part in (*evidence.both, would_be)
-    )
+    ours, theirs = (evidence.stacked(rows, part.__getitem__) for part in (evidence.held, evidence.given))
+    then = evidence.stacked(rows, lambda row: hypothesis.rows[row][0])
     largest, most = float(np.abs(ours).max()), float(np.abs(then).max())
     if not np.isfinite(theirs).all() or not largest > 0.0 or not most > 0.0:
         return 0.0
@@ -270,54 +265,52 @@ def _lowered(evidence: Evidence, hypothesis: Hypothesis, rows: Sequence[Row]) ->
     return lowered
 
 
-def _pairs(evidence: Evidence) -> Iterator[_Found]:
+def _pairs(evidence: Evidence) -> list[_Found]:
     """Two faults in the same numbers: the second in what the first makes of ours."""
     largest = [
         max(rows, key=lambda row: np.abs(evidence.held[row]).max()) for rows in together(evidence.wrong)
     ]
     thin = replace(evidence.thinned(FEW), wrong=tuple(largest))
+    found: list[_Found] = []
     for first in KINDS:
-        if first.opens and (evidence.over_time or not first.of_time):
-            promising = None if first.neighbours else {key for key, _ in _seconds(thin, first)}
-            yield from _seconds(evidence, first, promising).values()
+        if not first.opens or (first.of_time and not evidence.over_time):
+            continue
+        promising = {key for key, _ in _seconds(thin, first, _merged(first, thin))}
+        if promising or first.neighbours:
+            faults = [one for one in _merged(first, evidence) if first.neighbours or one.key in promising]
+            found += _seconds(evidence, first, faults).values()
+    return found
 
 
 def _seconds(
-    evidence: Evidence, first: Kind, promising: Collection[Hashable] | None = None
+    evidence: Evidence, first: Kind, faults: Iterable[Hypothesis]
 ) -> dict[tuple[Hashable, Hashable], _Found]:
-    """What a fault of one kind and another one after it explain together, by both faults.
-
-    Args:
-        promising: the keys of the first faults to try; None: all.
-    """
+    """What faults of one kind and another one after each explain together, by both faults."""
     found: dict[tuple[Hashable, Hashable], _Found] = {}
-    if promising is not None and not promising:
-        return found
-    for one in _merged(first, evidence):
-        if promising is not None and one.key not in promising:
-            continue
-        wrong = tuple(row for row in evidence.wrong if row in one.rows)
-        after = evidence.after(one.rows, wrong)
+    # Of two kinds that may each be the first, in one order.
+    seconds = [
+        kind
+        for kind in KINDS
+        if kind.closes and not (kind.opens and first.closes and KINDS.index(kind) <= KINDS.index(first))
+    ]
+    alone = {(kind.name, two.key): two for kind in seconds for two in _merged(kind, evidence)}
+    for one in faults:
+        after = evidence.after(one.rows, tuple(row for row in evidence.wrong if row in one.rows))
         after = after.without_units() if first.name == UNIT else after
-        for kind in KINDS:
-            # Of two that may each be the first, in one order.
-            both_ways = kind.opens and first.closes and KINDS.index(kind) <= KINDS.index(first)
-            if not kind.closes or both_ways:
-                continue
-            second = {two.key: two for two in _merged(kind, evidence)}
-            for two in _merged(kind, after):
-                both = replace(
-                    two,
-                    kind=f"{first.name} and {kind.name}",
-                    words=f"{one.words}, and {two.words}",
-                    fitted=one.fitted + two.fitted,
-                    cost=one.cost + two.cost + 1.0,
-                    looser=False,
-                )
-                carried = _carried(evidence, both)
-                singly = [single for single in (one, second.get(two.key)) if single is not None]
-                if carried is not None and _needed(evidence, singly, carried):
-                    found[one.key, (kind.name, two.key)] = carried
+        for two in (two for kind in seconds for two in _merged(kind, after)):
+            both = replace(
+                two,
+                kind=f"{first.name} and {two.kind}",
+                words=f"{one.words}, and {two.words}",
+                fitted=one.fitted + two.fitted,
+                cost=one.cost + two.cost + 1.0,
+                looser=False,
+            )
+            key = two.kind, two.key
+            carried = _carried(evidence, both)
+            singly = [one, alone[key]] if key in alone else [one]
+            if carried is not None and _needed(evidence, singly, carried):
+                found[one.key, key] = carried
     return found
 
 

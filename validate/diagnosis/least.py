@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,21 +12,60 @@ Array = NDArray[np.float64]
 
 # What a linear step from where the parameters are ours must leave of the difference, to be worth a search.
 LIKELY = 0.5
-# What the search may leave of it at most; or of what each number may be off by, which rounder ones, as they
-# are meant, may leave less of.
+# What the search may leave of it at most; or of what each number may be off by, which rounder parameters, as
+# they are meant, may leave less of.
 PROMISING, NEARLY = 0.1, 2.0
 MOST_STEPS = 12
-# The search ends where a step lessens the sum of squares by less than this part: of what is explained whole
-# that is at rounding, and of what is not it is soon.
-SETTLED = 1e-3
-# Of the largest difference, as which a number counts that the parameters do not give.
-FAR = 1e3
+# Of the difference: a step that is to lessen it by no more is not gone, and one that does not so by half is
+# the last one, for near the parameters that are meant a step lessens it manifold, down to what remains.
+SETTLED, MANIFOLD = 1e-3, 0.5
+SHARES = (1.0, 0.25)  # of a step, of which the first that lessens the difference is gone
+FAR = 1e3  # times the largest difference, as which a number counts that the parameters do not give
 # How many times what found amounts leave rounder ones may, where all numbers are within what they may be off,
 # and elsewhere; of so many decimals at most. Least squares leave less of rounded numbers than what was meant:
 # of 5 that one amount is fitted to by a root of 5/4 on average.
 KEPT, CLOSE, DECIMALS = 1.5, 1.1, 5
-# How near to a number of six digits a parameter is meant to be that number: it is found no better.
-MEANT = 1e-8
+
+
+class Fit(NamedTuple):
+    """Parameters, and the root of the sum of squares that they leave of the difference."""
+
+    amounts: Array
+    left: float
+
+
+class _Differences:
+    """Given numbers less those that parameters make, and the slopes by each, from one reading."""
+
+    def __init__(self, read: Callable[[Array], Array], theirs: Array, step: float) -> None:
+        self._read, self._theirs, self._step = read, theirs, step
+        self._far = np.nan
+        self._known: dict[bytes, Array] = {}
+
+    def measured_by(self, first: Array) -> None:
+        """Take the difference at the start as the measure of numbers that there are none of."""
+        self._far = FAR * float(np.abs(first).max())
+
+    def with_slopes(self, at: Array) -> tuple[Array, Array]:
+        """The difference, (M,), and its slopes, (M, P)."""
+        steps = np.concatenate([np.zeros((1, len(at))), -self._step * np.eye(len(at))])
+        gaps = self._read(at + steps) - self._theirs
+        if np.isnan(self._far):
+            self.measured_by(gaps[0])
+        there, *beside = np.nan_to_num(gaps, nan=self._far)
+        self._known[at.tobytes()] = there
+        return there, (there - np.array(beside)).T / self._step
+
+    def at(self, parameters: Array) -> Array:
+        """The difference, (M,)."""
+        key = parameters.tobytes()
+        if key not in self._known:
+            self._known[key] = np.nan_to_num(self._read(parameters[None])[0] - self._theirs, nan=self._far)
+        return self._known[key]
+
+    def left(self, parameters: Array) -> float:
+        """The root of the sum of its squares."""
+        return float(np.linalg.norm(self.at(parameters)))
 
 
 def fitted(
@@ -35,7 +75,8 @@ def fitted(
     theirs: Array,
     off: Array | float = 0.0,
     rounded: bool = False,
-) -> Array | None:
+    known: tuple[Array, Array] | None = None,
+) -> Fit | None:
     """Parameters at which `read` is nearest to given numbers; None where that leaves much of the difference.
 
     Args:
@@ -44,47 +85,56 @@ def fitted(
         off: how far the numbers may be from theirs; if all are within it nothing is left.
         rounded: whether the roundest parameters that leave as little are taken, which are meant: those by
             which all numbers are within what they may be off go before rounder ones.
+        known: the difference at the start, (M,), and its slopes, (M, P), where they are.
     """
-    begin = np.array(start)
-    (first,) = read(begin[None]) - theirs
+    differences = _Differences(read, theirs, step)
+    begin = np.array(start, dtype=float)
+    first, slopes = differences.with_slopes(begin) if known is None else known
     if not np.isfinite(first).all():
         return None
-    far = FAR * float(np.abs(first).max())
-    known: dict[bytes, Array] = {begin.tobytes(): first}
-
-    def gap(parameters: Array) -> Array:
-        key = parameters.tobytes()
-        if key not in known:
-            known[key] = np.nan_to_num(read(parameters[None])[0] - theirs, nan=far)
-        return known[key]
-
-    def slopes(parameters: Array) -> Array:
-        beside: Array = np.nan_to_num(read(parameters - step * np.eye(len(begin))) - theirs, nan=far)
-        return np.asarray((gap(parameters) - beside).T / step)
-
-    def left(parameters: Array) -> float:
-        return float(np.linalg.norm(gap(parameters)))
+    if known is not None:
+        differences.measured_by(first)
+    apart = float(np.linalg.norm(first))
+    found = _nearest(differences, begin, first, slopes)
+    if found is None:
+        return None
+    least = differences.left(found)
+    if least > PROMISING * apart and not (np.abs(differences.at(found)) <= NEARLY * np.asarray(off)).all():
+        return None
 
     def kept(near: Array) -> bool:
-        return left(near) <= KEPT * least and bool((np.abs(gap(near)) <= off).all())
+        return differences.left(near) <= KEPT * least and bool((np.abs(differences.at(near)) <= off).all())
 
-    apart, jacobian = left(begin), slopes(begin)
-    change = np.linalg.lstsq(jacobian, -first, rcond=None)[0]
-    if not float(np.linalg.norm(first + jacobian @ change)) <= LIKELY * apart:
-        return None
-    # Imported here: most comparisons have nothing to explain.
-    from scipy.optimize import least_squares
+    if rounded:
+        near = roundest(found, DECIMALS, kept)
+        found = (
+            near if kept(near) else roundest(found, DECIMALS, lambda n: differences.left(n) <= CLOSE * least)
+        )
+    return Fit(found, differences.left(found))
 
-    found = least_squares(
-        gap, begin, slopes, x_scale="jac", xtol=1e-15, ftol=SETTLED, gtol=1e-15, max_nfev=MOST_STEPS
-    ).x
-    least = left(found)
-    if least > PROMISING * apart and not (np.abs(gap(found)) <= NEARLY * np.asarray(off)).all():
-        return None
-    if not rounded:
-        return np.asarray(found)
-    near = roundest(found, DECIMALS, kept)
-    return near if kept(near) else roundest(found, DECIMALS, lambda one: left(one) <= CLOSE * least)
+
+def _nearest(differences: _Differences, begin: Array, gap: Array, slopes: Array) -> Array | None:
+    """By the Gauss-Newton method, with shorter steps where one makes the difference larger."""
+    found, least = begin, float(np.linalg.norm(gap))
+    for count in range(MOST_STEPS):
+        change = np.linalg.lstsq(slopes, -gap, rcond=None)[0]
+        expected = float(np.linalg.norm(gap + slopes @ change))
+        if count == 0 and not expected <= LIKELY * least:
+            return None
+        if expected > (1.0 - SETTLED) * least:
+            break
+        for share in SHARES:
+            gap, slopes = differences.with_slopes(found + share * change)
+            left = float(np.linalg.norm(gap))
+            if left < least:
+                break
+        else:
+            break
+        settled = left > MANIFOLD * least
+        found, least = found + share * change, left
+        if settled:
+            break
+    return found
 
 
 def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool], unit: float = 1.0) -> Array:
@@ -102,11 +152,3 @@ def roundest(found: Array | float, decimals: int, fits: Callable[[Array], bool],
 def decimals_of(amounts: Array) -> int:
     """How many decimals amounts have, as far as roundness is looked for."""
     return next((n for n in range(DECIMALS) if (np.round(amounts, n) == amounts).all()), DECIMALS)
-
-
-def meant(amount: float, scale: float) -> float:
-    """What an amount is meant to be: 0, 1 or -1, or a number of six digits, where that is nearly it."""
-    near = (0.0, 1.0, -1.0, float(f"{amount:.6g}"))
-    sizes = (scale, 1.0, 1.0, abs(amount))
-    found = zip(near, sizes, strict=True)
-    return next((one for one, size in found if abs(amount - one) <= MEANT * size), amount)

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from validate.diagnosis.hypothesis import Kind
-from validate.diagnosis.kinds.angles import other_definitions
-from validate.diagnosis.kinds.assembly import other_assemblies, other_closures
+from validate.diagnosis.kinds.amounts import factors, offsets, printed_digits
 from validate.diagnosis.kinds.car_data import other_data
 from validate.diagnosis.kinds.hardpoint import misread_hardpoints, points_that_rest_elsewhere
-from validate.diagnosis.kinds.inputs import wrong_inputs
-from validate.diagnosis.kinds.links import other_lines, wrong_lengths
-from validate.diagnosis.kinds.names import anothers, sides_exchanged, swapped
+from validate.diagnosis.kinds.links import other_assemblies, other_closures, other_lines, wrong_lengths
+from validate.diagnosis.kinds.motions import shifted_in_time, wrong_inputs
 from validate.diagnosis.kinds.numbers import (
     exchanged_axes,
-    factors,
     mirrored,
-    offsets,
+    other_definitions,
     other_signs,
     other_units,
-    printed_digits,
 )
+from validate.diagnosis.kinds.places import anothers, of_another_instant, sides_exchanged, swapped
 from validate.diagnosis.kinds.rates import differences, rates_per_input
-from validate.diagnosis.kinds.time_shift import one_sample_off, shifted_in_time
 
 UNIT, LINK, HARDPOINT = "unit", "link", "hardpoint"
 KINDS = (
@@ -38,7 +34,7 @@ KINDS = (
     Kind("car data", other_data),
     Kind("differences", differences, of_time=True),
     Kind("per input", rates_per_input, opens=True, of_time=True),
-    Kind("sample", one_sample_off, opens=True, neighbours=True),
+    Kind("sample", of_another_instant, opens=True, neighbours=True),
     Kind("closure", other_closures, "car"),
     Kind("input", wrong_inputs, "car", of_time=True),
     Kind("branch", other_assemblies, "car"),

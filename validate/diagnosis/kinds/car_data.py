@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord import Motion, Scene
 from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.loads import ROD_FORCE
 from pointcoord.effects.registry import EFFECTS
-from validate.diagnosis.evidence import Evidence, Row
-from validate.diagnosis.hypothesis import Hypothesis, amounts_of
-from validate.diagnosis.least import decimals_of
+from validate.diagnosis.evidence import Evidence, Row, motion_of
+from validate.diagnosis.hypothesis import Hypothesis, Parameters, other_number
 from validate.formulations.asked_numbers import is_force
 
 Path = tuple[str | int, ...]
@@ -88,27 +88,22 @@ def _other(
 ) -> Hypothesis | None:
     least = LEAST * value if path == RADIUS else -np.inf
 
-    def motion_of(number: float) -> Motion | None:
+    def motion_by(number: float) -> Motion | None:
         other = copy.deepcopy(content)
         _at(other["mechanism"], path[:-1])[path[-1]] = max(number, least)
-        try:
-            return simulate(Scene.from_mapping(other, "another car"))
-        except PointcoordError:
-            return None
+        return motion_of(lambda: Scene.from_mapping(other, "another car"))
 
-    found = amounts_of(evidence, looked, motion_of, [value], STEP * (abs(value) or 1.0))
-    motion = motion_of(*found) if found else None
-    if found is None or motion is None:
-        return None
-    (number,) = found
-    if path[0] == "car" and not value / FARTHEST <= number <= value * FARTHEST:
-        return None
-    words = f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
-    if path == RADIUS and number <= NOTHING * value:
-        words = "the wheel centre is taken for the contact point"
+    def words(number: float) -> str:
+        if path[0] == "car" and not value / FARTHEST <= number <= value * FARTHEST:
+            return ""
+        if path == RADIUS and number <= NOTHING * value:
+            return "the wheel centre is taken for the contact point"
+        return f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
+
+    number = Parameters((*path, *content["effects"]), (value,), STEP * (abs(value) or 1.0), motion_by)
+    found = other_number(evidence, looked, number, words)
     # Another load is one of all forces; a radius may be another one for some numbers only.
-    decimals = decimals_of(np.array(found))
-    return Hypothesis(path, words, evidence.by(motion), 1, 1.5, decimals, whole=path[0] == "loads")
+    return found and replace(found, cost=1.5, whole=path[0] == "loads")
 
 
 def _at(tables: Any, path: Path) -> Any:

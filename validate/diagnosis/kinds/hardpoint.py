@@ -1,25 +1,25 @@
 """A hardpoint misread: the coordinates of the drawing that make our numbers theirs, and by how much.
 
 One coordinate first, then two, then the three of a point. With J how the numbers change with each coordinate
-of the drawing (central differences of solved designs), least squares of J a = theirs - ours picks the
-likeliest; their amounts are found by solving the corrected designs. A point that another one stands in for,
-as the tie rod's inner end does for the rack's centre, is misread with it or alone.
+of the drawing (differences of solved designs, once for the car), least squares of J a = theirs - ours picks
+the likeliest; their amounts are found by solving the corrected designs. A point that another one stands in
+for, as the tie rod's inner end does for the rack's centre, is misread with it or alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Scene, sweep
+from pointcoord import Motion, Scene, Sweep, sweep
 from pointcoord.linkage.car_axes import Direction
-from validate.diagnosis.evidence import Evidence, Row, kind_of, nearest, order
+from validate.diagnosis.evidence import Evidence, Row, Solved, kind_of, motion_of, order
 from validate.diagnosis.hypothesis import Hypothesis, by_what_tells, gives
-from validate.diagnosis.least import LIKELY, decimals_of, fitted
+from validate.diagnosis.least import LIKELY, Fit, decimals_of, fitted
 
 Array = NDArray[np.float64]
 Coordinate = tuple[str, ...]
@@ -70,80 +70,97 @@ def points_that_rest_elsewhere(evidence: Evidence) -> Iterator[Hypothesis]:
 
 def misread_hardpoints(evidence: Evidence) -> Iterator[Hypothesis]:
     """The likeliest, of three coordinates at most, or of one where another fault is supposed already."""
-    return by_what_tells(evidence, lambda looked, several: _misread(evidence, looked, 3 if several else 1))
+    few = _few_instants(evidence.scene)
+    at = np.searchsorted(0.5 * (evidence.times[1:] + evidence.times[:-1]), few)
+    if np.abs(evidence.times[at] - few).max() <= SAME * np.ptp(evidence.scene.instants):
+        there = evidence.at(at)
+        yield from by_what_tells(
+            evidence, lambda looked, several: _misread(evidence, there, looked, 3 if several else 1)
+        )
 
 
-def _misread(evidence: Evidence, looked: Sequence[Row], most: int) -> list[Hypothesis]:
-    """The likeliest by some numbers, with more coordinates, `most` at most, only where fewer do not do."""
-    scene, every = evidence.solved.fine, evidence.scene.instants
-    some = np.arange(0, len(every), -(-len(every) // MOST_INSTANTS))
-    at = nearest(evidence.times, every[some])
-    if np.abs(evidence.times[at] - every[some]).max() > SAME * np.ptp(every):
-        return []
-    time = scene.time.model_copy(update={"stop": float(every[some[-1]]), "samples": len(some)})
-    few = scene.model_copy(update={"time": time})
-    ours = np.concatenate([evidence.held[row][at].ravel() for row in looked])
-    theirs, off = evidence.joined(looked, at)
-    if not np.isfinite(theirs).all():
-        return []
-    farthest = FARTHEST * float(np.ptp([*scene.mechanism.points.values()], axis=0).max())
-
-    def read(chosen: Chosen, amounts: Array) -> Array:
-        """Numbers of designs by amounts, (designs, coordinates); NaN of those that cannot be solved."""
-        found = sweep(few, offsets=_offsets(few, chosen, np.clip(amounts, -farthest, farthest).T))
-        parts = [found.numbers[quantity][name].reshape(len(found), -1) for quantity, name in looked]
-        return np.concatenate(parts, axis=1)
-
-    names = _coordinates(scene)
-    above, below = np.split(read(names, STEP * np.concatenate([np.eye(len(names)), -np.eye(len(names))])), 2)
-    slopes = (above - below) / (2.0 * STEP)
-    usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
-    names = tuple(name for name, use in zip(names, usable, strict=True) if use)
-    groups = _groups(names)[:most]
-    for choices in groups:
-        tried = [
-            (chosen, found)
-            for chosen in _likeliest(choices, names, slopes[usable], theirs - ours, farthest)
-            if (found := fitted(partial(read, chosen), [0.0] * len(chosen), STEP, theirs, off, rounded=True))
-            is not None
-            # Of one that is off by nothing the others are a choice of their own.
-            and found.all()
-            and np.abs(found).max() < farthest
-        ]
-        left = [float(np.linalg.norm(read(chosen, found[None]) - theirs)) for chosen, found in tried]
-        best = min(left, default=0.0)
-        likely = [one for one, rest in zip(tried, left, strict=True) if rest <= POORER * best]
-        hypotheses = [one for chosen, amounts in likely if (one := _supposed(evidence, chosen, amounts))]
-        if any(gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
-            return hypotheses
-    return []
+def _few_instants(scene: Scene) -> Array:
+    return scene.instants[:: -(-len(scene.instants) // MOST_INSTANTS)]
 
 
-def _coordinates(scene: Scene) -> Chosen:
-    """Every one of the drawing; those of a point that others stand at the place of also with theirs."""
-    points = scene.mechanism.points
+def _designs(solved: Solved, chosen: Chosen, amounts: Array) -> Sweep:
+    """The car with coordinates drawn so much more, (designs, coordinates), at a few instants."""
+    instants = _few_instants(solved.scene)
+    time = solved.scene.time.model_copy(update={"stop": float(instants[-1]), "samples": len(instants)})
+    mechanism = solved.scene.mechanism
+    # A point that is varied, by nothing, does not go along with the one that stands in for it.
+    alone = [f"{name}.x" for name in mechanism.topology.stand_ins if name in mechanism.points]
+    offsets = {name: np.zeros(len(amounts)) for name in (*alone, *(n for names in chosen for n in names))}
+    for names, amount in zip(chosen, amounts.T, strict=True):
+        for name in names:
+            offsets[name] += amount
+    return sweep(solved.fine.model_copy(update={"time": time}), offsets=offsets)
+
+
+def _numbers(found: Sweep, looked: Sequence[Row]) -> Array:
+    """Numbers of designs, (designs, M); NaN of those that cannot be solved."""
+    parts = [found.numbers[quantity][name].reshape(len(found), -1) for quantity, name in looked]
+    return np.concatenate(parts, axis=1)
+
+
+@lru_cache(maxsize=1)
+def _beside(solved: Solved) -> tuple[Chosen, Sweep]:
+    """Every coordinate of the drawing, and the car as drawn and with each a little less.
+
+    Those of a point that others stand at the place of are there with theirs too.
+    """
+    points = solved.scene.mechanism.points
     with_others: dict[str, list[str]] = {}
-    for missing, point in scene.mechanism.topology.stand_ins.items():
+    for missing, point in solved.scene.mechanism.topology.stand_ins.items():
         if missing in points and points[missing] == points[point]:
             with_others.setdefault(point, []).append(missing)
     together = [(point, *others) for point, others in with_others.items()]
-    return tuple(
+    names = tuple(
         tuple(f"{name}.{axis}" for name in some)
         for some in (*together, *((point,) for point in points))
         for axis in "xyz"
     )
+    less = np.concatenate([np.zeros((1, len(names))), -STEP * np.eye(len(names))])
+    return names, _designs(solved, names, less)
 
 
-def _offsets(scene: Scene, chosen: Chosen, amounts: Array) -> dict[str, Array]:
-    """Offsets of designs, by dotted name, from those of chosen coordinates, (coordinates, designs)."""
-    mechanism = scene.mechanism
-    # A point that is varied, by nothing, does not go along with the one that stands in for it.
-    alone = [f"{name}.x" for name in mechanism.topology.stand_ins if name in mechanism.points]
-    offsets = {name: np.zeros(amounts.shape[1]) for name in (*alone, *(n for names in chosen for n in names))}
-    for names, amount in zip(chosen, amounts, strict=True):
-        for name in names:
-            offsets[name] += amount
-    return offsets
+def _misread(evidence: Evidence, few: Evidence, looked: Sequence[Row], most: int) -> list[Hypothesis]:
+    """The likeliest by some numbers, with more coordinates, `most` at most, only where fewer do not do.
+
+    Args:
+        few: the same at the instants that designs are solved at.
+    """
+    theirs, off = few.joined(looked)
+    if not np.isfinite(theirs).all():
+        return []
+    names, beside = _beside(evidence.solved)
+    ours, *less = _numbers(beside, looked)
+    slopes = (ours - np.array(less)) / STEP
+    usable = np.isfinite(slopes).all(axis=1) & (np.abs(slopes).max(axis=1) > 0.0)
+    names = tuple(name for name, use in zip(names, usable, strict=True) if use)
+    slopes, gap = slopes[usable], np.concatenate([few.held[row].ravel() for row in looked]) - theirs
+    farthest = FARTHEST * float(np.ptp([*evidence.scene.mechanism.points.values()], axis=0).max())
+
+    def read(chosen: Chosen, amounts: Array) -> Array:
+        return _numbers(_designs(evidence.solved, chosen, np.clip(amounts, -farthest, farthest)), looked)
+
+    for choices in (groups := _groups(names)[:most]):
+        found: dict[Chosen, Fit] = {}
+        for some in _likeliest(choices, slopes, gap, farthest):
+            chosen = tuple(names[i] for i in some)
+            first = gap, slopes[some].T
+            fit = fitted(
+                partial(read, chosen), [0.0] * len(some), STEP, theirs, off, rounded=True, known=first
+            )
+            # Of one that is off by nothing the others are a choice of their own.
+            if fit and fit.amounts.all() and np.abs(fit.amounts).max() < farthest:
+                found[chosen] = fit
+        best = min((fit.left for fit in found.values()), default=0.0)
+        likely = [(c, fit.amounts) for c, fit in found.items() if fit.left <= POORER * best]
+        hypotheses = [one for chosen, amounts in likely if (one := _supposed(evidence, chosen, amounts))]
+        if any(gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
+            return hypotheses
+    return []
 
 
 def _groups(names: Chosen) -> list[list[tuple[int, ...]]]:
@@ -158,36 +175,38 @@ def _groups(names: Chosen) -> list[list[tuple[int, ...]]]:
 
 
 def _likeliest(
-    choices: Sequence[tuple[int, ...]], names: Chosen, slopes: Array, gap: Array, farthest: float
-) -> list[Chosen]:
+    choices: Sequence[tuple[int, ...]], slopes: Array, gap: Array, farthest: float
+) -> list[list[int]]:
     """The choices that leave the least by linear least squares."""
-    products, right, whole = slopes @ slopes.T, slopes @ gap, float(gap @ gap)
-    left: list[tuple[float, Chosen]] = []
-    for some in choices:
-        chosen = list(some)
+    products, right, whole = slopes @ slopes.T, slopes @ -gap, float(gap @ gap)
+    left: list[tuple[float, list[int]]] = []
+    for chosen in map(list, choices):
         amounts = np.linalg.lstsq(products[np.ix_(chosen, chosen)], right[chosen], rcond=1e-12)[0]
         rest = whole - float(amounts @ right[chosen])
         if rest <= LIKELY**2 * whole and np.abs(amounts).max() <= farthest:
-            left.append((rest, tuple(names[i] for i in some)))
+            left.append((rest, chosen))
     return [chosen for _, chosen in sorted(left)[:LIKELIEST]]
 
 
 def _supposed(evidence: Evidence, chosen: Chosen, amounts: Array) -> Hypothesis | None:
     """All numbers of a corrected design; None where it cannot be solved."""
-    scene = evidence.solved.fine
-    found = sweep(scene, offsets=_offsets(scene, chosen, amounts[:, None]))
-    if not found.solved.all():
+
+    def corrected() -> Motion | None:
+        content = evidence.solved.ends.model_dump(exclude_none=True)
+        points = {name: [*place] for name, place in content["mechanism"]["points"].items()}
+        for names, amount in zip(chosen, amounts.tolist(), strict=True):
+            for point, _, axis in (name.rpartition(".") for name in names):
+                points[point]["xyz".index(axis)] += amount
+        content["mechanism"]["points"] = points
+        return motion_of(lambda: Scene.from_mapping(content, "another car"))
+
+    motion = evidence.solved.other((chosen, *amounts.tolist()), corrected)
+    if motion is None:
         return None
-    at = nearest(evidence.scene.instants, evidence.times)
-    rows = {
-        (q, name): (np.asarray(array[0])[at], evidence.rounded((q, name), *amounts))
-        for q, part in found.numbers.items()
-        for name, array in part.items()
-        if (q, name) in evidence.held
-    }
     said = (_said(evidence, c, a) for c, a in zip(chosen, amounts.tolist(), strict=True))
     cost, decimals = 1.5 + len(chosen), decimals_of(amounts)
-    return Hypothesis(chosen, " and ".join(said), rows, len(chosen), cost, decimals, whole=True)
+    words = " and ".join(said)
+    return Hypothesis(chosen, words, evidence.by(motion), len(chosen), cost, decimals, whole=True)
 
 
 def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:

@@ -1,63 +1,62 @@
-"""A rod of another length than drawn, and a slide whose line leads through another point of its body.
+"""The same points with other links: a rod of another length, a line through another point, another closure,
+another assembly.
 
-The car is written anew, with its mechanism's tables in the scene. A rod in question is an input there, the
-distance of its ends, which is as drawn and so much more; by how much is found by least squares. A line in
-question leads through another joint of its body, as that of a strut does through the ball joint in textbooks,
-and what slides on it is drawn on that line.
+For the first two the car is written anew, with its mechanism's tables in the scene. A rod in question is an
+input there, the distance of its ends, which is as drawn and so much more. A line in question leads through
+another joint of its body, as that of a strut does through the ball joint in textbooks, and what slides on it
+is drawn on that line.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from pointcoord import Motion, PointcoordError, Scene, simulate
+from pointcoord import Motion, Scene
+from pointcoord.linkage.chassis import ChassisMotion
 from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
-from validate.diagnosis.evidence import Evidence, Row
-from validate.diagnosis.hypothesis import Hypothesis, amounts_of, by_what_tells
-from validate.diagnosis.least import decimals_of
+from pointcoord.method import AUTO
+from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
+from validate.diagnosis.evidence import Evidence, Row, kind_of, motion_of, order
+from validate.diagnosis.hypothesis import Hypothesis, Parameters, by_what_tells, other_number
 
 STEP = 0.05  # mm, of differences by a length
+# Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
+KEPT, ELSEWHERE = 1e-5, 1e-4
 
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each rod by itself."""
-    tables = _tables(evidence.scene)
+    rods = _tables(evidence.scene).get("rods", {})
 
     def supposed(looked: Sequence[Row], _: bool) -> list[Hypothesis]:
-        rods = (_wrong_length(evidence, looked, tables, rod) for rod in tables.get("rods", {}))
-        return [one for one in rods if one is not None]
+        found = (_of_another_length(evidence, looked, rod) for rod in rods)
+        return [one for one in found if one is not None]
 
     return by_what_tells(evidence, supposed)
 
 
-def _wrong_length(
-    evidence: Evidence, looked: Sequence[Row], tables: Mapping[str, Any], rod: str
-) -> Hypothesis | None:
-    ends = tables["rods"][rod]
-    name = f"length of {rod}"
-    changed = {
-        **tables,
-        "rods": {key: one for key, one in tables["rods"].items() if key != rod},
-        "inputs": {**tables["inputs"], name: {"distance": ends}},
-    }
-
-    def car(more: float) -> Motion | None:
-        return _solved(evidence, changed, {}, {name: {"sum": [{"constant": "drawn"}, {"constant": more}]}})
-
-    found = amounts_of(evidence, looked, car, [0.0], STEP)
-    motion = car(*found) if found else None
-    if found is None or motion is None:
-        return None
-    (more,) = found
+def _of_another_length(evidence: Evidence, looked: Sequence[Row], rod: str) -> Hypothesis | None:
+    tables, name = _tables(evidence.scene), f"length of {rod}"
+    rods = dict(tables["rods"])
+    ends = rods.pop(rod)
+    changed = {**tables, "rods": rods, "inputs": {**tables["inputs"], name: {"distance": ends}}}
     start, end = (np.array(evidence.scene.mechanism.points[point]) for point in ends)
     drawn = float(np.linalg.norm(end - start))
-    said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
-    words = f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
-    return Hypothesis(rod, words, evidence.by(motion), 1, 2.5, decimals_of(np.array(found)), whole=True)
+
+    def motion_by(more: float) -> Motion | None:
+        law = {"sum": [{"constant": "drawn"}, {"constant": more}]}
+        return _solved(evidence, changed, inputs={name: law})
+
+    def words(more: float) -> str:
+        said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
+        return f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
+
+    return other_number(evidence, looked, Parameters(rod, (0.0,), STEP, motion_by), words)
 
 
 def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -72,22 +71,19 @@ def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
         for joint in joints if slide["body"] != CHASSIS and slide["along"] in points else ():
             line = np.subtract(points[slide["along"]], points[joint])
             line /= np.linalg.norm(line)
-            moved = {}
-            for point in slide["points"]:
-                along = np.subtract(points[point], points[joint]) @ line
-                moved[point] = tuple((np.array(points[joint]) + along * line).tolist())
+            along = {point: np.subtract(points[point], points[joint]) @ line for point in slide["points"]}
+            moved = {point: (np.array(points[joint]) + far * line).tolist() for point, far in along.items()}
             changed = {**tables["slides"], name: {**slide, "through": joint}}
-            if motion := _solved(evidence, {**tables, "slides": changed}, moved, {}):
+            if motion := _solved(evidence, {**tables, "slides": changed}, moved):
                 words = f"the line of {name} leads through {joint}, not through {slide['through']}"
                 yield Hypothesis((name, joint), words, evidence.by(motion), cost=1.5, whole=True)
 
 
 def _tables(scene: Scene) -> Mapping[str, Any]:
     """The mechanism's, flat; empty of one that puts points in place."""
-    part = scene.mechanism
-    if part.topology.puts_in_place:
+    if scene.mechanism.topology.puts_in_place:
         return {}
-    plain = part.plain(tuple(scene.inputs))
+    plain = scene.mechanism.plain(tuple(scene.inputs))
     return {table: plain[table] for table in CLOSING if table in plain}
 
 
@@ -119,16 +115,83 @@ def _without(prefix: str, entry: Any) -> Any:
 def _solved(
     evidence: Evidence,
     tables: Mapping[str, Any],
-    points: Mapping[str, tuple[float, ...]],
-    inputs: Mapping[str, Any],
+    points: Mapping[str, Sequence[float]] | None = None,
+    inputs: Mapping[str, Any] | None = None,
 ) -> Motion | None:
     """The motion of the car by other tables, points and further inputs; None where there is none."""
     content = evidence.solved.ends.model_dump(exclude_none=True)
     part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
     part |= _in_parts(tables, evidence.scene.mechanism.topology.sides)
-    part["points"] = {**part["points"], **points}
-    content |= {"mechanism": part, "inputs": {**content["inputs"], **inputs}}
-    try:
-        return simulate(Scene.from_mapping(content, "another car"))
-    except PointcoordError:
-        return None
+    part["points"] = {**part["points"], **(points or {})}
+    content |= {"mechanism": part, "inputs": {**content["inputs"], **(inputs or {})}}
+    return motion_of(lambda: Scene.from_mapping(content, "another car"))
+
+
+def _drawn_otherwise(scene: Scene, **changes: object) -> Motion | None:
+    """The motion of a scene with a mechanism otherwise drawn or closed; None where there is none.
+
+    No drawing check: a drawing that is asked to close otherwise may not close so by itself, and another
+    assembly may have its wheel inboard.
+    """
+    mechanism = scene.mechanism.model_copy(update=changes)
+    other = scene.model_copy(update={"mechanism": mechanism})
+    return motion_of(lambda: other, lambda one: solve_task(prepare_task(one, AUTO)))
+
+
+def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
+    """The whole car, by each other closure of its type of suspension."""
+    part = evidence.scene.mechanism
+    for closure in part.file.closures:
+        if closure != part.closure and (motion := _drawn_otherwise(evidence.solved.ends, closure=closure)):
+            words = f"the car is closed as {closure}, where the scene asks for {part.closure}"
+            yield Hypothesis(closure, words, evidence.by(motion), whole=True)
+
+
+def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
+    """Places that keep every length of the drawing at the same inputs, elsewhere, from some instant on.
+
+    Whoever draws the car as it stands there draws the same links. So that drawing is solved for the same
+    inputs: if the given places are that car's at every instant, they are another assembly of ours.
+    """
+    scene, topology = evidence.scene, evidence.scene.mechanism.topology
+    placed = {row[1]: row for row in evidence.given if kind_of(row) == "point" and order(row) == 0}
+    free = (*topology.moving, *topology.carried)
+    if any(name not in placed for name in free):
+        return
+    drawn = {name: np.array(place) for name, place in scene.mechanism.points.items()}
+    size = float(np.ptp([*drawn.values()], axis=0).max())
+    gaps = [np.linalg.norm(evidence.given[row] - evidence.held[row], axis=-1) for row in placed.values()]
+    away = np.max(gaps, axis=0) > ELSEWHERE * size
+    if not away.any():
+        return
+    first = int(np.argmax(away))
+    chassis = ChassisMotion.of(mechanism := scene_mechanism(scene), scene.functions)
+    there = np.stack([evidence.given[placed[name]][first] for name in free]) - mechanism.origin
+    when = np.full(len(free), evidence.times[first])
+    pose = drawn | dict(zip(free, chassis.taken_back(when, there) + mechanism.origin, strict=True))
+    plain = scene.mechanism.plain(())
+    # Of every body: a point that only rides on it has its place there too, and misdrawn it is another car.
+    moving = [points for body, points in plain["bodies"].items() if body != CHASSIS]
+    links = {*map(tuple, plain["rods"].values()), *(ends for p in moving for ends in combinations(p, 2))}
+    closed = {name: place * mechanism.unit for name, place in mechanism.places(mechanism.drawn).items()}
+    missed = [np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(closed[a] - closed[b]) for a, b in links]
+    if np.abs(missed).max() > KEPT * size:
+        return
+    points = {name: tuple(place.tolist()) for name, place in pose.items()}
+    motion = _drawn_otherwise(evidence.solved.ends, points=points)
+    if motion is None:
+        return
+    numbers = motion.at(evidence.times).numbers
+    rows = {}
+    for row in evidence.held:
+        if row[1] in numbers[row[0]]:
+            value = np.array(numbers[row[0]][row[1]])
+            value[:first] = evidence.held[row][:first]
+            # The drawing is made of given numbers: they are off twice, as it and at each instant.
+            rows[row] = (value, 4.0 * evidence.rounded(row, value))
+    # Other inputs keep all lengths too, and from the first pose on they are no motion of ours.
+    left = [np.abs(evidence.given[row] - rows[row][0]).max() for row in placed.values() if row in rows]
+    if max(left) <= KEPT * size:
+        since = "" if first == 0 else f" from t = {evidence.times[first]:.6g} s on"
+        words = f"another assembly of the same links{since}: all {len(links)} lengths are kept"
+        yield Hypothesis("branch", words, rows, whole=True)

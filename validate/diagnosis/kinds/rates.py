@@ -29,18 +29,26 @@ def _steps(x: Array, t: Array) -> Array:
     return np.diff(x, axis=0) / np.diff(t).reshape(-1, *[1] * (x.ndim - 1))
 
 
-def _padded(inner: Array, before: int, after: int, mode: Literal["edge", "constant"] = "edge") -> Array:
-    """With its first and last number repeated, or with zeros."""
-    return np.pad(inner, [(before, after), *[(0, 0)] * (inner.ndim - 1)], mode=mode)
+def _central(x: Array, t: Array, ends: Literal[1, 2] = 1) -> Array:
+    return np.asarray(np.gradient(x, t, axis=0, edge_order=ends))
 
 
-def _second(x: Array, t: Array) -> Array:
-    return _padded(_steps(_steps(x, t), 0.5 * (t[1:] + t[:-1])), 1, 1)
+def _inner(x: Array, t: Array) -> Array:
+    return _central(x, t)[1:-1]
+
+
+def _padded(rule: Rule, before: int, after: int, mode: Literal["edge", "constant"] = "edge") -> Rule:
+    """A rule with its first and last number repeated, or with zeros."""
+
+    def padded(x: Array, t: Array) -> Array:
+        return np.pad(rule(x, t), [(before, after), *[(0, 0)] * (x.ndim - 1)], mode=mode)
+
+    return padded
 
 
 def _not_halved(x: Array, t: Array) -> Array:
     """(x_{k+1} - x_{k-1}) / h, and one-sided differences at the ends."""
-    found = np.asarray(np.gradient(x, t, axis=0))
+    found = _central(x, t)
     found[1:-1] *= 2.0
     return found
 
@@ -50,24 +58,24 @@ def _twice(rule: Rule) -> Rule:
 
 
 ONCE: dict[str, Rule] = {
-    "central differences": lambda x, t: np.asarray(np.gradient(x, t, axis=0)),
-    "central differences, of second order at the ends too": lambda x, t: np.asarray(
-        np.gradient(x, t, axis=0, edge_order=2)
-    ),
-    "central differences, repeated at the ends": lambda x, t: _padded(np.gradient(x, t, axis=0)[1:-1], 1, 1),
-    "forward differences": lambda x, t: _padded(_steps(x, t), 0, 1),
-    "backward differences": lambda x, t: _padded(_steps(x, t), 1, 0),
-    "central differences, zero at the ends": lambda x, t: _padded(
-        np.gradient(x, t, axis=0)[1:-1], 1, 1, "constant"
-    ),
-    "forward differences, zero in the last row": lambda x, t: _padded(_steps(x, t), 0, 1, "constant"),
-    "backward differences, zero in the first row": lambda x, t: _padded(_steps(x, t), 1, 0, "constant"),
+    "central differences": _central,
+    "central differences, of second order at the ends too": lambda x, t: _central(x, t, 2),
+    "central differences, repeated at the ends": _padded(_inner, 1, 1),
+    "forward differences": _padded(_steps, 0, 1),
+    "backward differences": _padded(_steps, 1, 0),
+    "central differences, zero at the ends": _padded(_inner, 1, 1, "constant"),
+    "forward differences, zero in the last row": _padded(_steps, 0, 1, "constant"),
+    "backward differences, zero in the first row": _padded(_steps, 1, 0, "constant"),
     "central differences over one step, not two": _not_halved,
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),
     *((f"{words}, taken twice", _twice(rule), 2) for words, rule in ONCE.items()),
-    ("second differences of positions", _second, 2),
+    (
+        "second differences of positions",
+        _padded(lambda x, t: _steps(_steps(x, t), 0.5 * (t[1:] + t[:-1])), 1, 1),
+        2,
+    ),
 ]
 """In words, and which derivative each makes."""
 
