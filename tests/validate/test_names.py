@@ -45,8 +45,8 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
     # import ask the topology which point its wheel centre is. The static angles of a wheel whose spin axis
     # another program's file lacks are two options of the import, and `axle` is which of the axles in such a
     # file. A turn is one of the chassis. A MuJoCo model says its roles by their names, of which one is of a
-    # body, and the inputs of its slides and of its wheel are written as ours are. What is a sample late is
-    # shifted by numpy's `roll`. The reference as a solution has the positions and rates of points by these
+    # body, and the inputs of its slides and of its wheel are written as ours are.
+    # The reference as a solution has the positions and rates of points by these
     # names, and a plan asks whether there is one wheel by the role of its body.
     allowed = {
         "absolute_coordinates.py": {"position"},
@@ -68,7 +68,6 @@ def test_no_program_that_compares_writes_or_prints_names_one(kind: str) -> None:
         "hardpoints.py": {"camber", "toe"},
         "mjcf_mechanism.py": {"knuckle", "travel", "wheel_travel"},
         "motion.py": {"wheel_centre"},
-        "time_shift.py": {"roll"},
     }
     assert NAMES[kind]
     for path in files():

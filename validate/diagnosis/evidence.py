@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,6 +118,11 @@ class Solved:
         """The same at its first and last instant: motions are read between them."""
         samples = min(2, self.scene.time.samples)
         return self.fine.model_copy(update={"time": self.scene.time.model_copy(update={"samples": samples})})
+
+    @cached_property
+    def content(self) -> dict[str, Any]:
+        """That as plain data."""
+        return self.ends.model_dump(mode="json", exclude_none=True)
 
     @cached_property
     def motion(self) -> Motion | None:
@@ -340,4 +346,7 @@ class Evidence:
             if row[1] == point and kind_of(row) == "point" and order(row) == 0:
                 return array
         motion = self.solved.motion if self.over_time else None
-        return None if motion is None else np.asarray(motion.at(self.times).numbers["position"][point])
+        if motion is None:
+            return None
+        (quantity,) = (q for q, of in QUANTITIES.items() if of.of == "point" and per_second(q) == 0)
+        return np.asarray(motion.at(self.times).numbers[quantity][point])

@@ -29,7 +29,6 @@ from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle,
 from validate.diagnosis.hypothesis import Hypothesis, Kind
 from validate.diagnosis.kinds import KINDS, UNIT
 from validate.diagnosis.kinds.motions import without_a_late_sample
-from validate.formulations.protocol import Solution
 
 # By how many times a fault must lower a difference that it does not explain whole. What is fitted to noise
 # lowers it by a small factor only.
@@ -62,23 +61,22 @@ class _Found:
         return self.leftover <= 1.0
 
 
-def explain(scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> tuple[Explanation, ...]:
-    """What would explain that a solution disagrees with the one it is held against; the best first.
+def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
+    """What would explain that one of two solutions disagrees with the other; the best first.
 
-    Args:
-        given: whose numbers are to be explained. held: the one that is trusted.
-        outcome: their comparison. Where nothing disagrees in it, nothing is looked at.
+    The trusted one is the one whose accuracy is proven, and the first where neither's is or both are.
+
     Returns:
         What explains whole quantities first, most rows first, simple before far-fetched; then what lowers a
         difference at least twentyfold. Empty where nothing that is known here explains anything.
     """
-    if not outcome.disagreements:
-        return ()
-    return explain_evidence(Evidence.of(scene, given, held, outcome))
+    one, two = outcome.solutions
+    held, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
+    return explain_evidence(Evidence.of(scene, given, held, outcome)) if outcome.disagreements else ()
 
 
 def explain_evidence(evidence: Evidence) -> tuple[Explanation, ...]:
-    """The same of numbers that are already beside each other."""
+    """The same of numbers that are beside each other already."""
     if not evidence.wrong or not len(evidence.times):
         return ()
     found = _explained(evidence)
@@ -148,16 +146,6 @@ def _other_cars(evidence: Evidence) -> list[_Found]:
         if kind.stage == "car" and not (evidence.parted and kind.of_time) and _open(evidence, others):
             cars += _of_kind(evidence, kind)
     return cars
-
-
-def explain_outcome(scene: Scene, outcome: Outcome) -> tuple[Explanation, ...]:
-    """What would explain that one of two solutions disagrees with the other; as `explain`.
-
-    The trusted one is the one whose accuracy is proven, and the first where neither's is or both are.
-    """
-    one, two = outcome.solutions
-    held, given = (two, one) if two.accuracy.proven and not one.accuracy.proven else (one, two)
-    return explain(scene, given, held, outcome)
 
 
 def _elsewhere(evidence: Evidence) -> bool:

@@ -15,7 +15,7 @@ from pointcoord.method import AUTO
 from pointcoord.scene.input_part import InputPart
 from pointcoord.simulation import prepare_task, solve_task
 from validate.comparison.compare import compare_solutions
-from validate.diagnosis import Explanation, explain, explain_outcome
+from validate.diagnosis import Explanation, explain_outcome
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 from validate.output import report
@@ -44,7 +44,7 @@ def solved(name: str, samples: int = 21) -> tuple[Scene, Solution]:
 def diagnosis(name: str, numbers: Numbers) -> tuple[Explanation, ...]:
     scene, held = solved(name)
     given = held.with_numbers(numbers)
-    return explain(scene, given, held, compare_solutions(scene, held, given, name))
+    return explain_outcome(scene, compare_solutions(scene, held, given, name))
 
 
 def each(held: Solution, quantities: tuple[str, ...], change: Callable[[Array], Array]) -> Numbers:
@@ -239,13 +239,6 @@ def test_a_factor_that_leaves_something_is_none() -> None:
         angle(held, "caster", lambda v: 0.97 * v + 1e-5 * random.standard_normal(v.shape)),
     )
     assert found == ()
-
-
-def test_rates_per_input_are_told_from_rates_per_time() -> None:
-    _, held = solved("bounce")
-    speed = 0.25 + 0.125 * held.times[:, None]
-    first = diagnosis("bounce", each(held, ("velocity",), lambda v: v / speed))[0]
-    assert (first.kind, first.quantities) == ("per input", ("velocity",))
 
 
 def test_a_time_shift_is_found_with_its_seconds() -> None:

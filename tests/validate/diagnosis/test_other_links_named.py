@@ -14,7 +14,7 @@ from random_mechanisms import random_mechanism
 from pointcoord import Scene
 from validate import check
 from validate.comparison.compare import compare_solutions
-from validate.diagnosis import Explanation, explain
+from validate.diagnosis import Explanation, explain_outcome
 from validate.formulations.protocol import Solution
 from validate.formulations.registry import formulation
 
@@ -65,7 +65,7 @@ def explained(scene: Scene, numbers: Mapping[str, Mapping[str, Array]]) -> tuple
     """What explains these numbers of a scene and no others."""
     held = formulation("pointcoord").solve(scene)
     given = replace(held, numbers=numbers)
-    return explain(scene, given, held, compare_solutions(scene, held, given, "car"))
+    return explain_outcome(scene, compare_solutions(scene, held, given, "car"))
 
 
 def diagnosis(scene: Scene, content: Content, *quantities: str) -> tuple[Explanation, ...]:

@@ -16,7 +16,7 @@ from validate.diagnosis.kinds.numbers import (
     other_units,
 )
 from validate.diagnosis.kinds.places import anothers, of_another_instant, sides_exchanged, swapped
-from validate.diagnosis.kinds.rates import differences, rates_per_input
+from validate.diagnosis.kinds.rates import differences
 
 UNIT, LINK, HARDPOINT = "unit", "link", "hardpoint"
 KINDS = (
@@ -33,7 +33,6 @@ KINDS = (
     Kind("name", anothers),
     Kind("car data", other_data),
     Kind("differences", differences, of_time=True),
-    Kind("per input", rates_per_input, opens=True, of_time=True),
     Kind("sample", of_another_instant, opens=True, neighbours=True),
     Kind("closure", other_closures, "car"),
     Kind("input", wrong_inputs, "car", of_time=True),

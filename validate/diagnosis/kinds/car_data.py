@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from pointcoord import Motion, Scene
 from pointcoord.effects.car_number import CarNumbers
 from pointcoord.effects.loads import ROD_FORCE
 from pointcoord.effects.registry import EFFECTS
-from validate.diagnosis.evidence import Evidence, Row, motion_of
-from validate.diagnosis.hypothesis import Hypothesis, Parameters, other_number
+from validate.diagnosis.evidence import Evidence
+from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.other_car import Change, Content, amounts_of, supposed
 from validate.formulations.asked_numbers import is_force
 
 Path = tuple[str | int, ...]
@@ -40,11 +39,7 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each number that those which disagree are made of, by itself."""
     if not evidence.other_cars:
         return
-    content = evidence.solved.ends.model_dump(exclude_none=True)
-    content["effects"] = _effects(evidence)
-    part: dict[str, Any] = content["mechanism"]
-    for load in part.get("loads", {}).values():
-        load |= {what: [*vector] for what, vector in load.items()}
+    part, effects = evidence.solved.content["mechanism"], _effects(evidence)
     loads: list[Path] = [
         ("loads", wheel, what, i)
         for wheel, load in part.get("loads", {}).items()
@@ -59,8 +54,12 @@ def other_data(evidence: Evidence) -> Iterator[Hypothesis]:
     }
     for path in dict.fromkeys(path for paths in made_of.values() for path in paths):
         value, looked = _at(part, path), [row for row, paths in made_of.items() if path in paths]
-        if isinstance(value, float) and (one := _other(evidence, content, path, value, looked)):
-            yield one
+        if isinstance(value, float):
+            number = _number(path, value, effects)
+            one = supposed(evidence, [number], amounts_of(evidence, looked, [number]))
+            if one:
+                # Another load is one of all forces; a radius may be another one for some numbers only.
+                yield replace(one, cost=1.5, whole=path[0] == "loads")
 
 
 def _all_wrong(evidence: Evidence, wheel: str) -> bool:
@@ -83,15 +82,12 @@ def _effects(evidence: Evidence) -> list[str]:
     return [*dict.fromkeys(giving)]
 
 
-def _other(
-    evidence: Evidence, content: dict[str, Any], path: Path, value: float, looked: list[Row]
-) -> Hypothesis | None:
+def _number(path: Path, value: float, effects: list[str]) -> Change:
     least = LEAST * value if path == RADIUS else -np.inf
 
-    def motion_by(number: float) -> Motion | None:
-        other = copy.deepcopy(content)
-        _at(other["mechanism"], path[:-1])[path[-1]] = max(number, least)
-        return motion_of(lambda: Scene.from_mapping(other, "another car"))
+    def put(content: Content, number: float) -> None:
+        content["effects"] = effects
+        _at(content["mechanism"], path[:-1])[path[-1]] = max(number, least)
 
     def words(number: float) -> str:
         if path[0] == "car" and not value / FARTHEST <= number <= value * FARTHEST:
@@ -100,10 +96,7 @@ def _other(
             return "the wheel centre is taken for the contact point"
         return f"{_called(path)} is {number:.6g}{_unit(path)}, not {value:.6g}"
 
-    number = Parameters((*path, *content["effects"]), (value,), STEP * (abs(value) or 1.0), motion_by)
-    found = other_number(evidence, looked, number, words)
-    # Another load is one of all forces; a radius may be another one for some numbers only.
-    return found and replace(found, cost=1.5, whole=path[0] == "loads")
+    return Change((*path, *effects), value, STEP * (abs(value) or 1.0), put, words)
 
 
 def _at(tables: Any, path: Path) -> Any:

@@ -15,11 +15,12 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion, Scene, Sweep, sweep
+from pointcoord import Scene, Sweep, sweep
 from pointcoord.linkage.car_axes import Direction
-from validate.diagnosis.evidence import Evidence, Row, Solved, kind_of, motion_of, order
-from validate.diagnosis.hypothesis import Hypothesis, by_what_tells, gives
-from validate.diagnosis.least import LIKELY, Fit, decimals_of, fitted
+from validate.diagnosis.evidence import Evidence, Row, Solved, kind_of, order
+from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.least import LIKELY, Fit, fitted
+from validate.diagnosis.other_car import Change, Content, by_what_tells, gives, supposed
 
 Array = NDArray[np.float64]
 Coordinate = tuple[str, ...]
@@ -157,7 +158,11 @@ def _misread(evidence: Evidence, few: Evidence, looked: Sequence[Row], most: int
                 found[chosen] = fit
         best = min((fit.left for fit in found.values()), default=0.0)
         likely = [(c, fit.amounts) for c, fit in found.items() if fit.left <= POORER * best]
-        hypotheses = [one for chosen, amounts in likely if (one := _supposed(evidence, chosen, amounts))]
+        made = (
+            supposed(evidence, [_coordinate(evidence, names) for names in chosen], amounts.tolist())
+            for chosen, amounts in likely
+        )
+        hypotheses = [one for one in made if one]
         if any(gives(evidence, one, looked) for one in hypotheses) or choices is groups[-1]:
             return hypotheses
     return []
@@ -188,25 +193,12 @@ def _likeliest(
     return [chosen for _, chosen in sorted(left)[:LIKELIEST]]
 
 
-def _supposed(evidence: Evidence, chosen: Chosen, amounts: Array) -> Hypothesis | None:
-    """All numbers of a corrected design; None where it cannot be solved."""
+def _coordinate(evidence: Evidence, names: Coordinate) -> Change:
+    def put(content: Content, more: float) -> None:
+        for point, _, axis in (name.rpartition(".") for name in names):
+            content["mechanism"]["points"][point]["xyz".index(axis)] += more
 
-    def corrected() -> Motion | None:
-        content = evidence.solved.ends.model_dump(exclude_none=True)
-        points = {name: [*place] for name, place in content["mechanism"]["points"].items()}
-        for names, amount in zip(chosen, amounts.tolist(), strict=True):
-            for point, _, axis in (name.rpartition(".") for name in names):
-                points[point]["xyz".index(axis)] += amount
-        content["mechanism"]["points"] = points
-        return motion_of(lambda: Scene.from_mapping(content, "another car"))
-
-    motion = evidence.solved.other((chosen, *amounts.tolist()), corrected)
-    if motion is None:
-        return None
-    said = (_said(evidence, c, a) for c, a in zip(chosen, amounts.tolist(), strict=True))
-    cost, decimals = 1.5 + len(chosen), decimals_of(amounts)
-    words = " and ".join(said)
-    return Hypothesis(chosen, words, evidence.by(motion), len(chosen), cost, decimals, whole=True)
+    return Change(names, 0.0, STEP, put, partial(_said, evidence, names))
 
 
 def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:

@@ -21,8 +21,9 @@ from pointcoord.mechanism.inputs import CHASSIS
 from pointcoord.mechanism.structure import CLOSING
 from pointcoord.method import AUTO
 from pointcoord.simulation import prepare_task, scene_mechanism, solve_task
-from validate.diagnosis.evidence import Evidence, Row, kind_of, motion_of, order
-from validate.diagnosis.hypothesis import Hypothesis, Parameters, by_what_tells, other_number
+from validate.diagnosis.evidence import Evidence, Row, kind_of, order
+from validate.diagnosis.hypothesis import Hypothesis
+from validate.diagnosis.other_car import Change, Content, amounts_of, by_what_tells, other_motion, supposed
 
 STEP = 0.05  # mm, of differences by a length
 # Of the car's size: how far a length may be off and still be meant, and how far another assembly is away.
@@ -31,32 +32,36 @@ KEPT, ELSEWHERE = 1e-5, 1e-4
 
 def wrong_lengths(evidence: Evidence) -> Iterator[Hypothesis]:
     """Each rod by itself."""
-    rods = _tables(evidence.scene).get("rods", {})
+    tables = _tables(evidence.scene)
+    rods = [_length(evidence.scene, tables, rod) for rod in tables.get("rods", {})]
 
-    def supposed(looked: Sequence[Row], _: bool) -> list[Hypothesis]:
-        found = (_of_another_length(evidence, looked, rod) for rod in rods)
-        return [one for one in found if one is not None]
+    def of_another_length(looked: Sequence[Row], _: bool) -> list[Hypothesis]:
+        found = (supposed(evidence, [rod], amounts_of(evidence, looked, [rod])) for rod in rods)
+        return [one for one in found if one]
 
-    return by_what_tells(evidence, supposed)
+    return by_what_tells(evidence, of_another_length)
 
 
-def _of_another_length(evidence: Evidence, looked: Sequence[Row], rod: str) -> Hypothesis | None:
-    tables, name = _tables(evidence.scene), f"length of {rod}"
-    rods = dict(tables["rods"])
-    ends = rods.pop(rod)
-    changed = {**tables, "rods": rods, "inputs": {**tables["inputs"], name: {"distance": ends}}}
-    start, end = (np.array(evidence.scene.mechanism.points[point]) for point in ends)
+def _length(scene: Scene, tables: Mapping[str, Any], rod: str) -> Change:
+    """By how much a rod is too long."""
+    name, ends = f"length of {rod}", tables["rods"][rod]
+    start, end = (np.array(scene.mechanism.points[point]) for point in ends)
     drawn = float(np.linalg.norm(end - start))
+    changed = {
+        **tables,
+        "rods": {key: one for key, one in tables["rods"].items() if key != rod},
+        "inputs": {**tables["inputs"], name: {"distance": ends}},
+    }
 
-    def motion_by(more: float) -> Motion | None:
-        law = {"sum": [{"constant": "drawn"}, {"constant": more}]}
-        return _solved(evidence, changed, inputs={name: law})
+    def put(content: Content, more: float) -> None:
+        _put_tables(content, changed, scene)
+        content["inputs"][name] = {"sum": [{"constant": "drawn"}, {"constant": more}]}
 
     def words(more: float) -> str:
         said = f"{abs(more):.4g} mm too {'long' if more > 0.0 else 'short'}"
         return f"{rod} is {said}, {drawn + more:.6g} mm for {drawn:.6g}"
 
-    return other_number(evidence, looked, Parameters(rod, (0.0,), STEP, motion_by), words)
+    return Change(rod, 0.0, STEP, put, words)
 
 
 def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
@@ -73,8 +78,13 @@ def other_lines(evidence: Evidence) -> Iterator[Hypothesis]:
             line /= np.linalg.norm(line)
             along = {point: np.subtract(points[point], points[joint]) @ line for point in slide["points"]}
             moved = {point: (np.array(points[joint]) + far * line).tolist() for point, far in along.items()}
-            changed = {**tables["slides"], name: {**slide, "through": joint}}
-            if motion := _solved(evidence, {**tables, "slides": changed}, moved):
+            slides = {**tables["slides"], name: {**slide, "through": joint}}
+
+            def put(content: Content, slides: Any = slides, moved: Any = moved) -> None:
+                _put_tables(content, {**tables, "slides": slides}, evidence.scene)
+                content["mechanism"]["points"] |= moved
+
+            if motion := other_motion(evidence, (name, joint), put):
                 words = f"the line of {name} leads through {joint}, not through {slide['through']}"
                 yield Hypothesis((name, joint), words, evidence.by(motion), cost=1.5, whole=True)
 
@@ -112,37 +122,34 @@ def _without(prefix: str, entry: Any) -> Any:
     return [_without(prefix, each) for each in entry] if isinstance(entry, list | tuple) else entry
 
 
-def _solved(
-    evidence: Evidence,
-    tables: Mapping[str, Any],
-    points: Mapping[str, Sequence[float]] | None = None,
-    inputs: Mapping[str, Any] | None = None,
-) -> Motion | None:
-    """The motion of the car by other tables, points and further inputs; None where there is none."""
-    content = evidence.solved.ends.model_dump(exclude_none=True)
-    part = {key: value for key, value in content["mechanism"].items() if key not in ("type", "closure")}
-    part |= _in_parts(tables, evidence.scene.mechanism.topology.sides)
-    part["points"] = {**part["points"], **(points or {})}
-    content |= {"mechanism": part, "inputs": {**content["inputs"], **(inputs or {})}}
-    return motion_of(lambda: Scene.from_mapping(content, "another car"))
+def _put_tables(content: Content, tables: Mapping[str, Any], scene: Scene) -> None:
+    """Tables of its own in the place of its mechanism's file."""
+    part = content["mechanism"]
+    for key in ("type", "closure"):
+        part.pop(key, None)
+    part |= _in_parts(tables, scene.mechanism.topology.sides)
 
 
-def _drawn_otherwise(scene: Scene, **changes: object) -> Motion | None:
-    """The motion of a scene with a mechanism otherwise drawn or closed; None where there is none.
+def _as_it_stands(scene: Scene) -> Motion:
+    """The motion without a check of the drawing.
 
-    No drawing check: a drawing that is asked to close otherwise may not close so by itself, and another
-    assembly may have its wheel inboard.
+    One that is asked to close otherwise may not close so by itself, and another assembly may have its wheel
+    inboard.
     """
-    mechanism = scene.mechanism.model_copy(update=changes)
-    other = scene.model_copy(update={"mechanism": mechanism})
-    return motion_of(lambda: other, lambda one: solve_task(prepare_task(one, AUTO)))
+    return solve_task(prepare_task(scene, AUTO))
 
 
 def other_closures(evidence: Evidence) -> Iterator[Hypothesis]:
     """The whole car, by each other closure of its type of suspension."""
     part = evidence.scene.mechanism
     for closure in part.file.closures:
-        if closure != part.closure and (motion := _drawn_otherwise(evidence.solved.ends, closure=closure)):
+
+        def put(content: Content, closure: str = closure) -> None:
+            content["mechanism"]["closure"] = closure
+
+        if closure != part.closure and (
+            motion := other_motion(evidence, ("closure", closure), put, _as_it_stands)
+        ):
             words = f"the car is closed as {closure}, where the scene asks for {part.closure}"
             yield Hypothesis(closure, words, evidence.by(motion), whole=True)
 
@@ -177,8 +184,11 @@ def other_assemblies(evidence: Evidence) -> Iterator[Hypothesis]:
     missed = [np.linalg.norm(pose[a] - pose[b]) - np.linalg.norm(closed[a] - closed[b]) for a, b in links]
     if np.abs(missed).max() > KEPT * size:
         return
-    points = {name: tuple(place.tolist()) for name, place in pose.items()}
-    motion = _drawn_otherwise(evidence.solved.ends, points=points)
+
+    def put(content: Content) -> None:
+        content["mechanism"]["points"] |= {name: place.tolist() for name, place in pose.items()}
+
+    motion = other_motion(evidence, ("pose", first, there.tobytes()), put, _as_it_stands)
     if motion is None:
         return
     numbers = motion.at(evidence.times).numbers

@@ -13,19 +13,25 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord import Motion
 from pointcoord.numerics.rounding import EPS
-from pointcoord.scene.input_part import InputPart
-from validate.diagnosis.evidence import Evidence, Row, Solved, motion_of, numbers_in, some_of
-from validate.diagnosis.hypothesis import Hypothesis, Parameters, WouldBe, by_what_tells, gives
+from validate.diagnosis.evidence import Evidence, Row, Solved, numbers_in, some_of
+from validate.diagnosis.hypothesis import Hypothesis, WouldBe
 from validate.diagnosis.least import fitted
+from validate.diagnosis.other_car import (
+    Change,
+    Content,
+    amounts_of,
+    by_what_tells,
+    gives,
+    motion_by,
+    other_motion,
+)
 from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
-Taken = Mapping[str, tuple[float, float]]
-"""k and m by input."""
 
-OURS = (1.0, 0.0)
+OURS = (1.0, 0.0)  # k and m
+SCALED = {"amplitude", "offset", "values"}  # of a law, what is so many times itself if the law is
 STEP = 1e-3  # of differences by k and m
 # How near to a number of six digits a found one is meant to be that number, and to pi to be it.
 MEANT, NEAR = 1e-8, 1e-5
@@ -45,67 +51,63 @@ def _wrong(evidence: Evidence, looked: Sequence[Row], several: bool) -> list[Hyp
     # Of an input that stands still k and m are one, of one at 0 only m.
     single = [[(name, 0)] for name in sizes if sizes[name].any()] + [[(name, 1)] for name in sizes]
     every = [(name, which) for name in sizes for which in (0, 1) if which or np.ptp(sizes[name]) > 0.0]
+    # An amount is little beside numbers of the law's own size.
+    largest = {name: (1.0, float(size.max()) or 1.0) for name, size in sizes.items()}
     found: list[Hypothesis] = []
     for stage in (single, [every]) if several else (single,):
         for places in stage:
-            # An amount is little beside numbers of the law's own size.
-            largest = [1.0 if which == 0 else float(sizes[name].max()) or 1.0 for name, which in places]
-            found += _taken_otherwise(evidence, looked, places, largest)
+            amounts = amounts_of(evidence, looked, [_number(*one) for one in places], rounded=False)
+            found += _taken(
+                evidence,
+                {
+                    (name, i): meant
+                    for (name, i), amount in zip(places, amounts or (), strict=bool(amounts))
+                    if (meant := _meant(amount, largest[name][i])) != OURS[i]
+                },
+            )
         if any(gives(evidence, one, looked) for one in found):
             break
     return found
 
 
-def _taken_otherwise(
-    evidence: Evidence, looked: Sequence[Row], places: Sequence[tuple[str, int]], sizes: Sequence[float]
-) -> Iterator[Hypothesis]:
-    """By other k (0) and m (1) of some inputs, of those only that are found not to be ours."""
+def _number(name: str, which: int) -> Change:
+    """k (0) or m (1) of an input."""
 
-    def taken(values: Sequence[float]) -> Taken:
-        said = dict(zip(places, values, strict=True))
-        names = dict.fromkeys(name for name, _ in places)
-        return {name: (said.get((name, 0), OURS[0]), said.get((name, 1), OURS[1])) for name in names}
+    def put(content: Content, number: float) -> None:
+        law = content["inputs"][name]
+        moved = {"sum": [law, {"constant": number}]} if which else _times(law, number)
+        content["inputs"][name] = moved
 
-    start = tuple(OURS[which] for _, which in places)
-    numbers = Parameters(tuple(places), start, STEP, lambda *values: _motion(evidence, taken(values)))
-    found = numbers.amounts(evidence, looked, rounded=False) or start
-    meant = taken([_meant(*one) for one in zip(found, sizes, strict=True)])
-    meant = {name: km for name, km in meant.items() if km != OURS}
-    motion = _motion(evidence, meant) if meant else None
-    if motion is not None:
-        changed = sum((abs(k) != 1.0) + (m != 0.0) for k, m in meant.values())
-        words = ", and ".join(f"the input {name} {_said(evidence, name, *km)}" for name, km in meant.items())
-        cost = 1.2 + 0.2 * changed + 0.1 * len(meant)
-        yield Hypothesis(tuple(meant.items()), words, evidence.by(motion), changed, cost, whole=True)
+    return Change((name, which), OURS[which], STEP, put)
+
+
+def _times(law: Content, factor: float) -> Content:
+    """A law as plain data, so many times itself."""
+    ((kind, of),) = law.items()
+    if kind == "sum":
+        return {kind: [_times(term, factor) for term in of]}
+    if isinstance(of, dict):
+        scaled = {key: np.multiply(factor, of[key]).tolist() for key in SCALED & of.keys()}
+        return {kind: {**of, **scaled}}
+    return {kind: np.multiply(factor, of).tolist()}
+
+
+def _taken(evidence: Evidence, found: Mapping[tuple[str, int], float]) -> Iterator[Hypothesis]:
+    """The whole car by inputs of which some k and m are others."""
+    motion = motion_by(evidence, [_number(*one) for one in found], [*found.values()]) if found else None
+    if motion is None:
+        return
+    taken = {name: [found.get((name, i), OURS[i]) for i in (0, 1)] for name, _ in found}
+    words = ", and ".join(f"the input {name} {_said(evidence, name, *km)}" for name, km in taken.items())
+    count = sum((abs(k) != 1.0) + (m != 0.0) for k, m in taken.values())
+    cost = 1.2 + 0.2 * count + 0.1 * len(taken)
+    yield Hypothesis(words, words, evidence.by(motion), count, cost, whole=True)
 
 
 def _meant(amount: float, size: float) -> float:
     """What an amount is meant to be: 0, 1 or -1, or a number of six digits, where that is nearly it."""
     near = {0.0: size, 1.0: 1.0, -1.0: 1.0, float(f"{amount:.6g}"): abs(amount)}
     return next((one for one, scale in near.items() if abs(amount - one) <= MEANT * scale), amount)
-
-
-def _motion(evidence: Evidence, taken: Taken) -> Motion | None:
-    scene = evidence.solved.ends
-    laws = {name: _changed(scene.inputs[name], *km) for name, km in taken.items()}
-    return motion_of(lambda: scene.model_copy(update={"inputs": {**scene.inputs, **laws}}))
-
-
-def _changed(law: InputPart, factor: float, more: float) -> InputPart:
-    """A law times a factor, and a constant more."""
-    if law.sum is not None:
-        moreover = (more, *[0.0] * (len(law.sum) - 1))
-        terms = tuple(_changed(term, factor, m) for term, m in zip(law.sum, moreover, strict=True))
-        return law.model_copy(update={"sum": terms})
-    if law.sine is not None:
-        wave = law.sine
-        update = {"amplitude": factor * wave.amplitude, "offset": factor * wave.offset + more}
-        return law.model_copy(update={"sine": wave.model_copy(update=update)})
-    if law.table is not None:
-        values = tuple(factor * value + more for value in law.table.values)
-        return law.model_copy(update={"table": law.table.model_copy(update={"values": values})})
-    first, *others = law.polynomial or (law.constant or 0.0,)
-    return InputPart(polynomial=(factor * first + more, *(factor * value for value in others)))
 
 
 def _said(evidence: Evidence, name: str, factor: float, more: float) -> str:
@@ -127,7 +129,7 @@ def _said(evidence: Evidence, name: str, factor: float, more: float) -> str:
 def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
     """Their numbers at t are ours at t + s, of the whole car: s from the grid, then by least squares."""
     times, looked = evidence.times, evidence.telling[0]
-    if len(times) < 5 or evidence.solved.motion is None:
+    if len(times) < 5:
         return
     ours, theirs = (
         np.concatenate([part[row].reshape(len(times), -1) for row in looked], axis=1)
@@ -139,11 +141,11 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
         return
     pad = 2.0 * float(np.diff(times).max())
     whole = _on_the_grid(times, theirs[:, used] / spread[used], ours[:, used] / spread[used])
-    motion, first, last = _longer(evidence, min(0.0, whole - pad), max(0.0, whole + pad))
+    limits = {"start": float(times[0]) + whole - pad, "stop": float(times[-1]) + whole + pad, "samples": 2}
+    motion = other_motion(evidence, ("time", whole), lambda content: content["time"].update(limits))
+    if motion is None:
+        return  # the car does not go so far
     some = some_of(len(times), FEW)
-    some = some[(times[some] + whole - pad >= first) & (times[some] + whole + pad <= last)]
-    if len(some) < 5:
-        return
 
     def read(shifts: Array) -> Array:
         found = [motion.at(times[some] + whole + np.clip(shift, -pad, pad)).numbers for (shift,) in shifts]
@@ -151,11 +153,10 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
 
     rest = fitted(read, [0.0], 1e-4 * pad, evidence.joined(looked, some)[0])
     # Where whole instants leave nothing but rounding, there is nothing to find.
-    shift = whole + (0.0 if rest is None else float(rest.amounts[0]))
+    shift = whole + (0.0 if rest is None else float(np.clip(rest.amounts[0], -pad, pad)))
     if abs(shift) <= 1e-9 * float(np.ptp(times)):
         return
-    inside = (times + shift >= first) & (times + shift <= last)
-    found = motion.at(np.clip(times + shift, first, last)).numbers
+    found = motion.at(times + shift).numbers
     rows: dict[Row, WouldBe] = {}
     for row in evidence.held:
         if row[1] in found[row[0]]:
@@ -164,24 +165,9 @@ def shifted_in_time(evidence: Evidence) -> Iterator[Hypothesis]:
             speed = np.abs(np.gradient(value, times, axis=0)).max()
             # What is claimed varies along the motion: the most of it, since it is read elsewhere.
             most = np.broadcast_to(evidence.rounded(row).max(axis=0), value.shape)
-            allowed = most + 8.0 * EPS * speed * (abs(shift) + np.abs(times).max())
-            allowed[~inside] = np.inf
-            rows[row] = (value, allowed)
-    reach = "" if inside.all() else ", as far as ours reach"
-    words = f"the same curves {abs(shift):.6g} s {'later' if shift < 0.0 else 'earlier'}{reach}"
+            rows[row] = value, most + 8.0 * EPS * speed * (abs(shift) + np.abs(times).max())
+    words = f"the same curves {abs(shift):.6g} s {'later' if shift < 0.0 else 'earlier'}"
     yield Hypothesis("shift", words, rows, 1, 2.0, whole=True)
-
-
-def _longer(evidence: Evidence, before: float, after: float) -> tuple[Motion, float, float]:
-    """The motion from so much before its first instant to so much after its last, as far as the car goes."""
-    motion, scene = evidence.solved.motion, evidence.solved.fine
-    first, last = float(evidence.times[0]), float(evidence.times[-1])
-    time = scene.time.model_copy(update={"start": first + before, "stop": last + after, "samples": 2})
-    longer = motion_of(lambda: scene.model_copy(update={"time": time}))
-    if longer is None:
-        assert motion is not None  # there is one, or no shift is looked for
-        return motion, first, last
-    return longer, first + before, last + after
 
 
 def _on_the_grid(times: Array, theirs: Array, ours: Array) -> float:

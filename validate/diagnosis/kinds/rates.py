@@ -1,4 +1,4 @@
-"""Rates that are made otherwise: by finite differences, or per input instead of per time.
+"""Rates by finite differences.
 
 Their velocity is then what their positions change by from instant to instant. With h the time between two
 instants: forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
@@ -19,7 +19,6 @@ from pointcoord.effects.registry import QUANTITIES
 from pointcoord.numerics.rounding import EPS
 from validate.diagnosis.evidence import Evidence, Row, kind_of, length_or_angle, order
 from validate.diagnosis.hypothesis import Hypothesis, WouldBe
-from validate.formulations.input_rates import rates
 
 Array = NDArray[np.float64]
 Rule = Callable[[Array, Array], Array]
@@ -110,26 +109,3 @@ def differences(evidence: Evidence) -> Iterator[Hypothesis]:
             rows[row] = value, evidence.rounded(row) + rounding
         if rows:
             yield Hypothesis(words, f"rates by {words}", rows)
-
-
-def rates_per_input(evidence: Evidence) -> Iterator[Hypothesis]:
-    """dx/dq = x' / q', d2x/dq2 = (x'' - dx/dq q'') / q'^2, where one input q moves and never stops."""
-    laws = {name: rates(law, evidence.times) for name, law in evidence.scene.inputs.items()}
-    moving = {name: law for name, law in laws.items() if np.abs(law[:, 1:]).max(initial=0.0) > 0.0}
-    if len(moving) != 1:
-        return  # with more, a rate has more than one part
-    ((name, law),) = moving.items()
-    speed, bend = law[:, 1, None], law[:, 2, None]
-    if np.abs(speed).min() <= 1e-6 * np.abs(speed).max():
-        return
-    rows: dict[Row, WouldBe] = {}
-    for row in evidence.wrong:
-        rate = _integral(row, 1, evidence)
-        if order(row) == 1:
-            rows[row] = (evidence.held[row] / speed, evidence.rounded(row) / np.abs(speed))
-        elif order(row) == 2 and rate is not None:
-            per = evidence.held[rate] / speed
-            width = evidence.rounded(row) + evidence.rounded(rate) * np.abs(bend / speed)
-            rows[row] = ((evidence.held[row] - per * bend) / speed**2, width / speed**2)
-    if rows:
-        yield Hypothesis(name, f"rates per {name}, not per time", rows)
