@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pointcoord import Scene
 from pointcoord.mechanism.structure import TABLES, Structure
 from pointcoord.scene.scene_file import MechanismPart
+from validate.spanning_tree.cut import car_directions
 
 Array = NDArray[np.float64]
 Points = dict[str, tuple[float, float, float]]
@@ -113,10 +114,7 @@ class Car:
 
 def direction(up: Sequence[float], right: Sequence[float], name: str) -> Array:
     """A direction by its name from a car's axes, see `Car.direction`."""
-    u, r = np.array(up), np.array(right)
-    forward = np.cross(u, r)
-    ways = {"up": u, "right": r, "forward": forward, "down": -u, "left": -r, "rearward": -forward}
-    return np.asarray(ways[name])
+    return car_directions({"up": up, "right": right})[name]
 
 
 def other_side(car: Car) -> Car:

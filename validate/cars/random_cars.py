@@ -8,14 +8,14 @@ turned, scaled and displaced: nothing else is sure to keep them true.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from pointcoord import PointcoordError, simulate
 from validate.cars.base_cars import Variant, variants
-from validate.cars.car import Array, Car, moved, other_side, random_rotation, scaled, turned
+from validate.cars.car import Car, moved, other_side, random_rotation, scaled, turned
 from validate.cars.input_ends import at, drawn_inputs
 from validate.cars.moved_points import LEFT_OVER, SHARE, Moves, drawn_back, sliding, with_every_point
 
@@ -24,21 +24,6 @@ FIRST = 0.7  # of the cars of a mechanism with several closures are of the first
 # drawn much worse, a strut may be nearer to another assembly than to the one that its maker meant.
 CLOSED_BY = 0.05
 OWN = 0.5  # of the cars have the inputs of their base car's scene
-
-
-@dataclass(frozen=True)
-class Placing:
-    """Where a car is put: on the other side, turned, scaled from the origin, displaced (mm)."""
-
-    mirrored: bool
-    turn: Array
-    scale: float
-    away: Array
-
-    def __call__(self, car: Car) -> Car:
-        """The car put there."""
-        there = other_side(car) if self.mirrored else car
-        return moved(scaled(turned(there, self.turn), self.scale), self.away)
 
 
 @dataclass(frozen=True)
@@ -74,11 +59,11 @@ def random_car(rng: np.random.Generator) -> RandomCar:
     own, *others = variant.input_sets
     inputs = own if not others or rng.random() < OWN else others[int(rng.integers(len(others)))]
     base = with_every_point(variant.base)
-    moves, placing = _moves(rng, base), _placing(rng, variant)
+    moves, (scale, put) = _moves(rng, base), _placing(rng, variant)
     if variant.holds_its_shape:
         moves = Moves()
-    car = drawn_back(base, moves, lambda there: is_accepted(placing(there), inputs))
-    return RandomCar(variant, placing(car), inputs, placing.scale)
+    car = drawn_back(base, moves, lambda there: is_accepted(put(there), inputs))
+    return RandomCar(variant, put(car), inputs, scale)
 
 
 def _variant(rng: np.random.Generator) -> Variant:
@@ -101,8 +86,11 @@ def _moves(rng: np.random.Generator, base: Car) -> Moves:
     )
 
 
-def _placing(rng: np.random.Generator, variant: Variant) -> Placing:
-    """Scaled by up to a thousand, turned and displaced, each in one of two."""
+def _placing(rng: np.random.Generator, variant: Variant) -> tuple[float, Callable[[Car], Car]]:
+    """By how much a car is scaled, up to a thousand, and what puts it on the other side, turns and moves it.
+
+    Each in one of two.
+    """
     mirrored = bool(rng.random() < 0.5) and not variant.of_parts
     scale = 10.0 ** rng.uniform(-3.0, 3.0) if rng.random() < 0.5 else 1.0
     turn = random_rotation(rng) if rng.random() < 0.5 else np.eye(3)
@@ -110,4 +98,8 @@ def _placing(rng: np.random.Generator, variant: Variant) -> Placing:
     if rng.random() < 0.5:
         away = rng.normal(size=3)
         away *= scale * 10.0 ** rng.uniform(0.0, 7.0) / np.linalg.norm(away)
-    return Placing(mirrored, turn, scale, away)
+
+    def put(car: Car) -> Car:
+        return moved(scaled(turned(other_side(car) if mirrored else car, turn), scale), away)
+
+    return scale, put

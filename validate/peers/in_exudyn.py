@@ -42,11 +42,12 @@ class InExudyn(Program):
         self.linkage = linkage
         self.container = exudyn.SystemContainer()
         self.system = system = self.container.AddSystem()
-        self.links = _links(linkage)
-        tree = _tree(system, self.links)
+        self.last: dict[str, int] = {}  # of each body the link that its points are on
+        self.frames: dict[str, tuple[Array, Array]] = {CHASSIS: (np.zeros(3), np.eye(3))}
+        tree = self._tree()
         points = linkage.points.values()
         self.places_of = [self._sensor(tree, place, "Position") for place in points]
-        bodies = [Place(body, self.links.origin(body)) for body in linkage.bodies.values()]
+        bodies = [Place(body, self.frames[body][0]) for body in linkage.bodies.values()]
         self.moves_of = [
             [
                 *(self._sensor(tree, place, of_point) for place in points),
@@ -68,7 +69,7 @@ class InExudyn(Program):
         self.size, rows = self.solver.GetODE2size(), self.solver.GetAEsize()
         self.nothing = np.zeros((self.size + rows, self.size + rows))
         self.as_drawn = np.zeros(self.size)
-        self.driven = np.array([self.links.last[driven.body] for driven in linkage.tree.driven])
+        self.driven = np.array([self.last[driven.body] for driven in linkage.tree.driven])
         self.driven_at = self.driven
         self.unknown = np.array([i for i in range(self.size) if i not in self.driven], dtype=np.intp)
 
@@ -107,6 +108,42 @@ class InExudyn(Program):
         first, second = (self._read(sensors) for sensors in self.moves_of)
         return first, second
 
+    def _tree(self) -> int:
+        """Links of mass 1, on which nothing depends, each with one coordinate."""
+        kinds, parents, turns, offsets = list[object](), list[int](), list[Array](), list[Array]()
+        for joint in self.linkage.tree.joints:
+            axes, own = _axes_and_turns(self.linkage, joint)
+            origin, parent = self.frames[joint.parent]
+            first, others = len(kinds), len(own) - 1
+            turns += [parent.T @ axes, *[np.eye(3)] * others]
+            offsets += [parent.T @ (joint.at - origin), *[np.zeros(3)] * others]
+            parents += [self.last.get(joint.parent, -1), *range(first, first + others)]
+            kinds += own
+            self.last[joint.body], self.frames[joint.body] = first + others, (joint.at, axes)
+        count = len(kinds)
+        node = items.NodeGenericODE2(
+            referenceCoordinates=[0.0] * count,
+            initialCoordinates=[0.0] * count,
+            initialCoordinates_t=[0.0] * count,
+            numberOfODE2Coordinates=count,
+        )
+        tree = items.ObjectKinematicTree(
+            nodeNumber=self.system.AddNode(node),
+            jointTypes=kinds,
+            linkParents=parents,
+            jointTransformations=exudyn.Matrix3DList(turns),
+            jointOffsets=exudyn.Vector3DList(offsets),
+            linkInertiasCOM=exudyn.Matrix3DList([np.eye(3)] * count),
+            linkCOMs=exudyn.Vector3DList([np.zeros(3)] * count),
+            linkMasses=[1.0] * count,
+        )
+        return int(self.system.AddObject(tree))
+
+    def _local(self, place: Place) -> Array:
+        """A drawn place of a body in the body's frame."""
+        origin, axes = self.frames[place.body]
+        return np.asarray(axes.T @ (place.at - origin))
+
     def _read(self, sensors: Sequence[int | None]) -> Array:
         """What sensors say, (sensors, 3); of the chassis, where there is none, that it is at rest."""
         system, still = self.system, np.zeros(3)
@@ -118,8 +155,8 @@ class InExudyn(Program):
             return None
         sensor = items.SensorKinematicTree(
             objectNumber=tree,
-            linkNumber=self.links.last[place.body],
-            localPosition=self.links.local(place),
+            linkNumber=self.last[place.body],
+            localPosition=self._local(place),
             outputVariableType=getattr(exudyn.OutputVariableType, what),
             writeToFile=False,
         )
@@ -133,63 +170,20 @@ class InExudyn(Program):
             )
         marker = items.MarkerKinematicTreeRigid(
             objectNumber=tree,
-            linkNumber=self.links.last[place.body],
-            localPosition=self.links.local(place),
+            linkNumber=self.last[place.body],
+            localPosition=self._local(place),
         )
         return int(self.system.AddMarker(marker))
 
 
-class _Links:
-    """The links of a tree, each with one coordinate, and the frames of the bodies.
-
-    Attributes:
-        last: the last link of each body, on which its points are.
-        kinds, parents, turns, offsets: of each link, as Exudyn takes them.
-    """
-
-    def __init__(self) -> None:
-        self.last: dict[str, int] = {}
-        self.kinds: list[object] = []
-        self.parents: list[int] = []
-        self.turns: list[Array] = []
-        self.offsets: list[Array] = []
-        self._frames: dict[str, tuple[Array, Array]] = {CHASSIS: (np.zeros(3), np.eye(3))}
-
-    def origin(self, body: str) -> Array:
-        """Where a body's frame is drawn."""
-        return self._frames[body][0]
-
-    def local(self, place: Place) -> Array:
-        """A drawn place of a body in the body's frame."""
-        origin, axes = self._frames[place.body]
-        return np.asarray(axes.T @ (place.at - origin))
-
-    def hang(self, joint: Joint, axes: Array, kinds: Sequence[object]) -> None:
-        """Add a body with a link for each kind of joint, its frame's axes as columns."""
-        origin, parent_axes = self._frames[joint.parent]
-        parent = self.last.get(joint.parent, -1)
-        for number, kind in enumerate(kinds):
-            self.turns.append(parent_axes.T @ axes if number == 0 else np.eye(3))
-            self.offsets.append(parent_axes.T @ (joint.at - origin) if number == 0 else np.zeros(3))
-            self.parents.append(parent)
-            self.kinds.append(kind)
-            parent = len(self.kinds) - 1
-        self.last[joint.body] = parent
-        self._frames[joint.body] = (joint.at, axes)
-
-
-def _links(linkage: Linkage) -> _Links:
-    links, car = _Links(), car_directions(linkage.plain)
-    upright = np.stack([car["right"], car["forward"], car["up"]], axis=-1)
-    for joint in linkage.tree.joints:
-        if joint.body in linkage.tree.rods:
-            links.hang(joint, _rod_axes(linkage, linkage.tree.rods[joint.body]), TURNS[:2])
-        elif joint.kind == "ball":
-            links.hang(joint, upright, TURNS)
-        else:
-            kind = TURNS[2] if joint.kind == "hinge" else exudyn.JointType.PrismaticZ
-            links.hang(joint, axes_along(joint.axis), (kind,))
-    return links
+def _axes_and_turns(linkage: Linkage, joint: Joint) -> tuple[Array, Sequence[object]]:
+    """Axes of a joint's body as columns, and the joints of one coordinate in a row that it is."""
+    if joint.body in linkage.tree.rods:
+        return _rod_axes(linkage, linkage.tree.rods[joint.body]), TURNS[:2]
+    if joint.kind == "ball":
+        car = car_directions(linkage.plain)
+        return np.stack([car["right"], car["forward"], car["up"]], axis=-1), TURNS
+    return axes_along(joint.axis), (TURNS[2] if joint.kind == "hinge" else exudyn.JointType.PrismaticZ,)
 
 
 def _rod_axes(linkage: Linkage, rod: Array) -> Array:
@@ -200,27 +194,3 @@ def _rod_axes(linkage: Linkage, rod: Array) -> Array:
             first = beside / np.linalg.norm(beside)
             return np.stack([first, np.cross(rod, first), rod], axis=-1)
     return axes_along(rod)
-
-
-def _tree(system: Any, links: _Links) -> int:
-    """Links of mass 1, on which nothing depends."""
-    count = len(links.kinds)
-    node = system.AddNode(
-        items.NodeGenericODE2(
-            referenceCoordinates=[0.0] * count,
-            initialCoordinates=[0.0] * count,
-            initialCoordinates_t=[0.0] * count,
-            numberOfODE2Coordinates=count,
-        )
-    )
-    tree = items.ObjectKinematicTree(
-        nodeNumber=node,
-        jointTypes=links.kinds,
-        linkParents=links.parents,
-        jointTransformations=exudyn.Matrix3DList(links.turns),
-        jointOffsets=exudyn.Vector3DList(links.offsets),
-        linkInertiasCOM=exudyn.Matrix3DList([np.eye(3)] * count),
-        linkCOMs=exudyn.Vector3DList([np.zeros(3)] * count),
-        linkMasses=[1.0] * count,
-    )
-    return int(system.AddObject(tree))
