@@ -1,4 +1,4 @@
-"""What no point of the suspension says of the car: its axle, sides, wheelbase, shares, springs, wheels."""
+"""What no point of the suspension says of the car: its directions, sides, lengths, shares and springs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_fraction
+from validate.reference.vectors import Vector, cross, times
 
 AXLE, WHEELBASE, HEIGHT = "axle", "wheelbase", "centre_of_gravity_height"
 BRAKE_SHARE, DRIVE_SHARE = "brake_share", "drive_share"
@@ -47,6 +48,25 @@ def corners(plain: Mapping[str, Any]) -> dict[str, int]:
             raise BadInputError(what, side, "'left' or 'right'")
         found[prefix] = -1 if side == "left" else 1
     return found
+
+
+def directions(plain: Mapping[str, Any]) -> dict[str, Vector]:
+    """By their words, of exact axes."""
+    ways = {"up": plain["up"], "right": plain["right"], "forward": cross(plain["up"], plain["right"])}
+    opposite = {"up": "down", "right": "left", "forward": "rearward"}
+    return ways | {opposite[word]: times(way, -1) for word, way in ways.items()}
+
+
+def directed(plain: Mapping[str, Any], word: str) -> Vector:
+    """A direction of the car by its word.
+
+    Raises:
+        BadInputError: it is none.
+    """
+    known = directions(plain)
+    if word not in known:
+        raise BadInputError("a direction", word, f"one of {', '.join(known)}")
+    return known[word]
 
 
 def _number(key: str, what: str, value: object) -> Fraction:

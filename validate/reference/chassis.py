@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
-from validate.reference.directions import directed
-from validate.reference.jet import Jet, part_of
+from validate.reference.car_data import directed
+from validate.reference.jet import Jet, value_of
 from validate.reference.vectors import Scalar, Vector, cross, dot, each, minus, plus, root, times
 
 
@@ -64,17 +64,15 @@ class ChassisMotion:
 
     def still(self) -> ChassisMotion:
         """With the values of the jets."""
-        turns = tuple(replace(turn, sine=turn.sine.value, cosine=turn.cosine.value) for turn in self.turns)
-        return ChassisMotion(turns, None if self.rise is None else part_of(self.rise, 0))
+        return self._of_each(value_of)
 
     def with_slopes(self) -> ChassisMotion:
         """With the values of the jets and their rates as slopes."""
+        return self._of_each(lambda jet: Jet(jet.value, jet.slope))
 
-        def dual(jet: Jet) -> Jet:
-            return Jet(jet.value, jet.slope)
-
-        turns = tuple(replace(turn, sine=dual(turn.sine), cosine=dual(turn.cosine)) for turn in self.turns)
-        return ChassisMotion(turns, None if self.rise is None else each(dual, self.rise))
+    def _of_each(self, change: Callable[[Jet], Scalar]) -> ChassisMotion:
+        turns = (replace(turn, sine=change(turn.sine), cosine=change(turn.cosine)) for turn in self.turns)
+        return ChassisMotion(tuple(turns), None if self.rise is None else each(change, self.rise))
 
     def without_displacement(self) -> ChassisMotion:
         """The turns alone."""

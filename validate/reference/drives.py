@@ -24,8 +24,8 @@ from typing import Any
 
 from flint import arb
 
+from validate.reference.car_data import directed
 from validate.reference.chassis import ChassisMotion
-from validate.reference.directions import directed
 from validate.reference.errors import BadInputError
 from validate.reference.exact import as_ball, as_fraction
 from validate.reference.jet import Jet, angle

@@ -36,7 +36,7 @@ from typing import Any
 
 from flint import arb
 
-from validate.reference.directions import directions
+from validate.reference.car_data import directions
 from validate.reference.errors import BadInputError
 from validate.reference.jet import Jet
 from validate.reference.polynomial import Polynomial, ordered, polynomial

@@ -120,7 +120,10 @@ def test_what_is_no_solution_is_not_certified() -> None:
     with ctx.workprec(count.BITS):
         matrices = [arb_mat([[float(x) for x in row] for row in form]) for form in quadratic]
         beside = [*(arb(1e-6 * k) for k in range(1, 8)), *[arb(0)] * 7]
-        assert not count._holds_one(count._parts(matrices, 0), beside, count.WIDE)
+        parts, middle = count._parts(matrices, 0), [arb(0)] * 14
+        assert not count._holds_one(parts, beside, count.WIDE)
+        assert count._holds_one(parts, middle, count.WIDE)
+        assert not count._holds_one(parts, middle, "10")  # other assemblies are in this box
         certified = count._certified(matrices, drawn.astype(complex))
         assert certified is not None
         assert certified.real

@@ -73,3 +73,11 @@ def test_what_missing_an_equation_makes_of_a_motion_is_the_difference_of_motions
             exact = np.array([np.broadcast_to(change, 3) for change in changes]) / (2.0 * step)
             largest = np.abs(found[d]).max()
             np.testing.assert_allclose(found[d, :, row], exact, rtol=0.0, atol=1e-6 * largest)
+
+
+def test_quotients_and_roots_of_jets_are_undone_by_products_in_every_order() -> None:
+    one, two = Jet(*map(Fraction, (3, -1, 4, 1, -5))), Jet(*map(Fraction, (2, 7, -1, 8)))
+    assert (one / two * two).parts[:5] == one.parts
+    assert (1 / two * two).parts == (1, 0, 0, 0)
+    root = Jet(*np.array([[2.0], [3.0], [-1.0], [5.0]])).sqrt()
+    assert np.abs((root * root - Jet(2.0, 3.0, -1.0, 5.0)).parts).max() < 1e-14
