@@ -19,7 +19,7 @@ from validate.diagnosis.evidence import Evidence, Solved, numbers_not_given
 from validate.extras import MissingPackage
 from validate.formulations.asked_numbers import asked_numbers
 from validate.formulations.protocol import Accuracy, Solution
-from validate.measured.mapping import ARCSINE, Measured
+from validate.measured.mapping import Measured
 from validate.measured.meanings import PLACES, TIME
 from validate.measured.poses import Driven, poses_of
 from validate.measured.supposed import meant_otherwise, suppositions
@@ -203,7 +203,7 @@ def _explained(
     told = np.flatnonzero(np.all([np.isfinite(h.gap) for columns in whole.values() for h in columns], axis=0))
     over_time = measured.independent[0].meaning.kind == TIME
     there = _on_the_grid(scene, measured.instants[told]) if over_time else None
-    if not over_time and not any(h.series.definition == ARCSINE for c in whole.values() for h in c):
+    if not over_time:
         told, there = _by_rows(driven, [s.values for s in measured.independent], told)
 
     def of(number: Callable[[Held], Array]) -> dict[Row, Array]:

@@ -17,7 +17,7 @@ A map is TOML:
     unit = "deg"                  # if the file does not say it
     sign = -1                     # ours = sign * theirs + offset, the offset in the column's unit
     offset = 0.0
-    definition = "arcsine"        # of an angle; projected if not said
+    definition = "arcsine"        # of camber or toe, the same as camber_by_arcsine; projected if not said
     printed = 0.0001              # unit of the last digit, in the column's unit; 0: written in full or exact
     accuracy = 0.001              # how far its numbers may be off beside that, in the column's unit
 
@@ -67,9 +67,7 @@ from validate.toml_written import key_of, value_of
 
 Array = NDArray[np.float64]
 
-Definition = Literal["projected", "arcsine"]
-PROJECTED: Definition = "projected"
-ARCSINE: Definition = "arcsine"
+ARCSINE = "arcsine"
 # Values in even steps that are taken as set exactly: two always are.
 FEWEST = 3
 BY_CHANCE = 1e-3  # of a step or a last digit: what is even to less is hardly so by chance
@@ -91,7 +89,7 @@ class ColumnSaid(BaseModel):
     unit: str | None = None
     sign: Literal[1, -1] = 1
     offset: Number = 0.0
-    definition: Definition = PROJECTED
+    definition: Literal["projected", "arcsine"] = "projected"
     printed: Size | None = None
     accuracy: Size | None = None
 
@@ -137,7 +135,6 @@ class Series:
         column: its name in the file. meaning: what it is.
         values: (N,), NaN where the file has none.
         off: how far what was rounded may be from what is written, half a unit of the last digit, (N,).
-        definition: of an angle.
         factor: how many of ours its unit is. accuracy: that a map says, in its unit; None if it says none.
         said: whether a map says what its last digit is.
     """
@@ -146,7 +143,6 @@ class Series:
     meaning: Meaning
     values: Array
     off: Array
-    definition: str = PROJECTED
     factor: float = 1.0
     accuracy: float | None = None
     said: bool = False
@@ -427,6 +423,8 @@ class _Map:
                 meaning, sign = self._lookup(base.removesuffix(f"_{own}"))
             if part.is_ not in (None, IGNORE) and meaning is None:
                 raise self._unknown(name, part.is_)
+            if part.definition == ARCSINE and meaning is not None:
+                meaning = self._by_arcsine(name, meaning)
             if every and name not in every and name not in self.meanings and meaning is not None:
                 # Beside columns that a map names, a number goes along that no other is said to be.
                 along = meaning.kind == "number" and meaning not in taken and unit
@@ -434,6 +432,15 @@ class _Map:
             sign = -1 if name.startswith("-") and part.is_ is None else sign
             sign = part.sign if "sign" in part.model_fields_set else sign
             found[name] = None if meaning is None else Column(name, at, meaning, unit, sign, part)
+        return found
+
+    def _by_arcsine(self, column: str, meaning: Meaning) -> Meaning:
+        """The angle as an arcsine, which is a number of its own."""
+        name = meaning.words.removesuffix(f"_by_{ARCSINE}") + f"_by_{ARCSINE}"
+        found = self.meanings.get(name)
+        if found is None:
+            allowed = f"projected: there is no {name}"
+            raise self._wrong(f"columns.{column}.definition", f"is {ARCSINE!r}", allowed)
         return found
 
     def _unknown(self, column: str, said: str | None) -> FileError:
@@ -513,13 +520,10 @@ class _Map:
             problem = f"is {theirs[row]:.6g}, a number of {meaning.words} that no car has"
             allowed = f"at most {farthest:g} {meaning.unit}, or nothing or nan for none"
             raise FileError(self.columns.source, where, problem, allowed)
-        if part.definition != PROJECTED and (angle_of(meaning) is None or meaning.per):
-            allowed = f"{PROJECTED}: {meaning.words} is no angle of a line"
-            raise self._wrong(f"columns.{name}.definition", f"is {part.definition!r}", allowed)
         printed = steps if part.printed is None else np.asarray(part.printed)
         off = 0.5 * factor * np.broadcast_to(printed, values.shape)
         told = part.printed is not None
-        return Series(name, meaning, values, off, part.definition, factor, part.accuracy, told)
+        return Series(name, meaning, values, off, factor, part.accuracy, told)
 
     def _factor(self, column: Column) -> float:
         meaning = column.meaning

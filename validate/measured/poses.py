@@ -32,7 +32,7 @@ from pointcoord.simulation import scene_mechanism
 from pointcoord.solve.assembly import close_drawing
 from validate.diagnosis.evidence import axes_of
 from validate.formulations.asked_numbers import per_second
-from validate.measured.mapping import ARCSINE, Measured, Series
+from validate.measured.mapping import Measured, Series
 from validate.measured.meanings import CONTACT, INPUT, PLACES, RATES, TIME, TRAVEL, Meaning, angle_of
 from validate.tables.errors import FileError
 
@@ -247,43 +247,37 @@ def words_of(name: str) -> str:
 
 
 def ours_of(series: Series, found: Found, scene: Scene) -> tuple[Array | None, Array | None]:
-    """Our numbers of a column and their bounds, by the column's own definition, (N,); None if not known."""
+    """Our numbers of a column and their bounds, (N,); None if not known."""
     meaning, angle = series.meaning, angle_of(series.meaning)
     of, quantity = found, meaning.quantity
     if meaning.per and angle is None:
         of, quantity = found.slopes.get(meaning.per, NOTHING), SPEED
     if meaning.name not in of.numbers.get(quantity, {}) or (meaning.per and meaning.per not in found.slopes):
         return None, None
-    if angle is not None and (meaning.per or series.definition == ARCSINE):
-        return _of_a_line(series, angle, found, scene)
+    if angle is not None and meaning.per:
+        return _slope_of_an_angle(meaning, angle, found, scene)
     value = of.numbers[quantity][meaning.name]
     bound = of.bounds.get(quantity, {}).get(meaning.name, np.zeros_like(value))
     return (value, bound) if meaning.axis is None else (value[:, meaning.axis], bound[:, meaning.axis])
 
 
-def _of_a_line(series: Series, angle: Angle, found: Found, scene: Scene) -> tuple[Array, Array]:
-    """The arcsine of a component of an angle's line, not of a projection of it; or the angle's derivative.
+def _slope_of_an_angle(meaning: Meaning, angle: Angle, found: Found, scene: Scene) -> tuple[Array, Array]:
+    """An angle's derivative, and how far it may be off.
 
     With s and c the components that an angle f is the atan2 of, f' = (s' c - c' s) / (s^2 + c^2).
     """
-    wheel = Wheel.of(scene.mechanism.topology, series.meaning.name)
+    wheel = Wheel.of(scene.mechanism.topology, meaning.name)
     axes, (start, end) = axes_of(scene).on(wheel.side), angle.ends(wheel)
 
-    def line(of: Found, quantity: str) -> tuple[Array, Array]:
-        """From end to end, and how far it may be off: each end may be by its bound along each axis."""
+    def line(of: Found, quantity: str) -> tuple[Array, Array, Array]:
+        """Both components from end to end, and how far they may be off: each end may be along each axis."""
         places, bounds = of.numbers[quantity], of.bounds[quantity]
         ends = [np.max(bounds[name], axis=-1) for name in (start, end) if name in bounds]
-        return places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
+        along, off = places[end] - places[start], 2.0 * math.sqrt(3.0) * np.max(ends, axis=0)
+        return axes.component(along, angle.sine), axes.component(along, angle.cosine), np.asarray(off)
 
-    along, off = line(found, PLACES)
-    s = axes.component(along, angle.sine)
-    if not series.meaning.per:
-        long = np.linalg.norm(along, axis=-1)
-        # The line turns by what it may be off / its length at most, an arcsine grows by 1 / cosine of that.
-        return np.arcsin(s / long), np.asarray(off / long / np.sqrt(1.0 - (s / long) ** 2))
-    going, off_ = line(found.slopes[series.meaning.per], SPEED)
-    c = axes.component(along, angle.cosine)
-    s_, c_ = axes.component(going, angle.sine), axes.component(going, angle.cosine)
+    s, c, off = line(found, PLACES)
+    s_, c_, off_ = line(found.slopes[meaning.per], SPEED)
     square = s**2 + c**2
     value = (s_ * c - c_ * s) / square
     changed = (np.abs(c) + np.abs(s)) * off_ + (np.abs(s_) + np.abs(c_)) * off
