@@ -21,16 +21,13 @@ from pointcoord.mechanism.inputs import Height
 from pointcoord.mechanism.structure import CLOSING
 from validate.hardpoint_files.contents import FilePoint, Place
 from validate.plain_text import shown
-from validate.toml_written import key_of, value_of, written
+from validate.toml_written import key_of, value_of
 
 # mm of wheel travel up and down, where both ends are far enough: far from where links lie in line.
 TRAVEL, FAR_ENOUGH = 30.0, 40.0
-# Else a bounce, by part of the way from the drawing to the nearer end of the input that moves the wheel.
+# Else a part of the way from the drawing to the nearer end of the input that moves the wheel.
 PART = 0.25
 TURN = 6.2831  # rad: the way of one that goes all the way round
-# A sine of nearly one period. No instant is one at which the input turns, an odd multiple of pi / 12 s: its
-# rate is rounding alone there, and a comparison of rates would test nothing.
-FREQUENCY, STOP, SAMPLES = 6.0, 1.05, 43
 TOLERANCE = 1e-9
 
 
@@ -127,7 +124,7 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
     """A way of the wheel about the drawing, with the others held as drawn, well within its reach.
 
     The wheel goes from 30 mm below to 30 mm above; where it reaches less than 40 mm, or what moves it is no
-    travel, it bounces by a quarter of the way to the nearer end.
+    travel, a quarter of the way to the nearer end to either side.
     """
     laws: dict[str, tuple[Mapping[str, Any], str]] = {}
     drives = drawn.mechanism.topology.drives
@@ -141,22 +138,11 @@ def travel_of(drawn: Scene, stands: Standing) -> tuple[Laws, Scene]:
         nearer, words = min(here - low, high - here), f"{unit}; it reaches {low:.4f} to {high:.4f}"
         if isinf(nearer):
             nearer, words = TURN, f"{unit}; it goes all the way round"
-        if unit == "mm" and nearer >= FAR_ENOUGH:
-            laws[name] = {"sweep": [here - TRAVEL, here + TRAVEL]}, words
-            continue
-        amplitude = floor(1e4 * PART * nearer) / 1e4
-        sine = {"amplitude": amplitude, "angular_frequency": FREQUENCY, "offset": here}
-        laws[name] = {"sine": sine}, f"{words}, and this takes a quarter of the shorter way"
-    content = drawn.model_dump(exclude_none=True, exclude={"time"}) | _times(laws)
+        way = TRAVEL if unit == "mm" and nearer >= FAR_ENOUGH else floor(1e4 * PART * nearer) / 1e4
+        laws[name] = {"sweep": [here - way, here + way]}, words
+    content = drawn.model_dump(exclude_none=True, exclude={"time"})
     content["inputs"] = {name: law for name, (law, _) in laws.items()}
     return laws, Scene.from_mapping(content, drawn.title)
-
-
-def _times(laws: Laws) -> dict[str, Any]:
-    """The table of times, which a scene of ranges and constants does without."""
-    if not any("sine" in law for law, _ in laws.values()):
-        return {}
-    return {"time": {"start": 0.0, "stop": STOP, "samples": SAMPLES}}
 
 
 def scene_text(
@@ -197,4 +183,4 @@ def scene_text(
         "[inputs]",
         *(f"{name} = {value_of(law)}    # {words}" for name, (law, words) in laws.items()),
     ]
-    return "\n".join([*lines, *written(_times(laws))]) + "\n"
+    return "\n".join(lines) + "\n"
