@@ -206,26 +206,6 @@ def test_a_rate_that_every_row_has_is_held_by_the_map() -> None:
     assert "velocity.wheel_centre.z" in disagreeing(text(**columns), {"held": held}, CAR)
 
 
-@pytest.mark.parametrize(
-    ("head", "map", "words"),
-    [
-        ("toe [deg/s]", {}, ("'deg/s' is no unit of a derivative of wheel.toe", "rad/mm by bump")),
-        ("d(toe)/d(rack) [deg/mm]", {}, ("a derivative of wheel.toe by 'rack'", "by bump")),
-        ("d(toe)/d(bump)", {}, ("has no unit", "deg/m")),
-        ("d(toe)/d(bump) [deg]", {}, ("'deg' is no unit of a derivative of wheel.toe", "rad/mm")),
-        ("d(velocity.wheel_centre.x)/d(bump) [mm/mm]", {}, ("is a derivative of velocity", "a coordinate")),
-    ],
-)
-def test_a_derivative_that_is_none_is_refused_with_its_column(
-    head: str, map: dict[str, Any], words: tuple[str, ...]
-) -> None:
-    table = f"bump [mm],{head}\n0,0.01\n10,0.02\n"
-    map = {"columns": {"bump": {"is": "travel.wheel_centre"}, head.partition(" [")[0]: map}}
-    with pytest.raises(FileError) as caught:
-        compared(table, map, CAR)
-    assert [word for word in words if word not in str(caught.value)] == [], caught.value
-
-
 def test_of_two_columns_that_a_gradient_may_be_by_its_name_says_which() -> None:
     table = "bump [mm],rack [mm],{} [deg/mm]\n0,0,0.01\n10,1,0.02\n"
     bump = {"bump": {"is": "travel.wheel_centre"}}

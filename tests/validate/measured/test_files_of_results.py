@@ -215,6 +215,12 @@ CONTACT, CENTRE = (
 TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
 
 
+def slope(head: str) -> tuple[str, dict[str, object]]:
+    """A derivative over a travel."""
+    columns: dict[str, object] = {"bump": {"is": "travel.wheel_centre"}, head.partition(" [")[0]: {}}
+    return f"bump [mm],{head}\n0,0.01\n10,0.02\n", {"columns": columns}
+
+
 @pytest.mark.parametrize(
     ("text", "content", "words"),
     [
@@ -228,6 +234,11 @@ TEXT = "time [s],camber [deg]\n0.1,1.0\n0.2,1.1\n"
         (TEXT.replace("camber", "cmaber"), {}, ("nothing to compare",)),
         (BUMP + "0,1\n", CONTACT, ("rolling_radius",)),
         (BUMP + "900,1\n", CENTRE, ("line 2", "none of its 1 rows can be reached", "out of reach")),
+        (*slope("toe [deg/s]"), ("'deg/s' is no unit of a derivative of wheel.toe", "rad/mm by bump")),
+        (*slope("d(toe)/d(rack) [deg/mm]"), ("a derivative of wheel.toe by 'rack'", "by bump")),
+        (*slope("d(toe)/d(bump)"), ("has no unit", "deg/m")),
+        (*slope("d(toe)/d(bump) [deg]"), ("'deg' is no unit of a derivative of wheel.toe", "rad/mm")),
+        (*slope("d(velocity.wheel_centre.x)/d(bump) [mm/mm]"), ("is a derivative of velocity", "coordinate")),
     ],
 )
 def test_a_wrong_map_or_file_is_refused_with_its_place(
