@@ -146,8 +146,10 @@ def _digits(table: pd.DataFrame) -> str:
     if ends.empty:
         return ""
     digits = np.log10(ends.value["last"] / ends.value["first"]).max()
-    times = (ends.time["first"] / ends.time["last"]).groupby("way").agg(["min", "max"]).sort_values("max")
-    told = [f"{one.Index} {_span(one.min, one.max, '{:.2g}'.format)}" for one in times[:LISTED].itertuples()]
+    times = (ends.time["first"] / ends.time["last"]).rename("times").reset_index()
+    who = times.way.where(times.way.isin(OURS), "other ways")
+    spans = times.groupby(who, sort=False).times.agg(["min", "max"])
+    told = [f"{one.Index} {_span(one.min, one.max, '{:.2g}'.format)}" for one in spans.itertuples()]
     return (
         f"From the coarsest setting to the finest, {digits:.0f} digits on, a pose takes so many times as "
         f"long: {', '.join(told)}."
