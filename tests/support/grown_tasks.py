@@ -13,19 +13,23 @@ from validate.cost.table import Row
 from validate.cost.way import LeftOut
 
 LEAST = 1
+_LOADED: list[bool] = []
 
 
 def ending(how: str, taken: int, loading: int, row: Row, size: int) -> Runner:
-    """Work that ends its process as it is told; the least only takes memory and gives it back, as imports do.
+    """Work that ends its process as it is told; its first run takes memory and gives it back, as imports do.
 
     Args:
-        taken, loading: bytes, of the work and of the least one.
+        taken, loading: bytes, of the work and of a process's first.
     """
     position = {"error": 1e-9, "rms": 5e-10, "radius": 1e-20, "numbers": 3}
 
     def solve() -> int:
-        if size == LEAST:
-            return int(np.ones(loading // 8).sum())
+        if not _LOADED:
+            _LOADED.append(True)
+            loaded = int(np.ones(loading // 8).sum())
+            if size == LEAST:
+                return loaded
         match how:
             case "killed":
                 os.kill(os.getpid(), signal.SIGKILL)

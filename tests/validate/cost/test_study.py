@@ -39,7 +39,11 @@ def test_every_setting_is_raced_for_positions_alone_and_for_everything() -> None
     assert count == {"series": 24, "absolute": 2}
     bare = study_scene("bare", STEER.positions_only())
     assert len(runners_of(bare, ways)) == 13
+    alone = next(one for one in runners if one.row.quantity == "position")
+    assert alone.set_up()().numbers.keys() == {"position"}
     rows = race(runners_of(STEER, ways, quick=True), FEW)
+    keys = [(row.way, row.setting, row.quantity) for row in rows]
+    assert len(set(keys)) == len(keys)
     quantities = {row.quantity for row in rows if row.way == "series"}
     assert quantities == {"position", *dict.fromkeys(row.quantity for row in rows)}
     assert {"velocity", "acceleration", "angular_velocity", "angular_acceleration"} < quantities
