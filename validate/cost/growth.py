@@ -10,7 +10,7 @@ solves it. Design number k is the same car in however large a batch.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -24,12 +24,11 @@ from validate.cost.chain import ROCKERS, STOP, chain_scene, closed_form
 from validate.cost.errors import judge, summed_up
 from validate.cost.race import Found, NoNumbers, Runner
 from validate.cost.scenes import StudyScene, study_instants
-from validate.cost.table import Row
+from validate.cost.table import Row, Store
 from validate.cost.way import Answer, Way
 from validate.cost.ways.registry import ways_named
 
 Array = NDArray[np.float64]
-Measure = Callable[[Make, int, Row, Limits], list[Row]]
 
 GROWING = ("series", "newton", "absolute", "relative", "mujoco")
 """The ways that are measured: other ways grow as one of these does."""
@@ -73,22 +72,18 @@ class Line:
     make: Make
     least: int
 
-    def rows(
-        self, known: Sequence[Row], limits: Limits, measure: Measure = measure_apart
-    ) -> Iterator[list[Row]]:
-        """Those of each size that is not known yet; a known row tells what larger sizes take."""
-        seen = [row for row in known if row.line == self.row.line]
-        for size in self.sizes:
-            if any(row.size == size for row in seen):
-                continue
-            row = replace(self.row, size=size, poses=self.poses * size or len(CHAIN_INSTANTS))
-            reason = _too_much(size, [one for one in seen if (one.size or 0) < size], limits)
-            if reason:
-                found = [replace(row, poses=0, verdict="left out", reason=reason)]
-            else:
-                found = measure(self.make, self.least, row, limits)
-            seen += found
-            yield found
+
+def grow(line: Line, store: Store, limits: Limits) -> None:
+    """Measure each size that the store does not hold; a row that it holds tells what larger sizes take."""
+    for size in line.sizes:
+        row = replace(line.row, size=size, poses=line.poses * size or len(CHAIN_INSTANTS))
+        if store.has(row):
+            continue
+        smaller = [one for one in store.rows if one.line == row.line and (one.size or 0) < size]
+        if reason := _too_much(size, smaller, limits):
+            store.write([replace(row, poses=0, verdict="left out", reason=reason)])
+        else:
+            store.write(measure_apart(line.make, line.least, row, limits))
 
 
 def lines_of(study: StudyScene, ways: Sequence[Way], quick: bool = False) -> list[Line]:

@@ -53,8 +53,7 @@ def measure(study: Study, store: Store, progress: Progress = silent) -> list[Row
     growing = growth.lines_of(study.scenes[0], study.ways, study.quick) if "growth" in study.parts else []
     for i, line in enumerate(growing):
         progress(f"growth in {line.row.against}: {line.row.scene}, {line.row.way}", i, len(growing))
-        for rows in line.rows(store.rows, limits):
-            store.write(rows)
+        growth.grow(line, store, limits)
     lines |= {line.row.line for line in growing}
     return [row for row in store.rows if row.line in lines]
 

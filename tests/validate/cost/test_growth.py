@@ -1,6 +1,6 @@
 """How cost grows: a size in a process of its own, what is left out, and the chain with its closed form."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -19,13 +19,14 @@ from validate.cost.growth import (
     chain_errors,
     designs_one_by_one,
     designs_together,
+    grow,
     lines_of,
     long_chain,
     many_instants,
 )
 from validate.cost.race import Effort, NoNumbers, race
 from validate.cost.scenes import own_scene, study_scene
-from validate.cost.table import Row
+from validate.cost.table import Row, Store, measured_here
 from validate.cost.way import Answer
 from validate.cost.ways.registry import WAYS
 
@@ -75,47 +76,40 @@ def test_peak_memory_is_the_runs_own_and_not_of_those_who_started_it() -> None:
     assert nothing <= 4 * MB
 
 
-def in_proportion(size: int) -> tuple[float, int]:
-    return 1e-4 * size, 1000 * size
+def grown(
+    patch: pytest.MonkeyPatch, sizes: tuple[int, ...], measure: Callable[[Row], list[Row]]
+) -> tuple[list[Row], list[int | None]]:
+    """The rows of a line whose sizes take what somebody says, and the sizes that were measured."""
+    measured: list[int | None] = []
+
+    def measure_apart(make: Any, least: int, row: Row, limits: Limits) -> list[Row]:
+        measured.append(row.size)
+        return measure(row)
+
+    patch.setattr(growth, "measure_apart", measure_apart)
+    store = Store(None, measured_here())
+    grow(Line(replace(ROW, size=None), sizes, 1, long_chain, 6), store, Limits(20.0))
+    return store.rows, measured
 
 
-class Planned:
-    """Measures nothing: a run takes what a law says, s and bytes."""
-
-    def __init__(self, law: Callable[[int], tuple[float, int]] = in_proportion) -> None:
-        self.law = law
-        self.measured: list[int | None] = []
-
-    def __call__(self, make: Any, least: int, row: Row, limits: Limits) -> list[Row]:
-        self.measured.append(row.size)
-        seconds, bytes_ = self.law(row.size or 0)
-        time = {"time": seconds / row.poses, "lower": 0.0, "upper": 0.0, "set_up": 0.0}
-        return [replace(row, quantity="position", peak_bytes=bytes_, **time)]
+def taking(row: Row, seconds: float) -> list[Row]:
+    return [replace(row, quantity="position", time=seconds / row.poses, set_up=0.0)]
 
 
-def line(sizes: tuple[int, ...]) -> Line:
-    return Line(replace(ROW, size=None), sizes, 1, long_chain, 6)
-
-
-def rows_of(one: Line, measure: Any = None, known: Sequence[Row] = ()) -> list[Row]:
-    return [row for rows in one.rows(known, Limits(20.0), measure or Planned()) for row in rows]
-
-
-def test_what_would_take_too_long_is_left_out_with_the_reason() -> None:
-    planned = Planned(lambda size: (2.0 * size / 1000, 0))
-    found = rows_of(line((100, 1000, 100_000, 1_000_000)), planned)
-    assert planned.measured == [100, 1000]
+def test_what_would_take_too_long_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    found, measured = grown(
+        monkeypatch, (100, 1000, 100_000, 1_000_000), lambda row: taking(row, 0.002 * row.poses)
+    )
+    assert measured == [100, 1000]
     assert [row.verdict for row in found] == ["measured", "measured", "left out", "left out"]
     assert found[2].reason == "it would take some 2e+02 s, as 1000 say; allowed: 20 s"
 
 
-def test_sizes_above_one_that_failed_are_left_out() -> None:
-    def measure(make: Any, least: int, row: Row, limits: Limits) -> list[Row]:
-        if row.size == 1000:
-            return [replace(row, verdict="failed", reason="died")]
-        return Planned()(make, least, row, limits)
+def test_sizes_above_one_that_failed_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    def measure(row: Row) -> list[Row]:
+        return [replace(row, verdict="failed", reason="died")] if row.size == 1000 else taking(row, 1e-3)
 
-    found = rows_of(line((100, 1000, 10_000)), measure)
+    found, _ = grown(monkeypatch, (100, 1000, 10_000), measure)
     assert [(row.size, row.verdict, row.reason) for row in found] == [
         (100, "measured", ""),
         (1000, "failed", "died"),

@@ -97,7 +97,7 @@ def test_growth_goes_on_with_the_size_that_it_was_stopped_at(
         done.append(row.size)
         return [replace(row, quantity="position", time=1e-9, set_up=0.0)]
 
-    monkeypatch.setattr(growth.Line.rows, "__defaults__", (planted,))
+    monkeypatch.setattr(growth, "measure_apart", planted)
     study = Study(("growth",), (STEER,), ways_named(["series"]), quick=True)
     path = tmp_path / "rows"
     with pytest.raises(KeyboardInterrupt):
