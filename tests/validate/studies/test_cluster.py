@@ -92,19 +92,20 @@ def ran(study: Any, folder: Path, other: Any, told: Any = lambda done: None) -> 
         cluster.run(study, study.tasks, adding_to(folder, study), client, told)
 
 
-def test_a_worker_of_several_tasks_is_refused(tmp_path: Path) -> None:
-    with (
-        cluster_of(n_workers=1, threads_per_worker=2, processes=False) as other,
-        pytest.raises(UsageError, match=r"takes 2 tasks at once.* --nthreads 1"),
-    ):
-        ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
-
-
-def test_a_cluster_without_workers_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("workers", "threads", "words"),
+    [
+        (1, 2, r"takes 2 tasks at once.* --nthreads 1"),
+        (0, 1, r"has no worker after .* dask worker .* --nthreads 1"),
+    ],
+)
+def test_a_cluster_that_cannot_work_a_study_out_is_refused(
+    workers: int, threads: int, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(cluster, "FIRST_WORKER", 0.2)
     with (
-        cluster_of(n_workers=0, processes=False) as other,
-        pytest.raises(UsageError, match=r"has no worker after .* dask worker .* --nthreads 1"),
+        cluster_of(n_workers=workers, threads_per_worker=threads, processes=False) as other,
+        pytest.raises(UsageError, match=words),
     ):
         ran(counted(2, tmp_path / "marks"), tmp_path / "records", other)
 

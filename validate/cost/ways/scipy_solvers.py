@@ -32,12 +32,7 @@ TOLERANCE = 1e-9  # mm, of the start, which is assembled before
 
 
 class SolverStopped(Exception):
-    """A solver of SciPy ended without success, or on another side than is drawn."""
-
-    def __init__(self, solver: str, instant: float, problem: str) -> None:
-        self.solver = solver
-        self.instant = instant
-        super().__init__(f"scipy.optimize.{solver} at t = {instant:.6g} s: {problem}")
+    """A solver of SciPy ended without success, or on another side than is drawn; says when, and how."""
 
 
 def in_scipy(
@@ -80,17 +75,17 @@ def in_scipy(
     for i, instant in enumerate(times.tolist()[1:], 1):
         here[n:] = known[i, 0]
         found = solve(lambda u: system.residual(at(u)), here[:n].copy())
-        if not found.success:
-            raise SolverStopped(solver, instant, " ".join(str(found.message).split()))
         left = float(np.abs(found.fun).max())
-        if not left <= 10.0 * size + NOISE:
-            # A least sum of squares may be none of the equations' roots.
-            raise SolverStopped(solver, instant, f"the equations are left at {left:.3g}")
+        # A least sum of squares may be none of the equations' roots.
+        if not (found.success and left <= 10.0 * size + NOISE):
+            words = f"the equations are left at {left:.3g}" if found.success else str(found.message)
+            raise SolverStopped(f"scipy.optimize.{solver} at t = {instant:.6g} s: {' '.join(words.split())}")
         y[i] = at(found.x)
         residuals, jacobians = residuals + int(found.nfev), jacobians + int(found.get("njev") or 0)
     signs = np.linalg.slogdet(system.jacobian(y))[0]
     for instant in times[signs != signs[0]][:1]:
-        raise SolverStopped(solver, float(instant), "it came to another assembly than is drawn")
+        words = "it came to another assembly than is drawn"
+        raise SolverStopped(f"scipy.optimize.{solver} at t = {instant:.6g} s: {words}")
     work = Work(residuals=residuals, factorisations=jacobians)
     return with_rates(system, y, known, times, derivative, term, work, np.full(len(times), np.inf))
 
