@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, TypeVar
 
@@ -205,16 +205,13 @@ def found(rows: Sequence[Row], seed: int) -> Findings:
         there = checks[checks["part"] == part]
         data[part] = {str(words): _looseness(here) for words, here in there.groupby("suspension", sort=False)}
         parts += ["", f"{len(there)} {what}; medians, unless it says largest", _by_distance(there)]
-        for name in ("share", "loss") if len(there) else ():
-            worst = there.iloc[[int(there[name].to_numpy().argmax())]].to_dict("records")[0]
-            parts.append(f"largest {'error / bound' if name == 'share' else name}: {_case(worst)}")
     parts += [
         "",
         "loss = error / (eps (condition size + far)), far the distance from the scene's origin",
         f"refused: {len(refusals)}",
         *(f"  {count}  {reason}" for reason, count in reasons),
         f"bounds below the error: {len(broken)}",
-        *(f"  {_case(row)}" for row in broken.to_dict("records")),
+        *(f"  number {row.number}, {row.suspension}: {row.share:.3g} times" for row in broken.itertuples()),
     ]
     return Findings(tuple(parts), data, ExitStatus.AGREE if broken.empty else ExitStatus.DISAGREE)
 
@@ -261,12 +258,3 @@ def _looseness(checks: pd.DataFrame) -> dict[str, Any]:
         "largest_loss": float(checks["loss"].max()),
         "largest_error_over_bound": float(checks["share"].max()),
     }
-
-
-def _case(row: Mapping[Hashable, Any]) -> str:
-    return (
-        f"number {row['number']}, {row['suspension']}, "
-        f"{row['driven']} {row['distance']:.2e} from the end ({row['lock']}), "
-        f"t = {row['instant']!r} s: error / bound {row['share']:.3g}, error {row['error']:.2e} mm, "
-        f"condition {row['condition']:.2e}, loss {row['loss']:.2g}"
-    )

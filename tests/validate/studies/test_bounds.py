@@ -74,4 +74,4 @@ def test_a_bound_below_the_error_is_found_and_ends_with_status_1(monkeypatch: py
     (row,) = held_pose(beside(near_pose(4), 1e-4))
     findings = bounds().summary([{"part": "held", "number": 0, **row}])
     assert findings.status == ExitStatus.DISAGREE
-    assert "bounds below the error: 1" in text_of(findings.parts)
+    assert "bounds below the error: 1\n  number 0, " in text_of(findings.parts)
