@@ -10,6 +10,7 @@ anything, nor have asked for anything but itself.
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -42,6 +43,10 @@ PAPER = {"width": 680, "height": 1009}
 LOAD = 8.0
 # The guidelines for accessible content (WCAG 2.2, 1.4.3 and 1.4.11) on text and on lines.
 TEXT, LINES = 4.5, 3.0
+# Functions of `page.js` beside this file by their names.
+SCRIPTS = dict(
+    re.findall(r"^//: (\w+)\n(.+?)(?=^//:|\Z)", Path(__file__).with_suffix(".js").read_text(), re.M | re.S)
+)
 
 
 @dataclass
@@ -123,31 +128,7 @@ def page(report: Opened) -> Page:
 
 def settled(page: Page, folded: int = 1) -> None:
     """Of each section so many that open are open, all plots drawn for the window as it is."""
-    page.evaluate(
-        """async (folded) => {
-            for (const section of document.querySelectorAll("section"))
-                section.querySelectorAll("details").forEach((one, i) => { one.open = i < folded; });
-            const start = performance.now();
-            // A page that is behind another one has no frames: half a second must do there.
-            const frame = () => new Promise((go, stop) => {
-                if (performance.now() - start > 60_000) stop(new Error("a plot is not drawn"));
-                requestAnimationFrame(go);
-                setTimeout(go, 500);
-            });
-            for (const one of document.querySelectorAll(".spatial > svg, [data-plot]")) {
-                if (!one.checkVisibility()) continue;
-                one.scrollIntoView();
-                await frame();
-                const as_wide = () => one.dataset.plot === undefined
-                    || Number(one.querySelector(".main-svg")?.getAttribute("width")) === one.clientWidth;
-                while (!as_wide()) await frame();
-            }
-            scrollTo(0, 0);
-            await frame();
-            await frame();
-        }""",
-        folded,
-    )
+    page.evaluate(SCRIPTS["settled"], folded)
 
 
 def until(page: Page, what: str) -> None:
@@ -320,21 +301,7 @@ def test_each_model_can_be_taken_away(page: Page) -> None:
 
 def test_names_of_points_cover_neither_each_other_nor_the_joints(page: Page) -> None:
     settled(page)
-    covered = page.evaluate(
-        """() => [...document.querySelectorAll(".spatial > svg")]
-            .filter((svg) => svg.checkVisibility()).flatMap((svg) => {
-            const meet = (a, b) =>
-                a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
-            // The letters reach less high and deep than their line.
-            const inner = ({ left, right, top, bottom }) =>
-                ({ left, right, top: top + 3, bottom: bottom - 3 });
-            const boxes = (kind) => [...svg.querySelectorAll(kind)]
-                .map((one) => one.getBoundingClientRect());
-            const names = boxes(":scope > text").map(inner), joints = boxes(".joint");
-            return names.flatMap((one, i) =>
-                [...names.slice(0, i), ...joints].filter((two) => meet(one, two)));
-        })"""
-    )
+    covered = page.evaluate(SCRIPTS["covered_names"])
     assert covered == []
 
 
@@ -443,53 +410,6 @@ def test_the_first_tab_leads_past_the_list_of_sections(page: Page) -> None:
 
 # Colours.
 
-CONTRAST = """() => {
-    const context = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
-    const rgb = (colour) => {
-        context.clearRect(0, 0, 1, 1);
-        context.fillStyle = colour;
-        context.fillRect(0, 0, 1, 1);
-        return [...context.getImageData(0, 0, 1, 1).data];
-    };
-    const light = ([r, g, b]) => [r, g, b].map((v) => v / 255)
-        .map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
-        .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
-    const contrast = (a, b) => {
-        const [low, high] = [light(a), light(b)].sort((a, b) => a - b);
-        return (high + 0.05) / (low + 0.05);
-    };
-    const behind = (one) => {
-        for (let at = one; at; at = at.parentElement) {
-            const colour = rgb(getComputedStyle(at).backgroundColor);
-            if (colour[3] === 255) return colour;
-        }
-        return [255, 255, 255];
-    };
-    const seen = (one) => one.checkVisibility({ visibilityProperty: true });
-    const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    const found = { text: [], line: [], cells: 0 };
-    while (texts.nextNode()) {
-        const one = texts.currentNode.parentElement;
-        if (!texts.currentNode.data.trim() || one.closest("script, style, noscript") || !seen(one)) continue;
-        const style = getComputedStyle(one);
-        const colour = rgb(one instanceof SVGElement ? style.fill : style.color);
-        // Behind a number of the heat map is a cell of any colour of its scale, which no style knows.
-        const cells = one.closest(".heatmap-label")
-            ? JSON.parse(one.closest("[data-plot]").dataset.plot).data[0].colorscale.map((at) => rgb(at[1]))
-            : [behind(one)];
-        const least = Math.min(...cells.map((cell) => contrast(colour, cell)));
-        found.text.push([least, texts.currentNode.data.trim().slice(0, 40)]);
-        found.cells += cells.length > 1;
-    }
-    const strokes = ".tube, .thread, .drawn, .joint, .js-line, .points path, .legendlines path, .triad line";
-    for (const one of document.querySelectorAll(strokes)) {
-        const style = getComputedStyle(one);
-        if (!seen(one) || style.stroke === "none" || parseFloat(style.strokeWidth) === 0) continue;
-        found.line.push([contrast(rgb(style.stroke), behind(one)), one.getAttribute("class")]);
-    }
-    return found;
-}"""
-
 
 def require_contrast(found: Any) -> None:
     assert len(found["text"]) > 500
@@ -503,26 +423,11 @@ def require_contrast(found: Any) -> None:
 def test_text_and_lines_stand_out_of_what_is_behind_them(page: Page, scheme: Any, behind: Any) -> None:
     page.emulate_media(color_scheme=scheme)
     settled(page)
-    require_contrast(page.evaluate(CONTRAST))
+    require_contrast(page.evaluate(SCRIPTS["contrast"]))
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == f"rgb{behind}"
 
 
 # Windows, phones and paper.
-
-CUT = """() => [...document.querySelectorAll("[data-plot]")].flatMap((plot) => {
-    const box = plot.getBoundingClientRect();
-    return [...plot.querySelectorAll("text")].filter((text) => {
-        const one = text.getBoundingClientRect();
-        return text.checkVisibility() && one.width && (one.left < box.left - 1 || one.right > box.right + 1
-            || one.top < box.top - 1 || one.bottom > box.bottom + 1);
-    }).map((text) => text.textContent);
-})"""
-
-OUTSIDE = """() => [...document.querySelectorAll("main *")].filter((one) => {
-    const box = one.getBoundingClientRect();
-    return one.checkVisibility() && box.width && !one.closest(".scroll") && !one.closest("svg svg, .plot svg")
-        && box.right > document.documentElement.clientWidth + 1;
-}).map((one) => one.outerHTML.slice(0, 80))"""
 
 
 @pytest.mark.parametrize("size", [WINDOW, PHONE], ids=["window", "phone"])
@@ -530,8 +435,8 @@ def test_nothing_is_wider_than_the_window_and_no_label_is_cut(page: Page, size: 
     page.set_viewport_size(size)
     settled(page)
     assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
-    assert page.evaluate(OUTSIDE) == []
-    assert page.evaluate(CUT) == []
+    assert page.evaluate(SCRIPTS["outside"]) == []
+    assert page.evaluate(SCRIPTS["cut"]) == []
 
 
 def test_a_table_wider_than_a_phone_says_so_until_its_end_is_seen(page: Page) -> None:
@@ -560,16 +465,7 @@ def test_on_a_phone_every_entry_of_a_long_legend_is_seen(browser: Browser, tmp_p
     (tmp_path / "index.html").write_text(page_of(run, {}), encoding="utf-8")
     phone = opened(browser, tmp_path, viewport=PHONE)
     settled(phone.page)
-    shown = phone.page.evaluate(
-        """() => {
-            const plot = document.querySelector("[data-plot]");
-            const box = plot.querySelector(".legend .bg").getBoundingClientRect();
-            return [...plot.querySelectorAll(".legendtext")].filter((one) => {
-                const { top, bottom } = one.getBoundingClientRect();
-                return top > box.top - 2 && bottom < box.bottom + 2;
-            }).map((one) => one.textContent);
-        }"""
-    )
+    shown = phone.page.evaluate(SCRIPTS["legend_shown"])
     phone.page.context.close()
     assert sorted(shown) == sorted(way.name for way in WAYS)
     assert phone.complaints == []
@@ -581,15 +477,9 @@ def test_paper_shows_all_of_it_in_ink_on_white_and_in_plots_no_wider_than_their_
     page.set_viewport_size(PAPER)
     page.emulate_media(media="print", color_scheme="dark")
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    plots = page.evaluate(
-        """() => [...document.querySelectorAll("[data-plot]")].map((plot) => {
-            const [inner, outer] = [plot.querySelector(".main-svg"), plot]
-                .map((one) => one?.getBoundingClientRect());
-            return inner && inner.width <= outer.width + 1 && inner.height <= outer.height + 1;
-        })"""
-    )
-    cut = page.evaluate(CUT)
-    contrast = page.evaluate(CONTRAST)
+    plots = page.evaluate(SCRIPTS["plots_within"])
+    cut = page.evaluate(SCRIPTS["cut"])
+    contrast = page.evaluate(SCRIPTS["contrast"])
     behind = page.evaluate("getComputedStyle(document.body).backgroundColor")
     shown = [page.locator(one).first.is_visible() for one in ("nav", ".play", ".spatial input")]
     page.evaluate("dispatchEvent(new Event('afterprint'))")
