@@ -1,18 +1,16 @@
 """A wheel on one arm whose hinge stands on a carriage, on a car that rolls and pitches, in many digits.
 
 The arm turns by t about the line from pivot to pivot_end and the carriage travels by s, so that a point of
-the arm is at  P + R(t) (p - P) + s d;  then the car turns. Derivatives are mpmath's.
+the arm is at  P + R(t) (p - P) + s d;  then the car turns.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from effects_by_hand import Car, by_hand
 from many_digits import vector
-from mpmath import cos, diff, mp, mpf, sin, sqrt
+from mpmath import cos, sin, sqrt
 
-DIGITS = 50
 RADIUS = 310.0
 CAR: dict[str, Any] = {
     "axle": "front",
@@ -106,56 +104,3 @@ def place(name: str, values: Mapping[str, Any], turns: tuple[str, ...] = BOTH) -
         middle = vector(plain()["points"][about])
         p = middle + turned(vector(axis), values[turn], p - middle)
     return p
-
-
-def numbers(effects: Sequence[str], given: Mapping[str, list[float]], time: float) -> dict[str, mpf]:
-    """The numbers of effects, the inputs being polynomials of time, rad and mm."""
-    with mp.workdps(DIGITS):
-        cars = {by: _car(given, time, by) for by in ("steer", "turn", "roll")}
-        of_way = {"rack": "steer", "roll": "roll"}
-        return {
-            n: one
-            for effect in effects
-            for of in by_hand(effect, cars[of_way.get(effect.rpartition("_by_")[2], "turn")]).values()
-            for n, (one,) in of.items()
-        }
-
-
-def _car(given: Mapping[str, list[float]], time: float, by: str) -> Car:
-    """At a time, with what changes by an input."""
-
-    def law(t: Any) -> dict[str, Any]:
-        return {n: sum(mpf(c) * t**k for k, c in enumerate(law)) for n, law in given.items()}
-
-    here = law(mpf(time))
-
-    def slope(of: Callable[[Any], Any], at: Any) -> tuple[Any, ...]:
-        return tuple(diff(lambda x, i=i: of(x)[i], at) for i in range(3))
-
-    def driven(name: str, turns: tuple[str, ...]) -> tuple[Any, ...]:
-        return slope(lambda x: place(name, {**here, by: x}, turns), here[by])
-
-    def moved(name: str, turns: tuple[str, ...]) -> tuple[Any, ...]:
-        return slope(lambda t: place(name, law(t), turns), mpf(time))
-
-    points = plain()["points"]
-    hinge = place("pivot_end", here) - place("pivot", here)
-    zero = (mpf(0),) * 3
-    return Car(
-        points={n: [tuple(place(n, here)), moved(n, BOTH)] for n in points},
-        wheel_axis=tuple(ROLES["wheel_axis"]),
-        steering_axis=tuple(ROLES["steering_axis"]),
-        damper=tuple(ROLES["damper"]),
-        wheel_radius=mpf(RADIUS),
-        in_chassis={n: tuple(place(n, here, ())) for n in points},
-        rates_in_chassis={n: moved(n, ()) for n in points},
-        drawn={n: tuple(vector(p)) for n, p in points.items()},
-        moving={n: driven(n, BOTH) for n in points},
-        moving_in_chassis={n: driven(n, ()) for n in points},
-        driven_turn=tuple(hinge / sqrt(hinge @ hinge)),
-        origin=zero,
-        data={n: mpf(v) for n, v in CAR.items() if n != "axle"} | {"axle": mpf(-1)},
-        up=(mpf(0), mpf(0), mpf(1)),
-        right=(mpf(0), mpf(1), mpf(0)),
-        outboard=(mpf(0), mpf(-1), mpf(0)),
-    )
