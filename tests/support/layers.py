@@ -10,12 +10,14 @@ from __future__ import annotations
 import ast
 import sys
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("pointcoord", "absolute", "validate")
 
 
+@cache
 def modules(root: Path, package: str) -> dict[str, set[str]]:
     """Every module of a package with the modules that it imports, at any depth of its code."""
     found = {}

@@ -10,7 +10,6 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from math import perm
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +17,13 @@ import lotus_front
 import mpmath
 import numpy as np
 from exact_states import exact_states
-from many_digits import DIGITS, Array, Points, unit, vector
+from many_digits import DIGITS, Array, Points, number, unit, vector
 from mechanism_closed_forms import closed_form
 from mechanism_files import SCENES, Plain, Tables, mechanism_file, plain, scene_file
-from mpmath import atan2, mp, mpf, sin
+from mpmath import atan2, mp, mpf
 
 from pointcoord import Scene
+from validate.formulations.reference_solution import inputs_at
 
 TABLES = Path(__file__).parents[1] / "mechanisms" / "tables"
 MIRROR = vector([1, -1, 1])
@@ -70,28 +70,19 @@ class Check:
         return self.deviations([position for position, *_ in states])
 
 
-def value(law: Tables, time: Any, derivative: int = 0) -> Any:
-    """An input of a scene at a time, or a time derivative of it, in many digits."""
-    t = mpf(time)
-    if "sine" in law:
-        wave = {key: mpf(number) for key, number in law["sine"].items()}
-        w = wave["angular_frequency"]
-        turn = w * t + wave.get("phase", 0) + derivative * mp.pi / 2
-        return (0 if derivative else wave.get("offset", 0)) + wave["amplitude"] * w**derivative * sin(turn)
-    coefficients = law.get("polynomial", [law.get("constant")])
-    return sum(perm(k, derivative) * mpf(c) * t ** max(k - derivative, 0) for k, c in enumerate(coefficients))
-
-
 def instants(scene: str, count: int) -> list[int]:
     """Indices of some samples of a scene, the first and the last among them."""
     return [round(k) for k in np.linspace(0, scene_file(scene)["time"]["samples"] - 1, count)]
 
 
 def scene_inputs(scene: str, indices: Sequence[int], derivative: int = 0) -> list[Inputs]:
-    """What a scene drives at some of its samples, or a time derivative of that."""
-    laws, times = scene_file(scene)["inputs"], Scene.load(scene).instants
+    """What a scene drives at some of its samples, or a time derivative of that, in many digits."""
+    asked = Scene.load(scene)
     with mp.workdps(DIGITS):
-        return [{name: value(law, times[k], derivative) for name, law in laws.items()} for k in indices]
+        return [
+            {name: number(law[derivative]) for name, law in inputs_at(asked, asked.instants[k]).items()}
+            for k in indices
+        ]
 
 
 def right_form(scene: str, path: Sequence[Inputs]) -> list[Points]:

@@ -11,9 +11,7 @@ from pointcoord.effects.registry import EFFECTS
 from pointcoord.method import METHODS
 from pointcoord.simulation import effort, prepare_task, solve_by_series
 from pointcoord.time_functions import Polynomial, Sine, Table, TimeFunction
-from validate.comparison.compare import compare
 from validate.formulations.asked_numbers import per_second
-from validate.formulations.registry import formulation
 
 STRUT = ("strut_lower", "strut_rod_end", "strut_top")
 SAMPLES = 7
@@ -128,16 +126,6 @@ def test_the_plan_counts_what_is_solved_once_and_what_is_not_needed() -> None:
     assert (steer.moving, steer.still, steer.not_needed, steer.points_not_needed) == (6, 11, 0, ())
     assert (strut.moving, strut.still, strut.not_needed) == (11, 0, 6)
     assert strut.points_not_needed == ("tie_rod_outer", "tie_rod_inner", "wheel_centre")
-
-
-def test_the_absolute_model_gives_the_points_that_are_reported_and_agrees() -> None:
-    asked = scene("bounce", STRUT, ["velocity", "acceleration"])
-    second = formulation("absolute")
-    given = {quantity: set(names) for quantity, names in second.solve(asked).numbers.items() if names}
-    assert given == {quantity: set(STRUT) for quantity in ("position", "velocity", "acceleration")}
-    found = compare(asked, "pointcoord", second)
-    assert found.agreed
-    assert {row.name for row in found.rows} == set(STRUT)
 
 
 @pytest.mark.parametrize(

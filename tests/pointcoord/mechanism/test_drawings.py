@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from pointcoord import Scene, SceneError, simulate
+from pointcoord import AssemblyError, Scene, SceneError, simulate
 from pointcoord.results.closing import NOTICED
 
 CAR = dict(Scene.load("off-axis-strut").mechanism.points)
@@ -46,3 +46,28 @@ def test_one_percent_of_the_size_is_the_limit_of_closing(
     else:
         # The rod's end keeps its distance from the top, so that it moves a little more than across.
         assert simulate(scene).closing.largest == pytest.approx(far, rel=0.01)
+
+
+def test_a_drawing_too_crooked_to_close_is_refused_as_a_drawing(
+    make_scene: Callable[..., Scene], table: dict[str, tuple[float, ...]]
+) -> None:
+    # The strut's lower point 200 mm in front of its line: no input is to blame, the drawing is.
+    x, y, z = table["strut_lower"]
+    with pytest.raises(
+        AssemblyError, match=r"the drawing cannot be assembled.*; draw these nearer to closing"
+    ) as caught:
+        simulate(make_scene(points={**table, "strut_lower": (x - 200.0, y, z)}))
+    assert caught.value.reduce == ""
+    assert any("strut_lower" in name for name in caught.value.limits)
+
+
+def test_pieces_of_the_strut_that_would_turn_over_are_refused(
+    make_scene: Callable[..., Scene], table: dict[str, tuple[float, ...]]
+) -> None:
+    # The knuckle's piece points up the strut; drawn at 100 degrees to the rod and at 120 to the way from
+    # ball joint to top, it has no sense that both agree on.
+    x, y, z = table["lower_ball_joint"]
+    folded = {**table, "strut_lower": (x + 60.0, y, z - 6.0), "strut_rod_end": (420.0, -180.0, 466.0)}
+    with pytest.raises(AssemblyError, match=r"can close in two ways, .* turns over against") as caught:
+        simulate(make_scene(points=folded))
+    assert caught.value.problem.startswith("the drawing")

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.numerics import newton
 from pointcoord.numerics.newton import newton_refine
-from pointcoord.numerics.quadratic import Product, quadratic_map
 from pointcoord.solve.assembly import Pose, assemble
 
 Array = NDArray[np.float64]
@@ -43,21 +42,3 @@ def test_error_of_a_step_is_the_square_of_the_error_before(
     # factor of 2^5 in e the fitted order is off two by less than log2(1 + 3 / 256) / 5 twice.
     assert min(after) > 1000 * EPS
     assert abs(np.polyfit(np.log(before), np.log(after), 1)[0] - 2.0) < 0.01
-
-
-@pytest.mark.parametrize("start", [2.0, 1.2, 1.01, 0.9])
-def test_what_a_step_leaves_is_known_where_the_theorem_is_sharp(start: float) -> None:
-    """u^2 = 1 from above, which is the equation that Newton and Kantorovich's bound is reached by."""
-    # y = (u, w, 0, 1)
-    parabola = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], 1, 4)
-    y = np.array([start, 1.0, 0.0, 1.0])
-    after = (start + 1.0 / start) / 2.0
-    for start_of in (y, y[None]):
-        found = newton_refine(parabola, start_of, 0.0, np.inf)
-        assert found.converged
-        assert found.iterations == 1
-        assert found.y[..., 0] == pytest.approx(after, rel=4 * EPS)
-        # Five roundings of numbers near 1 in what is left.
-        if start > 1.0:
-            assert found.left == pytest.approx(after - 1.0, abs=16 * EPS)
-        assert after - 1.0 <= found.left + 16 * EPS
