@@ -3,9 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-import numpy as np
 import pytest
-from every_effect import asking_for_all
+from every_effect import NUMBERS_OF_A_CAR, asking_for_all
 from sample_cars import PAPER_STRUT, SampleCar
 
 from pointcoord import Scene
@@ -30,9 +29,6 @@ def strut() -> Mechanism:
 def make_scene() -> Callable[..., Scene]:
     """A scene of some car; an input is a mapping as in a scene file, or the numbers of a polynomial."""
 
-    def as_input(value: Any) -> Any:
-        return value if isinstance(value, Mapping) else {"polynomial": [float(c) for c in value]}
-
     def make(
         arm_angle: Any = (0.8, 0.25, 0.0625),
         rack: Any = (0.0,),
@@ -45,41 +41,27 @@ def make_scene() -> Callable[..., Scene]:
         tolerance: float = 1e-9,
         car: SampleCar = PAPER_STRUT,
         points: Mapping[str, Any] | None = None,
-        up: Any = (0.0, 0.0, 1.0),
-        right: Any = (0.0, 1.0, 0.0),
-        side: str | None = None,
         closure: str | None = None,
     ) -> Scene:
-        inputs = {"arm_angle": as_input(arm_angle), "rack": as_input(rack)}
-        if heave is not None:
-            inputs["heave"] = as_input(heave)
-        located = {name: tuple(np.asarray(p, float).tolist()) for name, p in (points or car.points).items()}
-        scene = Scene.from_mapping(
-            {
-                "effects": effects or (),
-                "tolerance": tolerance,
-                "mechanism": {
-                    "type": car.type,
-                    "closure": closure or car.closure,
-                    "side": side or car.side,
-                    "points": located,
-                    "wheel_radius": 300.0,
-                    "car": {
-                        "axle": "front",
-                        "wheelbase": 2500.0,
-                        "centre_of_gravity_height": 500.0,
-                        "brake_share": 0.6,
-                        "drive_share": 0.3,
-                        "spring_rate": 30.0,
-                        "spring_free_length": 600.0,
-                    },
-                    "up": tuple(np.asarray(up, float).tolist()),
-                    "right": tuple(np.asarray(right, float).tolist()),
-                },
-                "inputs": inputs,
-                "time": {"start": float(start), "stop": float(stop), "samples": samples},
-            }
-        )
+        given = {"arm_angle": arm_angle, "rack": rack} | ({} if heave is None else {"heave": heave})
+        content = {
+            "effects": effects or (),
+            "tolerance": tolerance,
+            "mechanism": {
+                "type": car.type,
+                "closure": closure or car.closure,
+                "side": car.side,
+                "points": {n: tuple(map(float, place)) for n, place in (points or car.points).items()},
+                "wheel_radius": 300.0,
+                "car": {"axle": "front", **NUMBERS_OF_A_CAR},
+            },
+            "inputs": {
+                name: law if isinstance(law, Mapping) else {"polynomial": [*map(float, law)]}
+                for name, law in given.items()
+            },
+            "time": {"start": float(start), "stop": float(stop), "samples": samples},
+        }
+        scene = Scene.from_mapping(content)
         return scene if effects is not None else asking_for_all(scene)
 
     return make

@@ -1,4 +1,4 @@
-"""A car of every suspension and closure that can be solved, for tests that say the same of all."""
+"""A car of every suspension and closure that arm angle and rack drive, for tests that say the same of all."""
 
 from __future__ import annotations
 
@@ -7,47 +7,37 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from pointcoord import Scene
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.linkage.mechanism import Mechanism
 from pointcoord.linkage.topology import Topology
-from pointcoord.mechanism import mechanism_file
-from validate.cars.paper_car import PAPER
 
-Array = NDArray[np.float64]
 Points = Mapping[str, tuple[float, float, float]]
 AXES = {"up": (0.0, 0.0, 1.0), "right": (0.0, 1.0, 0.0)}
 
 
 @dataclass(frozen=True)
 class SampleCar:
-    """A car, its type and closure, and the side it is drawn for; axes x rearward, y right, z up; mm."""
+    """The car of a shipped scene, with its type and closure and the side it is drawn for; mm."""
 
+    name: str
     type: str
     closure: str
     side: str
     points: Points
 
-    @property
-    def name(self) -> str:
-        """For the names of tests."""
-        return f"{self.type} {self.closure}"
-
-    @property
-    def whole(self) -> Topology:
-        """The topology of a car that gives every point."""
-        return mechanism_file(self.type).topology(self.closure)
+    @classmethod
+    def of(cls, scene: str) -> SampleCar:
+        part = Scene.load(scene).mechanism
+        return cls(scene, str(part.type), part.closure, part.side, dict(part.points))
 
     @property
     def topology(self) -> Topology:
-        """The topology of this car."""
-        return mechanism_file(self.type).topology(self.closure, points=self.points)
+        return Scene.load(self.name).mechanism.file.topology(self.closure, points=self.points)
 
-    def mechanism(self, points: Mapping[str, object] | None = None) -> Mechanism:
-        """The mechanism of this car, or of one with other points."""
-        return build_mechanism(self.topology, points or self.points, AXES)
+    def mechanism(self) -> Mechanism:
+        return build_mechanism(self.topology, self.points, AXES)
 
     @property
     def drawn_inputs(self) -> dict[str, float]:
@@ -61,15 +51,8 @@ class SampleCar:
         }
 
 
-def _of_scene(name: str) -> SampleCar:
-    part = Scene.load(name).mechanism
-    return SampleCar(part.type, part.closure, part.side, dict(part.points))
-
-
-PAPER_STRUT = SampleCar("macpherson", "collinear", "left", dict(PAPER))
-GENERAL_STRUT = _of_scene("off-axis-strut")
-WISHBONE = _of_scene("double-wishbone")
-SAMPLES = (PAPER_STRUT, GENERAL_STRUT, WISHBONE)
+SAMPLES = tuple(map(SampleCar.of, ("bounce", "off-axis-strut", "double-wishbone")))
+PAPER_STRUT, GENERAL_STRUT, WISHBONE = SAMPLES
 
 by_car = pytest.mark.parametrize("car", SAMPLES, ids=lambda car: car.name)
 by_drawn_car = pytest.mark.parametrize("car", [GENERAL_STRUT, WISHBONE], ids=lambda car: car.name)

@@ -28,18 +28,7 @@ RANGES = {"arm_angle": (0.9, 1.1), "rack": (-10.0, 10.0)}
 
 
 def scene_of(car: SampleCar) -> Scene:
-    return Scene.from_mapping(
-        {
-            "mechanism": {
-                "type": car.type,
-                "closure": car.closure,
-                "side": car.side,
-                "points": {name: list(place) for name, place in car.points.items()},
-            },
-            "inputs": {"arm_angle": {"constant": 1.0}, "rack": {"constant": 0.0}},
-            "time": {"start": 0.0, "stop": 0.0, "samples": 1},
-        }
-    )
+    return Scene.load(car.name).model_copy(update={"effects": ()})
 
 
 @by_drawn_car

@@ -10,11 +10,8 @@ from hypothesis import strategies as st
 
 from pointcoord.numerics.branch import (
     NEAR,
-    PARTS,
-    below_one,
     hidden,
     on_branch,
-    regular_along,
     regular_on,
 )
 from pointcoord.numerics.counters import Work
@@ -68,13 +65,6 @@ def test_what_a_series_left_out_and_newtons_step_count_together(
     assert not ends_on_branch(*(share * above for share in shares), u=u)
 
 
-def regular(*u: float, length: float = 1.0) -> bool:
-    """Whether no branch is met where u is a polynomial of s, from its coefficients, up to a length."""
-    series = np.zeros((len(u), 4))
-    series[:, 0], series[0, 3] = u, 1.0
-    return bool(regular_along(PARABOLA, series, length))
-
-
 @given(u=st.floats(1e-3, 1e3), shares=st.tuples(*[st.floats(-1.0, 1.0)] * 3))
 def test_a_series_is_proven_regular_up_to_where_the_next_singular_pose_lies(
     u: float, shares: tuple[float, float, float]
@@ -86,38 +76,6 @@ def test_a_series_is_proven_regular_up_to_where_the_next_singular_pose_lies(
     assume(abs(least) > 1e-6)
     found = regular_on(PARABOLA, series[None, 0], series[1:, None], range(series.shape[-1]))
     assert found.tolist() == [least > 0.0]
-
-
-@given(seed=st.integers(0, 2**32 - 1), size=st.integers(1, 6), norm=st.floats(0.1, 3.0))
-def test_what_is_below_one_in_a_norm_has_no_eigenvalue_of_one_or_more(
-    seed: int, size: int, norm: float
-) -> None:
-    rng = np.random.default_rng(seed)
-    matrix = rng.uniform(0.0, 1.0, (size, size)) * rng.choice([0.0, 1.0], (size, size))
-    matrix *= norm / max(np.abs(np.linalg.eigvals(matrix)).max(), 1e-3)
-    radius = float(np.abs(np.linalg.eigvals(matrix)).max())
-    assume(abs(radius - 1.0) > 1e-6)
-    assert radius < 1.0 or not below_one(matrix)
-    # What a row sums to is one of the norms.
-    assert below_one(matrix) or matrix.sum(axis=-1).max() > 1.0 - 1e-8
-
-
-@pytest.mark.parametrize("degree", [1, 2, 3, 4])
-@pytest.mark.parametrize("place", [0.0, 0.01, 0.37, 0.5, 0.99, 1.0])
-def test_a_zero_of_the_determinant_is_met_whatever_its_order(degree: int, place: float) -> None:
-    # det C_u = 2 u = 2 (s - place)^degree; an even one leaves its sign as it was.
-    u = np.polynomial.Polynomial([-place, 1.0]) ** degree
-    assert not regular(*u.coef)
-    # Well before it there is none.
-    assert regular(*u.coef, length=0.5 * place) == (place > 0.0)
-
-
-def test_a_motion_that_turns_back_just_before_a_crossing_meets_none() -> None:
-    # det C_u = 2 ((s - 1/2)^2 + beside^2) has its zeros beside the real axis: as near as that shows in parts
-    # of the segment no such motion is refused, and nearer ones in shorter segments.
-    beside = 1.0 / PARTS[-1]
-    assert regular(0.25 + beside**2, -1.0, 1.0)
-    assert not regular(0.25, -1.0, 1.0)
 
 
 def test_a_pose_within_rounding_of_a_meeting_is_hidden_and_no_other() -> None:
