@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 from effects_by_hand import numbers
 from mpmath import atan, atan2, cos, mpf, sin, sqrt, tan, workdps
-from numpy.typing import NDArray
 from one_arm import DRAWN, tables
 from three_mechanics import DIGITS, assert_exact, assert_none, by_each, scene_of, solved_by
 
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from validate.formulations.protocol import Solution
 
-Array = NDArray[np.float64]
 # The carriage does not turn the arm, which has no screw axis by it.
 WRITTEN = tuple(
     name

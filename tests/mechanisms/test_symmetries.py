@@ -34,7 +34,6 @@ SCENES = (
     "pushrod-by-damper",
     "five-link",
     "semi-trailing-arm",
-    "axle-steer",
     "axle-roll",
     "spatial-four-bar",
     "slider-crank",

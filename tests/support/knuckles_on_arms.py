@@ -58,13 +58,13 @@ def hinged_knuckle(
     return _scene(tables, ARM | KING, load, radius, samples)
 
 
-def guided_knuckle(load: Mapping[str, Any], radius: float, samples: int = 5, driven: str = "near") -> Scene:
-    """It goes up and outwards under a load, with one of its two points on the line driven along it."""
-    points = ["near", "far"] if driven == "near" else ["far", "near"]
+def guided_knuckle(load: Mapping[str, Any], radius: float, samples: int = 5) -> Scene:
+    """It goes up and outwards under a load, with the nearer of its two points on the line driven along it."""
+    line = {"points": ["near", "far"], "body": "arm", "through": "guide", "along": "guide_end"}
     tables = {
         "bodies": GUIDED,
         "rods": {"link": ["link_inner", "beside"]},
-        "slides": {"guide": {"points": points, "body": "arm", "through": "guide", "along": "guide_end"}},
+        "slides": {"guide": line},
         "inputs": {"travel": {"height": "centre"}, "reach": {"travel": "guide"}},
     }
     return _scene(tables, ARM | GUIDE, load, radius, samples, reach={"polynomial": ["drawn", 30.0]})

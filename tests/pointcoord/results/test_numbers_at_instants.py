@@ -16,7 +16,6 @@ from pointcoord.results.by_series import ByChain
 
 EPS = float(np.finfo(float).eps)
 EVERY = ("velocity", "acceleration", "knuckle_rates", "wheel_angles", "toe", "caster", "damper")
-SCENES = ("bounce-on-a-heaving-chassis", "double-wishbone")
 RATES = ("velocity", "acceleration")
 AT_REST = {"constant": 1.5}
 Numbers = Mapping[str, Mapping[str, np.ndarray]]

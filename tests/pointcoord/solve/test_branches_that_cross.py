@@ -107,7 +107,7 @@ def test_cranks_that_pass_the_line_are_refused_there(
     refused_at_the_line(scene, method, count, ground, lambda t: drawn + rate * t, (np.pi - drawn) / rate)
 
 
-@by_method
+@by_solver
 @pytest.mark.parametrize(
     ("count", "ground", "turns"), [(1, 1000.0, 1.0), (2, 1400.0, 4.0), (3, 1000.0, 16.0)]
 )
@@ -124,7 +124,7 @@ def test_cranks_in_line_at_an_instant_are_refused(
     refused_at_the_line(scene, method, count, ground, angle, 1.0 / turns)
 
 
-@by_method
+@by_solver
 @few
 @given(count=loops, ground=grounds, drawn=st.floats(0.5, 2.5), beyond=st.sampled_from([0.0, 1e-3, 0.05, 0.5]))
 def test_cranks_that_pass_the_line_or_touch_it_and_turn_back_are_refused(

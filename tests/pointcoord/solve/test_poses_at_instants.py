@@ -22,11 +22,6 @@ from pointcoord.solve.proven_step import ROOM
 from pointcoord.time_functions import Sine, TimeFunction
 
 solve_by_chord = partial(solve_instants, chord=True)
-WAYS = {
-    "newton": solve_instants,
-    "chord": solve_by_chord,
-    "newton-cold": partial(solve_instants, cold=True),
-}
 SWING: dict[str, TimeFunction] = {"arm_angle": Sine(0.2, 2.0, 0.0, 1.5), "rack": Sine(10.0, 3.0)}
 # u^2 = w in y = (u, w, 0, 1), at u = w = 1.
 PARABOLA = quadratic_map([(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)))], unknowns=1, size=4)

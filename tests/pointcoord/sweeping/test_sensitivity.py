@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from every_effect import NUMBERS_OF_A_CAR
-from numpy.typing import NDArray
 from random_mechanisms import random_mechanism
 
 from pointcoord import Scene, SweepError, UnknownName, sensitivity, simulate, sweep
@@ -17,8 +16,6 @@ from pointcoord.scene.scene_file import LoadPart, built_in_scenes
 from pointcoord.sweeping.hardpoint_slopes import ByHardpoints
 from validate.formulations.reference_solution import inputs_at
 from validate.reference import solve_reference
-
-Array = NDArray[np.float64]
 
 TIME = {"start": 0.0, "stop": 0.4, "samples": 3}
 LOAD = LoadPart(force=(-310.0, 1870.0, 3105.0), moment=(1e4, -2e4, 3e4))
