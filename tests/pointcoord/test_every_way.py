@@ -48,7 +48,7 @@ def among(samples: Samples, which: Array) -> Samples:
 
 def among_close_instants(scene: Scene) -> tuple[Numbers, Numbers]:
     motion, own = simulate(scene, "series"), scene.instants
-    beside = own[:, None] + (own[-1] - own[0]) * np.linspace(-0.005, 0.005, 600)
+    beside = own[:, None] + (own[-1] - own[0]) * np.linspace(-0.005, 0.005, 1500)
     instants = np.unique(np.concatenate([np.clip(beside.ravel(), own[0], own[-1]), own]))
     samples = among(motion.at(instants), np.searchsorted(instants, own))
     return samples.numbers, bounds_of(motion.proof_of(samples, rates=True))
