@@ -15,6 +15,7 @@ from pointcoord.effects.point_states import FIRST_NUMBERED, STATES
 from pointcoord.effects.registry import EFFECTS, NUMBERS_OF_THE_CAR
 from pointcoord.mechanism import mechanism_file, shipped
 from pointcoord.mechanism.inputs import KINDS
+from pointcoord.mechanism.structure import PAIR_ROLES
 from pointcoord.scene.scene_file import MOVES, CarPart
 
 PACKAGE = Path(pointcoord.__file__).parent
