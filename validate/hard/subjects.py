@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
@@ -26,40 +26,52 @@ class Subject:
     Attributes:
         name: of its file, or of a car of `CARS`.
         car: as it is drawn.
-        kinds: of each input that is driven.
+        driven: the inputs that are driven.
         level: values of the inputs that motions are about, if not those of the drawing.
-        heaves: whether the chassis can heave.
         effects: that are asked for.
-        of_parts: whether other mechanisms are its parts.
     """
 
     name: str
     car: Car
-    kinds: Mapping[str, Kind]
+    driven: tuple[str, ...]
     level: Mapping[str, float] = field(default_factory=dict)
-    heaves: bool = True
     effects: tuple[str, ...] = ASKED
-    of_parts: bool = False
 
     @property
     def suffix(self) -> str:
         """What the names of its cases end with; nothing of the paper's strut."""
         return "" if self.name == "paper" else f"-{hyphens(self.name)}"
 
-    @property
-    def units(self) -> Mapping[str, str]:
-        """Of each input."""
-        return {name: "mm" if kind == "length" else "rad" for name, kind in self.kinds.items()}
-
     @cached_property
     def scene(self) -> Scene:
         """A scene of it, to look at."""
-        return Scene.from_mapping(self.absolute(dict.fromkeys(self.kinds, 0.0)))
+        return Scene.from_mapping(self.absolute(dict.fromkeys(self.driven, 0.0)))
+
+    @cached_property
+    def kinds(self) -> Mapping[str, Kind]:
+        """Of each input that is driven."""
+        inputs = self.scene.mechanism.structure.inputs
+        return {name: KINDS.get(inputs[name].kind, "length") for name in self.driven}
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Of each input that is driven."""
+        return {name: "mm" if kind == "length" else "rad" for name, kind in self.kinds.items()}
+
+    @property
+    def heaves(self) -> bool:
+        """Whether the chassis can heave."""
+        return "heave" in self.scene.mechanism.structure.inputs
+
+    @property
+    def of_parts(self) -> bool:
+        """Whether other mechanisms are its parts."""
+        return bool(self.scene.mechanism.file.mirrored)
 
     @property
     def plain(self) -> dict[str, Any]:
         """The mechanism as plain data."""
-        return self.scene.mechanism.plain(tuple(self.kinds))
+        return self.scene.mechanism.plain(self.driven)
 
     @cached_property
     def drawn(self) -> Mapping[str, float]:
@@ -119,36 +131,29 @@ def moved_by(law: Law, home: float) -> Law:
     return {"table": {**table, "values": [home + value for value in table["values"]]}}
 
 
-def _of_scene(scene: Scene) -> Subject:
-    """The mechanism of a scene, driven by the inputs that the scene drives."""
-    part = scene.mechanism
-    inputs = {name: one for name, one in part.structure.inputs.items() if name in scene.inputs}
-    kinds = {n: KINDS.get(one.kind, "length") for n, one in inputs.items() if not one.moves_the_chassis}
-    heaves = "heave" in part.structure.inputs
-    parts = bool(part.file.mirrored)
-    return Subject(part.name, as_given(scene), kinds, {}, heaves, tuple(scene.effects), parts)
-
-
-def _others() -> tuple[Subject, ...]:
-    """Every other mechanism that is shipped, as the first scene of it draws it."""
-    first: dict[str, Scene] = {}
+def _others() -> Iterator[Subject]:
+    """Every other mechanism that is shipped, as the first scene of it draws it, driven as there."""
+    seen = {car.suspension for car in CARS.values()}
     for scene in map(Scene.load, built_in_scenes()):
-        first.setdefault(scene.mechanism.name, scene)
-    cars = {car.suspension for car in CARS.values()}
-    return tuple(_of_scene(scene) for name, scene in first.items() if name not in cars)
+        name, inputs = scene.mechanism.name, scene.mechanism.structure.inputs
+        if name not in seen:
+            seen.add(name)
+            driven = (n for n, one in inputs.items() if n in scene.inputs and not one.moves_the_chassis)
+            yield Subject(name, as_given(scene), tuple(driven), {}, tuple(scene.effects))
 
 
-ARM_AND_RACK: Mapping[str, Kind] = {"arm_angle": "angle", "rack": "length"}
 LEVEL = {"arm_angle": SQUARE, "rack": 0.0}
-OF_CARS = {name: Subject(name, car, ARM_AND_RACK, LEVEL) for name, car in CARS.items()}
+OF_CARS = {name: Subject(name, car, tuple(LEVEL), LEVEL) for name, car in CARS.items()}
 PAPER, BESIDE, WISHBONE = OF_CARS["paper"], OF_CARS["beside"], OF_CARS["wishbone"]
-_EVERY = _others()
+_EVERY = tuple(_others())
 OTHERS = tuple(subject for subject in _EVERY if not subject.of_parts)
 NAMED: Mapping[str, Subject] = {**OF_CARS, **{subject.name: subject for subject in _EVERY}}
 # Two corners on one rack take thirty times the time of one: they are tried in families of which they do not
 # repeat each corner's answers, and mostly rolling on the ground, which takes in all that the others have.
-OF_PARTS = tuple(subject for subject in _EVERY if subject.of_parts)
 ROLLING = NAMED["rolling_axle"]
 SUBJECTS = (PAPER, WISHBONE, *OTHERS)
-ALL = (*SUBJECTS, *OF_PARTS)
+ALL = (*SUBJECTS, *(subject for subject in _EVERY if subject.of_parts))
+# One for each kind of input: angle and length, height, turn. What is hard about a law of time is the same for
+# every mechanism.
+BY_INPUT = (PAPER, WISHBONE, NAMED["five_link"], NAMED["slider_crank"])
 HEAVING = tuple(subject for subject in SUBJECTS if subject.heaves)

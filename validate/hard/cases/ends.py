@@ -13,7 +13,7 @@ from dataclasses import replace
 from validate.hard.case import Case, Values, family, right_from
 from validate.hard.cases.reach import End, Lock, driven_beyond
 from validate.hard.last_values import ends_of
-from validate.hard.subjects import NAMED, OF_PARTS, OTHERS, hyphens
+from validate.hard.subjects import NAMED, OTHERS, ROLLING, hyphens
 
 # Down to where each model has to be right; nearer it may refuse with a reason.
 # pointcoord, held: a path is followed until its steps shrink below 1e-13 of it, which is at 1e-12 of the way
@@ -123,7 +123,7 @@ for names, car, added, near, moving, start in TABLE:
         end = End(NAMED[car], driven, ahead, where, lock)
         near_ends += _near(end, name, added, group, near)
         beyond_ends += _beyond(end, name + added, moving, start)
-for subject in (*OTHERS, *OF_PARTS):
+for subject in (*OTHERS, ROLLING):
     for driven, ahead in ends_of(subject):
         size = "greatest" if ahead else "least"
         name, parts = f"{hyphens(driven)}-{size}", subject.of_parts

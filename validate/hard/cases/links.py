@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 from typing import Any
@@ -36,42 +36,16 @@ from validate.hard.case import (
     right_from,
 )
 from validate.hard.last_values import last_value
-from validate.hard.subjects import ALL, BESIDE, Content, Kind, Subject, hyphens
+from validate.hard.subjects import ALL, BESIDE, Content, Subject, hyphens
 
 GROUP = "Links and numbers that make no mechanism"
 SOLVERS = ("pointcoord", "absolute")
 AGAIN, PIVOT, LENGTH = "again", "second_pivot", "rod_length"
 Tables = dict[str, Any]
+Piece = tuple[str, ...]
+"""A rod or a slide, or a point of a body: the keys of its tables."""
 Change = tuple[Content, frozenset[str], dict[str, str]]
 """A changed mechanism at rest, what an error has to name one of, and the change as facts."""
-
-
-@dataclass(frozen=True)
-class Piece:
-    """Something that holds a mechanism together: a rod, a slide, or a point by which a body is held.
-
-    Attributes:
-        names: of which an error has to give one.
-        rows: how many rods hold as much.
-    """
-
-    table: str
-    key: str
-    point: str
-    names: frozenset[str]
-    rows: int
-
-    @property
-    def words(self) -> str:
-        """What it is."""
-        return f"{self.point} of {self.key}" if self.point else f"{self.table[:-1]} {self.key}"
-
-    def dropped(self, tables: Tables) -> None:
-        """Take it out of some tables."""
-        if self.point:
-            tables["bodies"][self.key].remove(self.point)
-        else:
-            del tables[self.table][self.key]
 
 
 def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
@@ -86,26 +60,33 @@ def joints(plain: Mapping[str, Any]) -> dict[str, list[str]]:
     }
 
 
-def pieces(plain: Mapping[str, Any]) -> tuple[Piece, ...]:
-    """Everything without which a mechanism is another one, or none."""
+def pieces(plain: Mapping[str, Any]) -> dict[Piece, tuple[frozenset[str], int]]:
+    """Everything without which a mechanism is another one, or none: rods, slides, points that hold a body.
+
+    Returns:
+        Of each the names of which an error has to give one, and how many rods hold as much.
+    """
     bodies = plain["bodies"]
+    found: dict[Piece, tuple[frozenset[str], int]] = {}
+    for rod, ends in plain["rods"].items():
+        found["rods", rod] = frozenset((rod, *ends)), 1
+    for name, slide in plain["slides"].items():
+        found["slides", name] = frozenset((name, *slide["points"])), 2 * len(slide["points"])
+    for body, points in joints(plain).items():
+        shared = [set(other) & set(bodies[body]) for name, other in bodies.items() if name != body]
+        for point in points:
+            hinged = any(len(both) == 2 and point in both for both in shared)
+            found["bodies", body, point] = frozenset((body, *bodies[body])), 2 if hinged else 3
+    return found
 
-    def rows(body: str, point: str) -> int:
-        others = (set(points) & set(bodies[body]) for other, points in bodies.items() if other != body)
-        return 2 if any(len(shared) == 2 and point in shared for shared in others) else 3
 
-    return (
-        *(Piece("rods", rod, "", frozenset((rod, *ends)), 1) for rod, ends in plain["rods"].items()),
-        *(
-            Piece("slides", name, "", frozenset((name, *slide["points"])), 2 * len(slide["points"]))
-            for name, slide in plain["slides"].items()
-        ),
-        *(
-            Piece("bodies", body, point, frozenset((body, *bodies[body])), rows(body, point))
-            for body, points in joints(plain).items()
-            for point in points
-        ),
-    )
+def without(tables: Tables, piece: Piece) -> None:
+    """Take a piece out of some tables."""
+    table, key, *point = piece
+    if point:
+        tables[table][key].remove(*point)
+    else:
+        del tables[table][key]
 
 
 def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
@@ -126,7 +107,7 @@ def closed(subject: Subject) -> Car:
     """The car with its drawing closed and every point in it, so that its tables can be changed."""
     car = subject.car if subject.car.closure == "drawn" else drawn_at(subject.car, subject.drawn)
     scene = Scene.from_mapping(subject.absolute(dict.fromkeys(subject.kinds, 0.0), car))
-    points = scene.mechanism.plain(tuple(subject.kinds))["points"]
+    points = scene.mechanism.plain(subject.driven)["points"]
     return replace(car, points={name: tuple(place) for name, place in points.items()})
 
 
@@ -151,17 +132,18 @@ def named(answer: Answer, names: frozenset[str]) -> Answer:
     )
 
 
-def exchangeable(subject: Subject) -> tuple[Piece, ...]:
+def exchangeable(subject: Subject) -> list[Piece]:
     """The pieces without which there is another rod left."""
     plain = subject.plain
-    return tuple(piece for piece in pieces(plain) if set(plain["rods"]) - {piece.key})
+    return [piece for piece in pieces(plain) if set(plain["rods"]) - {piece[1]}]
 
 
 def link_missing(subject: Subject, number: float) -> Change:
     """A point, or a body, is free to move although all inputs are held."""
-    piece, tables = pieces(subject.plain)[int(number) - 1], tables_of(subject)
-    piece.dropped(tables)
-    return changed(subject, tables, subject.drawn), piece.names, {"missing": piece.words}
+    tables, found = tables_of(subject), pieces(subject.plain)
+    piece = list(found)[int(number) - 1]
+    without(tables, piece)
+    return changed(subject, tables, subject.drawn), found[piece][0], {"missing": " ".join(piece)}
 
 
 def link_twice(subject: Subject, number: float) -> Change:
@@ -180,13 +162,14 @@ def link_twice_for_another(subject: Subject, number: float) -> Change:
 
     A rod is there as often again as makes up for a piece that is missing.
     """
-    piece, tables = exchangeable(subject)[int(number) - 1], tables_of(subject)
-    rod = next(name for name in tables["rods"] if name != piece.key)
+    tables, piece = tables_of(subject), exchangeable(subject)[int(number) - 1]
+    names, rows = pieces(subject.plain)[piece]
+    rod = next(name for name in tables["rods"] if name != piece[1])
     ends = tables["rods"][rod]
-    piece.dropped(tables)
-    tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(piece.rows)}
-    facts = {"twice": rod, "missing": piece.words}
-    return changed(subject, tables, subject.drawn), piece.names | {rod, AGAIN}, facts
+    without(tables, piece)
+    tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(rows)}
+    facts = {"twice": rod, "missing": " ".join(piece)}
+    return changed(subject, tables, subject.drawn), names | {rod, AGAIN}, facts
 
 
 def input_twice(subject: Subject, gap: float) -> Change:
@@ -242,8 +225,7 @@ def _with_length(subject: Subject) -> Subject:
     rod = list(tables["rods"])[-1]
     tables["inputs"][LENGTH] = {"distance": tables["rods"].pop(rod)}
     car = replace(closed(subject), tables=tables, closure="drawn")
-    kinds: Mapping[str, Kind] = {**subject.kinds, LENGTH: "length"}
-    return Subject(f"{subject.name}-{rod}", car, kinds, effects=("velocity",))
+    return Subject(f"{subject.name}-{rod}", car, (*subject.driven, LENGTH), effects=("velocity",))
 
 
 def link_too_long(subject: Subject, share: float) -> Content:
@@ -283,7 +265,7 @@ PIECE = "number of the piece"
 PIVOT_AT = "distance of its pivot from the first one, in parts of the first link"
 EVERY = (*ALL, BESIDE)
 WITH_RODS = [subject for subject in ALL if subject.plain["rods"]]
-PIECES = every(lambda subject: pieces(subject.plain))
+PIECES = every(lambda subject: list(pieces(subject.plain)))
 PAIRS = every(lambda subject: held_apart(subject.plain))
 
 CASES = (
