@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.bounds.solved_coordinates import Summed
+from pointcoord.errors import InputOutOfRange
 from pointcoord.numerics.counters import Work
 from pointcoord.numerics.multi_index import powers
 from pointcoord.patches.evaluation import sum_series
@@ -93,7 +94,15 @@ class ByMap(SolvedScene):
         return self.patches.lookup.at(self._inputs(instants)[0])
 
     def _inputs(self, instants: Array) -> list[Array]:
-        """The free inputs and as many derivatives as are wanted, each (N, p)."""
+        """The free inputs and as many derivatives as are wanted, each (N, p).
+
+        Raises:
+            InputOutOfRange: one of them overflows.
+        """
         highest = self.readout.plan.derivative
         laws = [self.functions[name].series(instants, highest) for name in self.patches.domain.free]
+        for name, law in zip(self.patches.domain.free, laws, strict=True):
+            if not np.isfinite(law).all():
+                worst = float(law[~np.isfinite(law)][0])
+                raise InputOutOfRange(name, worst, "finite values and rates of every order")
         return [factorial(d) * np.stack([law[:, d] for law in laws], axis=-1) for d in range(highest + 1)]

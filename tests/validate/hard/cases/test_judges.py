@@ -11,7 +11,7 @@ from stand_in import stand_in
 
 import pointcoord.solve.taylor
 from pointcoord import Scene
-from validate.formulations.protocol import Solution
+from validate.formulations.protocol import FormulationError, Solution
 from validate.formulations.registry import formulation
 from validate.hard.answer import Answer
 from validate.hard.cars import PAPER_CAR, scene_content
@@ -105,6 +105,13 @@ def test_an_error_as_of_subtracted_far_coordinates_is_found_out(monkeypatch: pyt
     assert answers["pointcoord-newton"].outcome == "wrong"
     assert "bounds of the car at home" in answers["pointcoord-newton"].reason
     assert answers["pointcoord"].outcome == "right"
+
+
+def test_a_map_refuses_an_input_whose_rates_overflow() -> None:
+    (trial,) = examine(at("huge-semi-trailing-arm", 22.0)).trials
+    assert trial.facts["place"] == "inputs.wheel_travel.sine.angular_frequency"
+    assert {answer.outcome for answer in trial.answers} == {"refused"}
+    assert isinstance(trial.came["pointcoord-map"], FormulationError)
 
 
 def test_a_jump_refused_for_another_reason_is_wrong() -> None:
