@@ -152,7 +152,6 @@ def _ends(mechanism: Mechanism, closed: Path, name: str) -> tuple[End, End]:
 
 
 def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> End:
-    """The end of a turn to one side; none where a whole one is free."""
     drawn = _drawn(mechanism, closed)
     wanted = {one: np.array(value) for one, value in drawn.items()}
     wanted[name] += side * WHOLE
@@ -163,7 +162,6 @@ def _end_of_turn(mechanism: Mechanism, closed: Path, name: str, side: float) -> 
 
 
 def _limits(mechanism: Mechanism, path: Path) -> tuple[str, ...]:
-    """The links and joints that hold each other where a path stops; none where it does not."""
     if float(path.done) == 1.0:
         return ()
     return mechanism.topology.strongest(smallest_left_singular_vector(path.factors.matrix))

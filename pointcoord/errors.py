@@ -27,7 +27,6 @@ def visible(text: str) -> str:
 
 
 def _beginning(found: re.Match[str]) -> str:
-    """The beginning of a long word, and the marks of the sentence behind it."""
     word = found[0].rstrip(MARKS)
     marks = found[0][len(word) :]
     return (word if len(word) <= LONGEST else word[: LONGEST - 3] + "...") + marks[:3]

@@ -67,7 +67,6 @@ class SolvedPoses(Named):
         return np.isfinite(self.bound)
 
     def __repr__(self) -> str:
-        """In a line: how many poses, and the largest bound."""
         largest = float(np.max(self.bound, initial=0.0, where=self.solved))
         failed = f", {len(self.failures)} failed" if self.failures else ""
         return f"<SolvedPoses: {int(self.solved.sum())} within {largest:.2g} mm{failed}>"

@@ -300,7 +300,6 @@ class Table(TimeFunction):
         return np.zeros_like(instants)
 
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
-        """The computed spline, which is the law."""
         return [Enclosed.of(self._spline(instants, nu=derivative)) for derivative in range(derivatives + 1)]
 
     def values_over(self, first: Array, last: Array) -> tuple[Array, Array]:
@@ -354,7 +353,6 @@ class Sum(TimeFunction):
     terms: tuple[TimeFunction, ...]
 
     def series(self, instants: ArrayLike, order: int) -> Array:
-        """The sum of the series."""
         return np.asarray(sum(term.series(instants, order) for term in self.terms))
 
     def rounding(self, instants: Array, derivative: int = 0) -> Array:
@@ -365,7 +363,6 @@ class Sum(TimeFunction):
         return np.asarray(sums + sum(term.rounding(instants, derivative) for term in self.terms))
 
     def exact(self, instants: Array, derivatives: int = 2) -> list[Enclosed]:
-        """The sum in twice the working precision."""
         first, *others = (term.exact(instants, derivatives) for term in self.terms)
         for other in others:
             first = [one + another for one, another in zip(first, other, strict=True)]
@@ -394,7 +391,6 @@ class Sum(TimeFunction):
 
 @cache
 def _factorials(order: int) -> Array:
-    """k! for k from 0 to an order."""
     return np.array([float(factorial(k)) for k in range(order + 1)])
 
 

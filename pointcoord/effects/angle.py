@@ -63,11 +63,9 @@ class Angle(Number):
 
     @property
     def lengthwise(self) -> bool:
-        """Whether it is measured from the front or the rear."""
         return not {"forward", "rearward", "to_the_left"}.isdisjoint((self.sine, self.cosine))
 
     def ends(self, wheel: Wheel) -> tuple[str, str]:
-        """The two points that the line runs through."""
         ends = wheel.role(self.line)
         if not ends:
             raise UnknownName("role", self.line, ())

@@ -130,11 +130,9 @@ class CarNumbers(Effect):
 
     @property
     def own_names(self) -> tuple[str, ...]:
-        """The names of the numbers."""
         return tuple(number.name for number in self.numbers)
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
-        """The names of the numbers, with the prefix of each wheel's part."""
         prefixes = [prefix for prefix, _ in self._subjects(topology)]
         return {
             quantity.name: tuple(
@@ -148,16 +146,13 @@ class CarNumbers(Effect):
 
     @property
     def lines(self) -> tuple[str, ...]:
-        """The roles that they are made of."""
         return tuple(dict.fromkeys(role for number in self.numbers for role in number.roles))
 
     @property
     def way(self) -> str:
-        """That of the numbers."""
         return self.numbers[0].way
 
     def ways(self, topology: Topology) -> tuple[Way, ...]:
-        """That of each wheel."""
         return tuple(wheel.way(self.way) for wheel in self._wheels(topology) if self.way)
 
     @property
@@ -167,11 +162,9 @@ class CarNumbers(Effect):
         return " or ".join(filter(None, (travels, self.nowhere)))
 
     def needs(self, topology: Topology) -> Collection[str]:
-        """The points of their roles."""
         return {p for wheel in self._wheels(topology) for role in self.lines for p in wheel.role(role)}
 
     def _subjects(self, topology: Topology) -> list[tuple[str, tuple[Wheel, ...]]]:
-        """The wheels that a formula takes at once, with the prefix of what it gives."""
         wheels = wheels_of(topology, self.lines)
         if not self.of_axle:
             return [(wheel.prefix, (wheel,)) for wheel in wheels]
@@ -182,7 +175,6 @@ class CarNumbers(Effect):
         return [wheel for _, wheels in self._subjects(topology) for wheel in wheels]
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        """Each number, (..., N)."""
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
             corners = [self._moving(corner_of(poses, wheel), poses, poses.states) for wheel in wheels]
@@ -191,7 +183,6 @@ class CarNumbers(Effect):
         return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        """Of each number by itself."""
         unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):

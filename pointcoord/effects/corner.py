@@ -40,15 +40,12 @@ class Wheel:
 
     @property
     def centre(self) -> str:
-        """The wheel centre."""
         return self.role("wheel_axis")[1]
 
     def role(self, name: str) -> tuple[str, ...]:
-        """The points of a role; empty without such a role."""
         return self.topology.role(self.prefix + name)
 
     def driven(self, way: str) -> tuple[str, ...]:
-        """The driven inputs that move it along a way."""
         return self.topology.driven_along(way, self.part)
 
     def way(self, way: str) -> ByInput:
@@ -90,7 +87,6 @@ class View(Generic[S]):
         return self.line(*self.of.role(name)[:2])
 
     def line(self, start: str, end: str) -> S:
-        """The vector from one point to another."""
         return self.points[end] - self.points[start]
 
     @property
@@ -99,7 +95,6 @@ class View(Generic[S]):
         return self.role("wheel_axis")
 
     def contact_place(self) -> S:
-        """Where the contact point is."""
         return self.points[self.of.centre] + self.contact()
 
     def contact(self) -> S:

@@ -139,15 +139,12 @@ class BodyRates(Effect):
 
     @property
     def no_number(self) -> str:
-        """Why a rate may be no number: the formula knows."""
         return self.formula.no_number
 
     def needs(self, topology: Topology) -> Collection[str]:
-        """The points of the bodies."""
         return {point for points in topology.bodies.values() for point in points}
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
-        """There is a body whose rates they are."""
         return "" if topology.bodies else no_role(self.name, "knuckle", topology)
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:

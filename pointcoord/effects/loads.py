@@ -102,7 +102,6 @@ class Loads(Effect):
 
     @property
     def no_number(self) -> str:
-        """Where a damper cannot hold its wheel."""
         return "the wheel's travel does not change the damper's length there"
 
     def gives_numbers(self, topology: Topology) -> Mapping[str, tuple[str, ...]]:
@@ -123,21 +122,17 @@ class Loads(Effect):
         )
 
     def needs(self, topology: Topology) -> Collection[str]:
-        """All: whatever is held has a force."""
         return topology.points
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        """Tensions, (N,), and forces, (N, 3)."""
         return _forces(poses, partial(corner_of, poses), 1.0, poses.constant)
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
-        """From where each exactly is."""
         unit = float(poses.mechanism.unit)
         exact = _forces(poses, partial(enclosed_corner, poses), 1.0 / unit, Enclosed.of)
         return {q: {n: each.errors(numbers[q][n]) for n, each in of.items()} for q, of in exact.items()}
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
-        """There are no loads, or nothing says what they act on or what holds them."""
         if not axes.loads:
             return (
                 f"{self.name!r} needs a load, and the scene has none; give it under [mechanism.loads], such "
@@ -171,7 +166,6 @@ class Loads(Effect):
 
 
 def _joined(topology: Topology) -> tuple[str, ...]:
-    """The points of all joints and slides."""
     return (*(point for points in topology.joints for point in points), *topology.sliding)
 
 

@@ -31,7 +31,6 @@ class Plan:
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Effects that are not computed."""
         return tuple(name for name in EFFECTS if name not in self.effects)
 
     def lacking(self, quantity: str, topology: Topology) -> dict[str, tuple[str, ...] | None]:
@@ -46,11 +45,9 @@ class Plan:
 
     @property
     def along_ways(self) -> bool:
-        """Whether derivatives of positions along ways are solved for."""
         return any(effect.way for effect in self.computed)
 
     def ways(self, topology: Topology) -> tuple[Way, ...]:
-        """The ways along which they are."""
         return tuple(dict.fromkeys(way for effect in self.computed for way in effect.ways(topology)))
 
     def reported(self, topology: Topology) -> tuple[str, ...]:

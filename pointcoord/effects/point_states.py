@@ -30,11 +30,9 @@ class PointStates(Effect):
 
     @property
     def reports_states(self) -> bool:
-        """The position of every point, or one derivative of it."""
         return True
 
     def needs(self, topology: Topology) -> Collection[str]:
-        """Every point; a plan says which of them are reported."""
         return topology.points
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:

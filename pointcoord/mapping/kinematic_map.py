@@ -280,7 +280,6 @@ class KinematicMap(ReadOnly):
 
     @cached_property
     def _shape(self) -> tuple[int]:
-        """Of one pose's inputs."""
         return (len(self.inputs),)
 
     @cached_property
@@ -364,7 +363,6 @@ POINT_STATES = tuple(
 
 
 def _states(values: T, rates: T | None, accelerations: T | None) -> list[T]:
-    """Those that are given."""
     if accelerations is not None and rates is None:
         raise NotComputed("an acceleration of a point", "", "give the rates of the inputs as well")
     return [state for state in (values, rates, accelerations) if state is not None]

@@ -209,7 +209,6 @@ class _Compiler:
     lengths: Mapping[str, float]
 
     def topology(self, puts_in_place: bool) -> Topology:
-        """All of it."""
         structure, triangles = self.structure, self.choices.triangles
         needed = needed_points(structure, self.driven)
         chassis = dict.fromkeys(structure.bodies[CHASSIS]).keys()

@@ -50,16 +50,12 @@ def _closing(changes: dict[str, Any]) -> dict[str, Any]:
 
 
 class _Part(BaseModel, defer_build=True):
-    """Another mechanism that is part of one."""
-
     mechanism: Annotated[Any, AfterValidator(_name_or_tables)]
     side: Literal["left", "right"] = "left"
     mirrored: StrictBool = False
 
 
 class _Others(BaseModel, defer_build=True):
-    """The tables beside those of a structure."""
-
     closures: dict[Name, Annotated[dict[Name, dict[Name, Any]], AfterValidator(_closing)]] = {}
     parts: dict[
         Name, Annotated[_Part, BeforeValidator(lambda v: known_keys(v, _Part.model_fields, "a part"))]
@@ -82,7 +78,6 @@ class MechanismFile:
 
     @property
     def closures(self) -> tuple[str, ...]:
-        """The ways in which a drawing of it can be closed."""
         return tuple(self.structures)
 
     @cached_property
@@ -92,7 +87,6 @@ class MechanismFile:
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Everything that can be driven."""
         return tuple(self.structures[AS_DRAWN].inputs)
 
     def topology(

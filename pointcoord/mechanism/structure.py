@@ -109,11 +109,9 @@ class Structure:
 
     @property
     def required_points(self) -> tuple[str, ...]:
-        """Points that must be drawn."""
         return tuple(name for name in self.points if name not in self.stand_ins)
 
     def bodies_of(self, point: str) -> tuple[str, ...]:
-        """The bodies that have a point."""
         return tuple(body for body, points in self.bodies.items() if point in points)
 
     def shared(self, body: str, other: str) -> tuple[str, ...]:
@@ -246,7 +244,6 @@ class Structure:
         )
 
     def moving_bodies(self) -> Iterator[tuple[str, tuple[str, ...]]]:
-        """The bodies but the chassis, with their points."""
         return ((body, points) for body, points in self.bodies.items() if body != CHASSIS)
 
     def plain(self, driven: Collection[str]) -> dict[str, Any]:

@@ -50,7 +50,6 @@ class ByMap(SolvedScene):
 
     @property
     def patches(self) -> ProvenPatches:
-        """Those along the way."""
         return self.way.patches
 
     def solved(self, instants: Array, derivatives: int) -> Sequence[Array]:
@@ -59,7 +58,6 @@ class ByMap(SolvedScene):
         return self.patches.sums([self.patches.series] * len(inputs), inputs)
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """y and the derivatives that the plan solves for, at instants, each of shape (N, size)."""
         unknown = self.solved(instants, derivatives)
         laws = {name: f.series(instants, len(unknown) - 1) for name, f in self.functions.items()}
         known = self.readout.mechanism.known_series(laws)
@@ -68,7 +66,6 @@ class ByMap(SolvedScene):
         ]
 
     def summed(self, instants: Array) -> list[Summed]:
-        """How `coordinates` sums each derivative at instants."""
         inputs = self._inputs(instants)
         patch = self.patches.lookup.at(inputs[0])
         middle, half = self.patches.boxes
@@ -90,7 +87,6 @@ class ByMap(SolvedScene):
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
     def pieces(self, instants: Array) -> NDArray[np.intp]:
-        """Number of the patch of each instant."""
         return self.patches.lookup.at(self._inputs(instants)[0])
 
     def _inputs(self, instants: Array) -> list[Array]:

@@ -35,20 +35,16 @@ class AtInstants(SolvedScene):
 
     @classmethod
     def of(cls, readout: Readout, functions: Mapping[str, TimeFunction], solved: Solved) -> AtInstants:
-        """From the first instant to the last one that was reached."""
         first, last = solved.times[[0, -1]].tolist() if len(solved.times) else (np.inf, -np.inf)
         return cls(readout, functions, solved.status, solved.work, first, last, (), solved)
 
     def solved(self, instants: Array, derivatives: int) -> list[Array]:
-        """As they were solved for."""
         return [state.T for state in self.coordinates(instants, derivatives)]
 
     def coordinates(self, instants: Array, derivatives: int) -> list[Array]:
-        """As they were solved for."""
         return self.poses.coordinates(instants)[: derivatives + 1]
 
     def unsolved(self, instants: Array) -> Array:
-        """What the tolerance let Newton's method leave."""
         return self.poses.left[np.searchsorted(self.poses.times, instants)]
 
 
@@ -66,14 +62,12 @@ class ByChain(SolvedScene):
         chain: Chain,
         notes: tuple[str, ...] = (),
     ) -> ByChain:
-        """As far as the chain goes."""
         segments = chain.segments
         ends = (segments[0].start, chain.stop) if segments else (np.inf, -np.inf)
         orders = tuple(segment.order for segment in segments)
         return cls(readout, functions, chain.status, chain.work, *ends, orders, chain, notes=notes)
 
     def solved(self, instants: Array, derivatives: int) -> list[Array]:
-        """The sums of their series."""
         if isinstance(box := self.chain.segments[0], InputSeries):
             coefficients = box.coefficients.swapaxes(-1, -2)
             return [coefficients @ powers for powers in box.powers(instants, derivatives + 1)]
@@ -122,7 +116,6 @@ class ByChain(SolvedScene):
         return found
 
     def _known(self, instants: Array) -> Array:
-        """The known coordinates, (..., N, known)."""
         mechanism = self.readout.mechanism
         laws = {name: law.series(instants, 0) for name, law in self.functions.items()}
         if mechanism.drawn.ndim == 1:
@@ -134,7 +127,6 @@ class ByChain(SolvedScene):
         return known[:, 0].reshape(cars, count, -1)
 
     def summed(self, instants: Array) -> list[Summed]:
-        """How `coordinates` sums each derivative at instants."""
         terms = [np.abs(segment.coefficients) for segment in self.chain.segments]
         # Terms that are missing by chance tell nothing of what is left out.
         lasts = [
@@ -154,11 +146,9 @@ class ByChain(SolvedScene):
         return [Summed(*part) for part in zip(*parts, strict=True)]
 
     def unsolved(self, instants: Array) -> Array:
-        """What the tolerance let Newton's method leave at the start of each segment."""
         left = np.array([np.max(segment.left) for segment in self.chain.segments])
         return np.asarray(left[self.pieces(instants)])
 
     def pieces(self, instants: Array) -> Numbers:
-        """Number of the segment of each instant."""
         starts = [segment.start for segment in self.chain.segments]
         return np.asarray(np.searchsorted(starts, instants, side="right") - 1)

@@ -55,7 +55,6 @@ class Readout:
 
     @cached_property
     def table(self) -> Table:
-        """Where the numbers are, side by side."""
         return Table.of(self.plan, self.mechanism.topology, self.derivatives)
 
     def room(self, count: int) -> Array:

@@ -26,7 +26,6 @@ class Channel(Mapping[str, Array]):
     def __init__(
         self, quantity: Quantity, arrays: Mapping[str, Array], plan: Plan, topology: Topology
     ) -> None:
-        """The numbers that were computed, by what was planned of which mechanism."""
         self.quantity, self.plan, self.topology = quantity, plan, topology
         self._arrays = dict(arrays)
         for array in self._arrays.values():
@@ -38,7 +37,6 @@ class Channel(Mapping[str, Array]):
         return bool(self._arrays)
 
     def with_arrays(self, arrays: Mapping[str, Array]) -> Channel:
-        """The same quantity with other numbers."""
         return Channel(self.quantity, arrays, self.plan, self.topology)
 
     def __getitem__(self, name: str) -> Array:

@@ -82,7 +82,6 @@ class InputPart(Part):
 
     @property
     def function(self) -> TimeFunction:
-        """The input as a function of time."""
         if self.constant is not None:
             return Polynomial((self.constant,))
         if self.polynomial is not None:
@@ -96,7 +95,6 @@ class InputPart(Part):
 
     @property
     def tables(self) -> tuple[TablePart, ...]:
-        """The tables that it is made of."""
         of_terms = (table for term in self.sum or () for table in term.tables)
         return (*of_terms, *(() if self.table is None else (self.table,)))
 

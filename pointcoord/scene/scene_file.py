@@ -346,7 +346,6 @@ class MechanismPart(Part):
 
     @cached_property
     def file(self) -> MechanismFile:
-        """The mechanism's file."""
         found = _file_of(self.__dict__)
         assert found is not None  # a part without one is not made
         return found
@@ -387,14 +386,12 @@ class MechanismPart(Part):
 
     @cached_property
     def topology(self) -> Topology:
-        """The linkage that its points are put on."""
         return self.file.topology(
             self.closure, self.driven, self.points, {"up": self.up, "right": self.right}, self._lengths
         )
 
     @property
     def _lengths(self) -> dict[str, float]:
-        """What inputs may need beside the points, as far as it is given."""
         given = {name: getattr(self, name) for name in LENGTHS}
         return {name: length for name, length in given.items() if length is not None}
 
@@ -678,7 +675,6 @@ class Scene(Part):
 
     @property
     def unreported_points(self) -> tuple[str, ...]:
-        """The others."""
         reported = self.reported_points
         return tuple(name for name in self.mechanism.topology.points if name not in reported)
 

@@ -36,7 +36,6 @@ class Column(ReadOnly):
     repeat: int = 1
 
     def of(self, numbers: Numbers) -> Array:
-        """The values of some designs."""
         return np.asarray(self.values[(numbers // self.repeat) % len(self.values)])
 
 

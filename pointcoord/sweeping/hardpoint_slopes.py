@@ -54,12 +54,10 @@ class DualPoses(Poses):
     """
 
     def constant(self, number: Array) -> Dual[Array]:
-        """With a slope of 0."""
         return Dual(number, np.zeros_like(number))
 
     @cached_property
     def drawn(self) -> Mapping[str, Dual[Array]]:
-        """Where every point is drawn."""
         return _duals(self.mechanism.drawn_places)
 
 
@@ -94,7 +92,6 @@ class ByHardpoints:
 
     @property
     def mechanism(self) -> Mechanism:
-        """As it is drawn."""
         return self.solved.readout.mechanism
 
     @cached_property

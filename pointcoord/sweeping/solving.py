@@ -91,12 +91,10 @@ class Course:
 
     @cached_property
     def table(self) -> Table:
-        """Where the numbers of a design are."""
         topology = self.scene.mechanism.topology
         return Table.of(self.plan, topology, self.plan.derivatives(topology))
 
     def readout(self, mechanism: Mechanism) -> Readout:
-        """How the numbers of designs are read."""
         chassis = ChassisMotion.of(mechanism, self.scene.functions)
         return Readout(mechanism=mechanism, plan=self.plan, chassis=chassis, axes=self.axes)
 
@@ -161,7 +159,6 @@ class _Block:
         return cls(course, first, rows, nothing == 0.0, nothing, {name: nothing.copy() for name in names})
 
     def sweep(self) -> Sweep:
-        """The block as a result."""
         course, scene = self.course, self.course.scene
         numbers = np.arange(self.first, self.first + len(self.rows))
         solved = self.alive(numbers)
@@ -184,16 +181,13 @@ class _Block:
         )
 
     def fail(self, members: Iterable[int], error: PointcoordError) -> None:
-        """Mark designs as ones that cannot be solved."""
         for number in members:
             self.failures[int(number)] = Failure(int(number), reason_of(error), error)
 
     def alive(self, members: Numbers) -> NDArray[np.bool_]:
-        """Which of them have not failed."""
         return ~np.isin(members, list(self.failures))
 
     def solve(self, members: Numbers) -> None:
-        """Solve designs by their numbers."""
         designs, scene = self.course.designs, self.course.scene
         topology = scene.mechanism.topology
         points = designs.points(members)
@@ -251,7 +245,6 @@ class _Block:
             self.notes.append(Noted(kind, warns, count, int(members[place]), words(place), weight))
 
     def _move(self, members: Numbers, mechanism: Mechanism) -> None:
-        """Close, assemble and move designs, and read their numbers."""
         course, scene = self.course, self.course.scene
         time = scene.time
         functions = {name: scene.functions[name] for name in mechanism.topology.required_inputs}
@@ -305,7 +298,6 @@ class _Block:
         return drawn_angles(mechanism, self.course.axes, self.course.plan.effects, closed)
 
     def _fill(self, solved: ByChain, instants: Array, members: Numbers) -> None:
-        """Put the numbers of designs into their tables."""
         self.readouts[:] = [solved.readout]
         places = members - self.first
         self.filled[places] = True
@@ -344,7 +336,6 @@ class _Block:
             self._note("closing", one, noticed, _always(closed.words), far)
 
     def _note_missing(self, members: Numbers) -> None:
-        """Note which numbers are none, and why."""
         if not len(members):
             return
         places = members - self.first

@@ -59,7 +59,6 @@ class Noted:
     weight: float = 0.0
 
     def told(self, total: int) -> str:
-        """In a line."""
         if self.count == total == 1:
             return self.words
         which = "all" if self.count == total else f"{self.count} of {total}"
