@@ -22,7 +22,7 @@ from plain_mechanisms import solve_car
 import absolute.backend
 import pointcoord
 import validate.reference.route
-from pointcoord.effects.knuckle_rates import ByEdges
+from pointcoord.effects.knuckle_rates import KNUCKLE_RATES
 from pointcoord.linkage.hardpoints import build_mechanism
 from pointcoord.mechanism import mechanism_file
 from validate.cost.way import LeftOut
@@ -105,7 +105,7 @@ MET: dict[str, Callable[[pytest.MonkeyPatch], object]] = {
     "MotionTooLong": lambda pretend: with_segments(pretend, 5),
     "MotionTooRough": lambda _: pointcoord.simulate(jumping(), "series"),
     "MotionNotMapped": lambda pretend: with_patches(pretend, 0),
-    "SingularConfiguration": lambda _: ByEdges().rates(IN_LINE, IN_LINE, IN_LINE),
+    "SingularConfiguration": lambda _: KNUCKLE_RATES.rates(IN_LINE, IN_LINE, IN_LINE),
     "OutsideMotion": lambda _: pointcoord.simulate(BOUNCE).at(2.7),
     "WrongArgument": lambda _: pointcoord.kinematic_map(
         BOUNCE, {"arm_angle": (1.0, 0.9), "rack": (0.0, 1.0)}

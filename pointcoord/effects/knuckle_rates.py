@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,66 +36,11 @@ Array = NDArray[np.float64]
 States = Mapping[str, Array]
 Edges = tuple[Array, Array]
 
-# Each multiplies what is left of the first solution's rounding by some EPS k (see `ByEdges.loss`): some 1e-3
-# of a needle 1e-6 as thick as long, where after one the rounding was still seen.
+# Each multiplies what is left of the first solution's rounding by some EPS k (see `BodyRates.loss`): some
+# 1e-3 of a needle 1e-6 as thick as long, where after one the rounding was still seen.
 REFINEMENTS = 2
 VELOCITY = Quantity("angular_velocity", "angular velocity", "rad/s", "body")
 ACCELERATION = Quantity("angular_acceleration", "angular acceleration", "rad/s^2", "body")
-
-
-class RatesFormula(Protocol):
-    """A way to tell how a body turns from how its points move."""
-
-    @property
-    def no_number(self) -> str:
-        """Why a rate may be no number; empty if each always is one."""
-        ...
-
-    def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
-        """Angular velocity and acceleration from the states of the body's points, each (..., 3)."""
-        ...
-
-    def loss(self, edges: Edges, rates: Edges) -> Array:
-        """How many times what looking at the equations rounds it may lose, shape (..., 1).
-
-        Args:
-            edges: from the body's first point to its second and its third, (..., 3); rates: theirs.
-        """
-        ...
-
-
-@dataclass(frozen=True, eq=False)
-class ByEdges:
-    """The turn of the two edges from the body's first point to its second and its third."""
-
-    no_number: str = ""
-
-    def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
-        """Angular velocity and acceleration of the body.
-
-        Raises:
-            SingularConfiguration: the points are in one line; the turn about it is free.
-        """
-        (p, q), (v, w), (a, b) = (_edges(states, states) for states in (position, velocity, acceleration))
-        # By a power of two near the body's size, so that no product of lengths over- or underflows.
-        size = max(float(np.abs(plain(edge)).max(initial=0.0)) for edge in (p, q))
-        scale = float(np.ldexp(1.0, -np.frexp(size or 1.0)[1]))
-        p, q, v, w, a, b = (multiple(scale, part) for part in (p, q, v, w, a, b))
-        _require_apart(plain(p), plain(q))
-        omega = _refined(p, q, v, w)
-        a, b = (part - cross(omega, cross(omega, edge)) for part, edge in ((a, p), (b, q)))
-        return omega, _refined(p, q, a, b)
-
-    def loss(self, edges: Edges, rates: Edges) -> Array:
-        """Of a thin triangle the first solution cancels.
-
-        A solution is off by EPS k, k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined one keeps a rounding
-        of that of what it corrects; 4e3 covers the sums. Of any knuckle but a needle the loss is 1.
-        """
-        first, second = edges
-        area = np.linalg.norm(np.cross(first, second), axis=-1, keepdims=True)
-        squares = np.sum(first * first + second * second, axis=-1, keepdims=True)
-        return np.asarray(1.0 + 4e3 * EPS * (squares / area) ** 2)
 
 
 def _edges(points: Mapping[str, P], names: Iterable[str]) -> tuple[P, P]:
@@ -129,17 +74,38 @@ def _require_apart(p: Array, q: Array) -> None:
 
 @dataclass(frozen=True, eq=False)
 class BodyRates(Effect):
-    """Angular velocity and acceleration of each body that the topology names.
+    """Angular velocity and acceleration of each body that the topology names."""
 
-    Attributes:
-        formula: how they are told from the body's points.
-    """
+    def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
+        """Angular velocity and acceleration of a body from the states of its points, each (..., 3).
 
-    formula: RatesFormula = ByEdges()
+        Raises:
+            SingularConfiguration: the points are in one line; the turn about it is free.
+        """
+        (p, q), (v, w), (a, b) = (_edges(states, states) for states in (position, velocity, acceleration))
+        # By a power of two near the body's size, so that no product of lengths over- or underflows.
+        size = max(float(np.abs(plain(edge)).max(initial=0.0)) for edge in (p, q))
+        scale = float(np.ldexp(1.0, -np.frexp(size or 1.0)[1]))
+        p, q, v, w, a, b = (multiple(scale, part) for part in (p, q, v, w, a, b))
+        _require_apart(plain(p), plain(q))
+        omega = _refined(p, q, v, w)
+        a, b = (part - cross(omega, cross(omega, edge)) for part, edge in ((a, p), (b, q)))
+        return omega, _refined(p, q, a, b)
 
-    @property
-    def no_number(self) -> str:
-        return self.formula.no_number
+    def loss(self, edges: Edges, rates: Edges) -> Array:
+        """How many times what looking at the equations rounds the rates may lose, shape (..., 1).
+
+        Of a thin triangle the first solution cancels. A solution is off by EPS k,
+        k = ((|e1|^2 + |e2|^2) / |e1 x e2|)^2, and a refined one keeps a rounding of that of what it corrects;
+        4e3 covers the sums. Of any knuckle but a needle the loss is 1.
+
+        Args:
+            edges: from the body's first point to its second and its third, (..., 3); rates: theirs.
+        """
+        first, second = edges
+        area = np.linalg.norm(np.cross(first, second), axis=-1, keepdims=True)
+        squares = np.sum(first * first + second * second, axis=-1, keepdims=True)
+        return np.asarray(1.0 + 4e3 * EPS * (squares / area) ** 2)
 
     def needs(self, topology: Topology) -> Collection[str]:
         return {point for points in topology.bodies.values() for point in points}
@@ -152,7 +118,7 @@ class BodyRates(Effect):
         found: dict[str, dict[str, Array]] = {VELOCITY.name: {}, ACCELERATION.name: {}}
         for body, points in poses.mechanism.topology.bodies.items():
             states = ({point: state[point] for point in points} for state in poses.states[:3])
-            found[VELOCITY.name][body], found[ACCELERATION.name][body] = self.formula.rates(*states)
+            found[VELOCITY.name][body], found[ACCELERATION.name][body] = self.rates(*states)
         return found
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
@@ -164,7 +130,7 @@ class BodyRates(Effect):
                 (one.middle, other.middle)
                 for one, other in (_edges(points, names) for points in poses.points[:2])
             )
-            loss = self.formula.loss(edges, rates)
+            loss = self.loss(edges, rates)
             for d, quantity in enumerate(found, 1):
                 reported = numbers[quantity][body]
                 # About a rate that is no number nothing can be proven, but what is expected can be said.

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, Edges, States
+from pointcoord.effects.knuckle_rates import KNUCKLE_RATES, BodyRates, Edges, States
 from pointcoord.linkage.constraints.constraint import Constraint
 from pointcoord.linkage.layout import Layout
 from pointcoord.linkage.topology import Topology
@@ -101,11 +101,13 @@ def printed_square_velocity_term(system: QuadraticMap, velocity: Array) -> Array
     return term
 
 
-@dataclass(frozen=True)
-class PrintedQuotients:
+class PrintedQuotients(BodyRates):
     """The printed quotients for omega and alpha."""
 
-    no_number: str = "the printed quotient divides by zero there"
+    @property
+    def no_number(self) -> str:
+        """Why a rate may be none."""
+        return "the printed quotient divides by zero there"
 
     def rates(self, position: States, velocity: States, acceleration: States) -> tuple[Array, Array]:
         """Omega and alpha; not finite where their denominator is zero.
@@ -137,6 +139,9 @@ class PrintedQuotients:
             return np.asarray(np.fmin(above + 2.0 * below, MOST_LOST)[..., None])
 
 
+QUOTIENTS = PrintedQuotients(**vars(KNUCKLE_RATES))
+
+
 def _from_first(states: States) -> tuple[Array, Array]:
     first, second, third = states.values()
     return second - first, third - first
@@ -151,6 +156,6 @@ PRINTED = Method(
     linkage=as_printed,
     only="the strut that the paper prints, type = macpherson with closure = collinear",
     square_velocity_term=printed_square_velocity_term,
-    effects={KNUCKLE_RATES.name: replace(KNUCKLE_RATES, formula=PrintedQuotients())},
+    effects={KNUCKLE_RATES.name: QUOTIENTS},
 )
 """The paper's algorithm with its formulas as printed."""

@@ -19,7 +19,7 @@ import pointcoord.solve.dense_output
 import pointcoord.solve.taylor
 import validate.formulations.modelled
 from pointcoord import Scene
-from pointcoord.effects.knuckle_rates import ByEdges
+from pointcoord.effects.knuckle_rates import BodyRates
 from pointcoord.effects.numbers import CAR_NUMBERS
 from pointcoord.effects.point_states import STATES
 from pointcoord.effects.registry import ANGLES, EFFECTS, QUANTITIES
@@ -112,8 +112,10 @@ def _no_centripetal_term(patch: pytest.MonkeyPatch) -> None:
 
     A knuckle that turns about one of its edges, as the paper's does as the rack moves, has alpha right.
     """
-    rates = ByEdges.rates
-    patch.setattr(ByEdges, "rates", lambda self, p, v, a: (rates(self, p, v, a)[0], rates(self, p, a, a)[0]))
+    rates = BodyRates.rates
+    patch.setattr(
+        BodyRates, "rates", lambda self, p, v, a: (rates(self, p, v, a)[0], rates(self, p, a, a)[0])
+    )
 
 
 def _kingpin_sign(patch: pytest.MonkeyPatch) -> None:

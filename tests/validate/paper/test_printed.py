@@ -15,9 +15,9 @@ from pointcoord.solve.pointwise import square_velocity_term
 from validate.cars.paper_car import PAPER
 from validate.paper.printed import (
     PRINTED,
+    QUOTIENTS,
     TOPOLOGY,
     PrintedParallel,
-    PrintedQuotients,
     printed_square_velocity_term,
 )
 
@@ -116,7 +116,7 @@ def test_printed_quotient_holds_for_a_turn_out_of_the_plane_of_the_points() -> N
     v = np.cross(omega, points)
     a = np.cross(alpha, points) + np.cross(omega, v)
     names = ("a", "b", "c")
-    found = PrintedQuotients().rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
+    found = QUOTIENTS.rates(*(dict(zip(names, s, strict=True)) for s in (points, v, a)))
     r = points[2] - points[0]
     for exact, value in zip((omega, alpha), found, strict=True):
         # v65 x v75 = omega (v65 . r75): a few roundings over the cosine that the quotient divides by.
