@@ -177,7 +177,7 @@ class CarNumbers(Effect):
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [self._moving(corner_of(poses, wheel), poses, poses.states) for wheel in wheels]
+            corners = [self._corner(poses, wheel) for wheel in wheels]
             for number in self.numbers:
                 found[number.quantity.name][prefix + number.name] = number.formula(*corners)
         return found
@@ -186,20 +186,20 @@ class CarNumbers(Effect):
         unit, time = float(poses.mechanism.unit), poses.powers[self.derivative]
         found: dict[str, dict[str, Array]] = {quantity.name: {} for quantity in self.quantities}
         for prefix, wheels in self._subjects(poses.mechanism.topology):
-            corners = [self._moving(enclosed_corner(poses, wheel), poses, poses.points) for wheel in wheels]
+            corners = [self._corner(poses, wheel) for wheel in wheels]
             for number in self.numbers:
                 quantity, name = number.quantity.name, prefix + number.name
                 # The unit of time is a power of two: neither product rounds.
                 found[quantity][name] = number.errors(corners, numbers[quantity][name] * time, unit) / time
         return found
 
-    def _moving(
-        self, corner: Corner[Any], poses: Poses | EnclosedPoses, states: Sequence[Mapping[str, Any]]
-    ) -> Corner[Any]:
-        """A corner with the derivatives by time or along its wheel's way, if the numbers take any."""
+    def _corner(self, poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
+        """A corner, with the derivatives by time or along its wheel's way if the numbers take any."""
+        corner = corner_of(poses, wheel)
         if self.derivative:
+            states = poses.states if isinstance(poses, Poses) else poses.points
             return corner.moving((states[1], poses.in_chassis[1]))
-        return corner.moving(poses.slopes[corner.seen.of.way(self.way)]) if self.way else corner
+        return corner.moving(poses.slopes[wheel.way(self.way)]) if self.way else corner
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
         """What it is made of is missing, or a number has no meaning in the drawing."""
@@ -240,32 +240,24 @@ class CarNumbers(Effect):
         return ""
 
 
-def corner_of(poses: Poses, wheel: Wheel) -> Corner[Any]:
-    """A wheel of poses, mm."""
-    axes, constant = poses.axes.on(wheel.side), poses.constant
-    radius = constant(np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius))
+def corner_of(poses: Poses | EnclosedPoses, wheel: Wheel) -> Corner[Any]:
+    """A wheel of poses: of floats or duals in mm, or where it exactly is in units of the mechanism."""
+    mechanism, axes = poses.mechanism, poses.axes.on(wheel.side)
+    unit = 1.0
+    constant: Callable[..., Any] = Enclosed.of
+    component: Callable[..., Any] = axes.enclosed
+    if isinstance(poses, Poses):
+        constant, component = poses.constant, axes.component
+        places, drawn, origin = poses.states[0], poses.drawn, poses.beside(mechanism.origin)
+    else:
+        unit, vectors = float(mechanism.unit), mechanism.drawing.vectors
+        drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
+        places, origin = poses.points[0], mechanism.origin / unit
+    radius = constant(np.array(np.nan if axes.wheel_radius is None else axes.wheel_radius / unit))
     up, outboard = constant(axes.up), constant(axes.outboard)
 
     def view(points: Mapping[str, Any]) -> View[Any]:
-        return View(wheel, points, axes.component, up, outboard, radius)
+        return View(wheel, points, component, up, outboard, radius)
 
-    car = {name: constant(np.array(number)) for name, number in axes.car.items()}
-    origin = constant(poses.beside(poses.mechanism.origin))
-    return Corner(view(poses.states[0]), view(poses.in_chassis[0]), view(poses.drawn), origin, car)
-
-
-def enclosed_corner(poses: EnclosedPoses, wheel: Wheel) -> Corner[Enclosed]:
-    """A wheel of poses where it exactly is, in units."""
-    axes, mechanism = poses.axes.on(wheel.side), poses.mechanism
-    unit = float(mechanism.unit)
-    up, outboard = Enclosed.of(axes.up), Enclosed.of(axes.outboard)
-    radius = Enclosed.of(np.nan if axes.wheel_radius is None else axes.wheel_radius / unit)
-
-    def view(points: Mapping[str, Enclosed]) -> View[Enclosed]:
-        return View(wheel, points, axes.enclosed, up, outboard, radius)
-
-    vectors = mechanism.drawing.vectors
-    drawn = {name: Enclosed.of(vectors[name]) for name in mechanism.topology.points}
-    origin = Enclosed.of(mechanism.origin / unit)
-    car = {n: Enclosed.of(number / unit if n in LENGTHS else number) for n, number in axes.car.items()}
-    return Corner(view(poses.points[0]), view(poses.in_chassis[0]), view(drawn), origin, car)
+    car = {n: constant(np.array(number / unit if n in LENGTHS else number)) for n, number in axes.car.items()}
+    return Corner(view(places), view(poses.in_chassis[0]), view(drawn), constant(origin), car)

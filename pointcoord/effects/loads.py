@@ -18,14 +18,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pointcoord.effects.arithmetic import dot, ratio, root, times
-from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of, enclosed_corner
+from pointcoord.effects.car_number import BY_TRAVEL, KINDS, corner_of
 from pointcoord.effects.corner import Corner, Wheel, wheels_of
 from pointcoord.effects.effect import Effect, Point, Poses, Quantity, no_role
 from pointcoord.effects.knuckle import contact_place, turning_of, velocity_at
@@ -125,11 +124,11 @@ class Loads(Effect):
         return topology.points
 
     def evaluate(self, poses: Poses) -> dict[str, dict[str, Array]]:
-        return _forces(poses, partial(corner_of, poses), 1.0, poses.constant)
+        return _forces(poses, 1.0, poses.constant)
 
     def errors(self, poses: EnclosedPoses, numbers: Numbers) -> dict[str, dict[str, Array]]:
         unit = float(poses.mechanism.unit)
-        exact = _forces(poses, partial(enclosed_corner, poses), 1.0 / unit, Enclosed.of)
+        exact = _forces(poses, 1.0 / unit, Enclosed.of)
         return {q: {n: each.errors(numbers[q][n]) for n, each in of.items()} for q, of in exact.items()}
 
     def refusal(self, topology: Topology, drawn: Mapping[str, Point], axes: CarAxes) -> str:
@@ -176,7 +175,6 @@ def _held(topology: Topology) -> tuple[Wheel, ...]:
 
 def _forces(
     poses: Poses | EnclosedPoses,
-    corner: Callable[[Wheel], Corner[Any]],
     unit: float,
     constant: Callable[[Array], Any],
 ) -> dict[str, dict[str, Any]]:
@@ -186,8 +184,8 @@ def _forces(
         unit: mm in the unit of the corners. constant: plain numbers in their arithmetic.
     """
     topology, slopes = poses.mechanism.topology, cast("Mapping[Way, Any]", poses.slopes)
-    loaded = [(corner(Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
-    damped = [(wheel, corner(wheel)) for wheel in _held(topology)]
+    loaded = [(corner_of(poses, Wheel(topology, part)), load) for part, load in poses.axes.loads.items()]
+    damped = [(wheel, corner_of(poses, wheel)) for wheel in _held(topology)]
 
     def along(way: Way) -> _Along:
         works = []
