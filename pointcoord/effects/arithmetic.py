@@ -44,32 +44,23 @@ class Dual(Generic[P]):
 S = TypeVar("S", Array, Enclosed, Dual[Any])
 
 
-def dot(a: S, b: S) -> S:
-    """Scalar product of vectors."""
-    if isinstance(a, Dual):
-        return Dual(dot(a.value, b.value), dot(a.value, b.slope) + dot(a.slope, b.value))
-    if isinstance(a, Enclosed):
-        return enclosure.dot(a, b)
-    return np.asarray(np.vecdot(a, b))
+def _product(of_floats: Callable[..., Any], of_enclosed: Callable[..., Any]) -> Callable[[S, S], S]:
+    """A product of two numbers or vectors by what it is of floats and of enclosures; (a b)' = a b' + a' b."""
+
+    def product(a: Any, b: Any) -> Any:
+        if isinstance(a, Dual):
+            return Dual(product(a.value, b.value), product(a.value, b.slope) + product(a.slope, b.value))
+        return of_enclosed(a, b) if isinstance(a, Enclosed) else np.asarray(of_floats(a, b))
+
+    return product
 
 
-def cross(a: S, b: S) -> S:
-    """Vector product."""
-    if isinstance(a, Dual):
-        return Dual(cross(a.value, b.value), cross(a.value, b.slope) + cross(a.slope, b.value))
-    if isinstance(a, Enclosed):
-        return enclosure.cross(a, b)
-    return vectors.cross(a, b)
-
-
-def times(factor: S, vector: S) -> S:
-    """A number times a vector."""
-    if isinstance(factor, Dual):
-        slope = times(factor.value, vector.slope) + times(factor.slope, vector.value)
-        return Dual(times(factor.value, vector.value), slope)
-    if isinstance(factor, Enclosed):
-        return factor.spread_out * vector
-    return np.asarray(factor[..., None] * vector)
+dot = _product(np.vecdot, enclosure.dot)
+"""Scalar product of vectors."""
+cross = _product(vectors.cross, enclosure.cross)
+"""Vector product."""
+times = _product(lambda factor, vector: factor[..., None] * vector, lambda factor, v: factor.spread_out * v)
+"""A number times a vector."""
 
 
 def linear(function: Callable[..., Any], x: S, *more: Any) -> S:
