@@ -116,6 +116,25 @@ MET: dict[str, Callable[[pytest.MonkeyPatch], object]] = {
     ),
 }
 
+# What each says: what is wrong, where, the value, what is allowed, and what to try.
+SAYS: dict[str, tuple[str, ...]] = {
+    "SceneError": ("mine: time:", "-1.0", "allowed: start < stop"),
+    "UnknownName": ("wheel_center", "did you mean 'wheel_centre'?", "lower_arm_front"),
+    "NotComputed": ("camber was not computed", "add 'camber'"),
+    "MissingLibrary": ("needs pandas or polars, which is not installed", "pip install 'pointcoord[pandas]'"),
+    "MechanismError": ("link", "lower_ball_joint", "strut_lower", "no length", "move one"),
+    "InputOutOfRange": ("input 'arm_angle' is 3.5 at t = 0 s", "allowed: 0 to pi rad"),
+    "InputNotKnown": ("input 'rack' is not known at t = 32768 s", "cancel to 0", "off by 3.1", "a table"),
+    "AssemblyError": ("t = ", "wanted", "rack = ", "stopped at", "condition number", "bring 'rack' back"),
+    "MotionTooLong": ("from 0 to 2.6 s", "segments; allowed: 5", "slow the inputs down", "'newton'"),
+    "MotionTooRough": ("input 'arm_angle' changes too fast", "after t = 0.4999999", "'newton'"),
+    "MotionNotMapped": ("after t = 0 s", "arm_angle = 0.8", "the most patches", "'newton'"),
+    "SingularConfiguration": ("in one line", "turn about that line is free", "move an input or a point"),
+    "OutsideMotion": ("t = 2.7 s is outside", "allowed: 0 to 2.6 s"),
+    "WrongArgument": ("ranges['arm_angle'] is (1.0, 0.9)", "allowed: two finite numbers", "the lower first"),
+    "NotCovered": ("the map does not cover arm_angle = ", "a fold", "make the map of a smaller range"),
+}
+
 
 def every_error_class() -> dict[str, type[BaseException]]:
     """All exception classes that the three packages define, by module and name."""
@@ -166,7 +185,7 @@ def test_every_error_class_is_met_by_some_test() -> None:
 
 
 @pytest.mark.parametrize("name", MET)
-def test_an_error_is_one_line_with_its_data_and_comes_back_from_another_process(
+def test_an_error_is_one_line_that_says_what_to_try_and_comes_back_from_another_process(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kind = getattr(pointcoord, name)
@@ -175,6 +194,8 @@ def test_an_error_is_one_line_with_its_data_and_comes_back_from_another_process(
     error = caught.value
     assert type(error) is kind
     assert "\n" not in str(error)
+    for words in SAYS[name]:
+        assert words in str(error)
     assert vars(error)
     again = pickle.loads(pickle.dumps(error))
     assert type(again) is type(error)
