@@ -60,13 +60,13 @@ CASES = (
     *(
         case
         for name, unit in {name: unit for one in SUBJECTS for name, unit in one.units.items()}.items()
-        for label in (hyphens(name).removesuffix("-angle"),)
+        for label in (name.removesuffix("_angle"),)
         for case in _rates(
             partial(hardly_moves, name),
             f"rate of the {label}, {unit}/s; then at rest",
             lambda one: values_of(one, (1e-25, 1e-100, 1e-175, 1e-300, 0.0)),
             subjects=[one for one in SUBJECTS if name in one.kinds],
-            name=f"{label}-hardly-moves",
+            name=f"{hyphens(label)}-hardly-moves",
             why=f"Only the {label} moves, slower and slower: rates keep their digits down to zero.",
         )
     ),

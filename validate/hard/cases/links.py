@@ -89,6 +89,12 @@ def without(tables: Tables, piece: Piece) -> None:
         del tables[table][key]
 
 
+def words(piece: Piece) -> str:
+    """Such as `rod tie_rod`, or `tie_rod_outer of knuckle`."""
+    table, key, *point = piece
+    return f"{point[0]} of {key}" if point else f"{table[:-1]} {key}"
+
+
 def held_apart(plain: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     """Pairs of points at a fixed distance: points by which a moving body is held, and a rod's ends."""
     rods = ((first, last) for first, last in plain["rods"].values())
@@ -143,7 +149,7 @@ def link_missing(subject: Subject, number: float) -> Change:
     tables, found = tables_of(subject), pieces(subject.plain)
     piece = list(found)[int(number) - 1]
     without(tables, piece)
-    return changed(subject, tables, subject.drawn), found[piece][0], {"missing": " ".join(piece)}
+    return changed(subject, tables, subject.drawn), found[piece][0], {"missing": words(piece)}
 
 
 def link_twice(subject: Subject, number: float) -> Change:
@@ -168,7 +174,7 @@ def link_twice_for_another(subject: Subject, number: float) -> Change:
     ends = tables["rods"][rod]
     without(tables, piece)
     tables["rods"] |= {f"{AGAIN}_{k}": list(ends) for k in range(rows)}
-    facts = {"twice": rod, "missing": " ".join(piece)}
+    facts = {"twice": rod, "missing": words(piece)}
     return changed(subject, tables, subject.drawn), names | {rod, AGAIN}, facts
 
 

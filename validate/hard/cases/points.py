@@ -129,8 +129,7 @@ def _case(row: Mapping[str, Any]) -> tuple[Case, ...]:
     least = row["right_from"]
     given = {key: row[key] for key in ("name", "why", "group", "suffix") if key in row}
     expected, subjects = right_from(least) if least else RIGHT, [NAMED[row["car"]]]
-    parameter = "distance, or its inverse, in parts of what it is in the car"
-    return family(partial(in_motion, row), parameter, row["values"], expected, subjects, **given)
+    return family(partial(in_motion, row), row["parameter"], row["values"], expected, subjects, **given)
 
 
 TABLE = tomllib.loads(files("validate.hard.cases").joinpath("points.toml").read_text(encoding="utf-8"))
