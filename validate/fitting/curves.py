@@ -73,7 +73,7 @@ class Curves:
             values = [s.values for s in self.measured.independent]
         if all(of_a_pose(s.meaning) for s in numbers):
             driven = self.driven.redrawn(design, self.design(amounts, self.driven.scene))
-            return driven.poses(values, numbers, TIGHT)
+            return driven.poses(values, TIGHT)
         return poses_of(design, self.measured).at(values, [s.values for s in self.measured.rates])
 
     def numbers(self, found: Found) -> Array:

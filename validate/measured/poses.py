@@ -194,18 +194,12 @@ class Driven:
             found[name] = max(low, self.drawn[name] - wide), min(high, self.drawn[name] + wide)
         return found
 
-    def poses(
-        self, values: Sequence[Array], asked: Sequence[Series] = (), tolerance: float | None = None
-    ) -> Found:
-        """Places, and the angles that columns ask for, of poses solved one by one; without bounds."""
-        return self.solved(*self.inputs(values), asked, tolerance)
+    def poses(self, values: Sequence[Array], tolerance: float | None = None) -> Found:
+        """Numbers of poses solved one by one; without bounds."""
+        return self.solved(*self.inputs(values), tolerance)
 
     def solved(
-        self,
-        inputs: Mapping[str, Array],
-        reasons: Mapping[int, str],
-        asked: Sequence[Series],
-        tolerance: float | None = None,
+        self, inputs: Mapping[str, Array], reasons: Mapping[int, str], tolerance: float | None = None
     ) -> Found:
         """The same at inputs; where there is a reason there is no pose."""
         poses = solve_poses(self.scene, inputs, tolerance)
@@ -213,17 +207,8 @@ class Driven:
         reasons = {**failed, **reasons}
         reached = poses.solved
         reached[[*reasons]] = False
-        places = {name: np.where(reached[:, None], place, np.nan) for name, place in poses.position.items()}
-        numbers: Numbers = {PLACES: places}
-        axes, topology = axes_of(self.scene), self.scene.mechanism.topology
-        for s in asked:
-            if (angle := angle_of(s.meaning)) is not None:
-                wheel = Wheel.of(topology, s.meaning.name)
-                start, end = (places[point] for point in angle.ends(wheel))
-                value = angle.value(start, end, axes.on(wheel.side))
-                numbers.setdefault(s.meaning.quantity, {})[s.meaning.name] = value
-        bounds = {PLACES: {name: np.zeros_like(place) for name, place in places.items()}}
-        return Found(numbers, bounds, reached, reasons, inputs)
+        computed = {quantity: channel for quantity, channel in poses.numbers.items() if channel.computed}
+        return Found(spread(computed, reached, reached), {}, reached, reasons, inputs)
 
 
 def at_either_end(

@@ -120,7 +120,7 @@ def _implied(driven: Driven, some: Measured, names: Sequence[str]) -> Found | No
 
     def at(x: Array) -> tuple[Found, Array]:
         """Our numbers there, and how far they are from theirs, of their spread, (columns, rows)."""
-        found = driven.solved(here | dict(zip(names, x, strict=True)), {}, some.numbers)
+        found = driven.solved(here | dict(zip(names, x, strict=True)), {})
         ours = [np.asarray(ours_of(s, found, driven.scene)[0]) for s in some.numbers]
         apart = [s.apart(one, s.values) for s, one in zip(some.numbers, ours, strict=True)]
         return found, np.stack(apart) / np.where(wide > 0.0, wide, 1.0)[:, None]
