@@ -110,11 +110,10 @@ def compare_results(
     outcome = Outcome(name, rows, solutions, notes, lacking, factor, faults=faults, compared=compared)
     wrong = [(row.quantity, row.name) for row in outcome.disagreements]
     explanations = _explained(poses.driven, scene, measured, by_row, ours, wrong, factor)
-    if wrong and (found := meant_otherwise(scene, measured, held, accuracy, factor, poses.driven)):
+    if wrong and (other := meant_otherwise(scene, measured, held, accuracy, factor, poses.driven)):
         # What explains the whole file leaves nothing for what explains a part of some difference.
-        names = tuple(map(".".join, wrong))
-        first = (Explanation(one.words, one.kind, names, one.leftover) for one in found)
-        explanations = (*first, *(one for one in explanations if one.leftover <= 1.0))
+        first = Explanation(other.words, other.kind, tuple(map(".".join, wrong)), other.leftover)
+        explanations = (first, *(one for one in explanations if one.leftover <= 1.0))
     one, *others = measured.independent
     over = "row" if others else f"{one.column} [{one.meaning.unit}]"
     outcome = replace(outcome, explanations=explanations)

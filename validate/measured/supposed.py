@@ -63,7 +63,7 @@ def meant_otherwise(
     accuracy: float | None,
     factor: float,
     driven: Driven,
-) -> list[Supposed]:
+) -> Supposed | None:
     """What explains the whole file: another travel, or else a change of its columns or held inputs."""
     for one in suppositions(scene, measured, driven):
         try:
@@ -76,8 +76,8 @@ def meant_otherwise(
         kept = np.isfinite(shares).any() and (one.kind == "travel" or _reached(other) >= _reached(held))
         if kept and leftover <= NEARLY:
             more = f"; this leaves {leftover:.3g} times what is tolerated" if leftover > 1.0 else ""
-            return [replace(one, words=one.words + more, leftover=leftover)]
-    return []
+            return replace(one, words=one.words + more, leftover=leftover)
+    return None
 
 
 def suppositions(scene: Scene, measured: Measured, driven: Driven) -> Iterator[Supposed]:

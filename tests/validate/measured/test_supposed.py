@@ -106,6 +106,13 @@ def test_two_columns_with_the_other_sign_are_told_together() -> None:
     assert found.outcome.explanations[0].leftover <= 1.0
 
 
+def test_an_input_that_every_row_has_at_another_value_is_told_with_it() -> None:
+    numbers = at(TURNS, np.full_like(TURNS, 5.0))
+    del numbers["rise"]
+    found = compared(*printed({"arm_angle [rad]": TURNS}, numbers), CAR)
+    assert found.outcome.explanations[0].words == "rack is 5 mm in every row, not 0"
+
+
 def test_another_fault_is_no_other_zero() -> None:
     numbers = at(np.full_like(RACKS, HOME), RACKS)
     del numbers["rise"]
