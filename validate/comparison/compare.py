@@ -15,7 +15,7 @@ from pointcoord.results.named_columns import html_table
 from pointcoord.scene.scene_file import Scene
 from pointcoord.simulation import require_scene
 from pointcoord.wording import nearest, shown
-from validate.comparison.given import Given, given
+from validate.comparison.given import given_by_both
 from validate.comparison.tolerance import largest_numbers, level, tolerance, untested
 from validate.exit_status import ExitStatus
 from validate.formulations.asked_numbers import asked_numbers, per_second
@@ -252,12 +252,9 @@ def compare_solutions(
     Raises:
         FormulationError: one of them does not say at which instants its numbers are.
     """
-    instants = scene.instants
-    first, second = given(one, instants), given(two, instants)
-    both = first.found & second.found
+    instants, first, second = given_by_both(one, two, scene.instants)
     faults = tuple(dict.fromkeys((*first.faults, *second.faults)))
     notes = tuple(dict.fromkeys((*one.notes, *two.notes, *first.notes, *second.notes, *faults)))
-    first, second = first.at(both), second.at(both)
     rows: list[Comparison] = []
     missing: list[str] = []
     for quantity, names in (asked_numbers(scene) if asked is None else asked).items():
@@ -266,20 +263,20 @@ def compare_solutions(
         missing += lacking
         pair = Pair.of(first, second, quantity, factor)
         for part in parts:
-            row = _reasoned(_row(name, part, pair, instants[both]), lacking, notes, faults)
+            row = _reasoned(_row(name, part, pair, instants), lacking, notes, faults)
             # Decided only where one of them may give what it has: else every row has to agree.
             rows.append(replace(row, telling=pair.tells(scene, part)) if row.verdict == "agrees" else row)
     return Outcome(name, tuple(rows), (one, two), notes, tuple(missing), factor, faults=faults)
 
 
-def _parts(quantity: str, asked: Sequence[str], one: Given, two: Given) -> list[str]:
+def _parts(quantity: str, asked: Sequence[str], one: Solution, two: Solution) -> list[str]:
     """Every point, body or angle that the scene asks for, and whatever else both give."""
     both = (name for name in one.numbers[quantity] if name in two.numbers[quantity])
     return list(dict.fromkeys((*asked, *both)))
 
 
 def _missing(
-    quantity: str, parts: Sequence[str], one: Given, two: Given
+    quantity: str, parts: Sequence[str], one: Solution, two: Solution
 ) -> Iterator[tuple[str, Sequence[str]]]:
     """Lines on what one of them does not give, each with the names that it is about."""
     words = QUANTITIES[quantity].words
@@ -339,12 +336,13 @@ class Side:
     level: Array
 
     @classmethod
-    def of(cls, side: Given, quantity: str) -> Side:
+    def of(cls, side: Solution, quantity: str) -> Side:
         """A quantity of all that a formulation gives."""
-        numbers, claims = side.numbers[quantity], side.claims[quantity]
-        largest = largest_numbers(numbers.values(), len(side.condition))
-        widest = level(claims.values(), largest, side.condition, side.usual.get(quantity))
-        return cls(side.formulation, numbers, claims, side.blind, largest, widest)
+        numbers, own = side.numbers[quantity], side.accuracy
+        claims = own.claims[quantity]
+        largest = largest_numbers(numbers.values(), len(own.condition))
+        widest = level(claims.values(), largest, own.condition, own.usual.get(quantity))
+        return cls(side.formulation, numbers, claims, own.blind, largest, widest)
 
     def claimed(self, name: str) -> Array:
         """What it claims of a name, (N, components): 0 where it claims nothing."""
@@ -365,7 +363,7 @@ class Pair:
     factor: float
 
     @classmethod
-    def of(cls, one: Given, two: Given, quantity: str, factor: float) -> Pair:
+    def of(cls, one: Solution, two: Solution, quantity: str, factor: float) -> Pair:
         """A quantity of all that both give."""
         return cls(quantity, Side.of(one, quantity), Side.of(two, quantity), factor)
 

@@ -7,7 +7,7 @@ number is told and left out; the rest is compared.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,51 +21,32 @@ Arrays = dict[str, dict[str, Array]]
 
 @dataclass(frozen=True)
 class Given:
-    """Numbers of one formulation at the instants asked for.
+    """What can be compared of a solution.
 
     Attributes:
-        found: which of the instants it gives, (instants,); its arrays have a row for each of these.
-        numbers: by quantity and name, (N, 3) or (N,).
-        claims: how far each may be off, likewise; a name is missing where nothing is claimed of it.
-        condition: condition number at each instant.
-        blind: see `Accuracy.blind`.
-        usual: see `Accuracy.usual`.
-        notes: what the user should know of it. faults: what cannot be used and is left out, and why.
+        found: which of the instants asked for it gives, (instants,).
+        solution: at these; with every quantity, though it may give none of it; its notes are what the user
+            should know beside what it says itself.
     """
 
-    formulation: str
     found: NDArray[np.bool_]
-    numbers: Arrays
-    claims: Arrays
-    condition: Array
-    notes: tuple[str, ...]
-    blind: NDArray[np.bool_] | None = None
-    faults: tuple[str, ...] = ()
-    usual: Mapping[str, Array] = field(default_factory=dict)
+    solution: Solution
 
-    def at(self, instants: NDArray[np.bool_]) -> Given:
-        """The same at fewer instants, a part of those that are found."""
+    def at(self, instants: NDArray[np.bool_]) -> Solution:
+        """At fewer instants, a part of those that are found."""
         rows = instants[self.found]
-        if rows.all():
-            return self
-        numbers, claims = (
-            {
-                quantity: {name: array[rows] for name, array in part.items()}
-                for quantity, part in arrays.items()
-            }
-            for arrays in (self.numbers, self.claims)
-        )
-        blind = None if self.blind is None else self.blind[rows]
-        usual = {quantity: most[rows] for quantity, most in self.usual.items()}
-        return replace(
-            self,
-            found=instants,
-            numbers=numbers,
-            claims=claims,
-            condition=self.condition[rows],
-            blind=blind,
-            usual=usual,
-        )
+        return self.solution if rows.all() else self.solution.at(rows)
+
+
+def given_by_both(one: Solution, two: Solution, instants: Array) -> tuple[Array, Solution, Solution]:
+    """The instants that both give, and what each gives at these.
+
+    Raises:
+        FormulationError: see `given`.
+    """
+    first, second = given(one, instants), given(two, instants)
+    both = first.found & second.found
+    return np.asarray(instants)[both], first.at(both), second.at(both)
 
 
 def given(solution: Solution, instants: Array) -> Given:
@@ -119,7 +100,10 @@ def given(solution: Solution, instants: Array) -> Given:
         condition = np.ones_like(times)
     blind = None if solution.accuracy.blind is None else solution.accuracy.blind[places]
     usual = {quantity: most[places] for quantity, most in solution.accuracy.usual.items()}
-    return Given(who, found, numbers, claims, condition[places], tuple(notes), blind, tuple(faults), usual)
+    accuracy = replace(
+        solution.accuracy, condition=condition[places], claims=claims, blind=blind, usual=usual
+    )
+    return Given(found, Solution(who, instants[found], numbers, accuracy, tuple(notes), tuple(faults)))
 
 
 def usable(solution: Solution, instants: Array) -> Solution:
@@ -128,14 +112,13 @@ def usable(solution: Solution, instants: Array) -> Solution:
     Raises:
         FormulationError: see `given`.
     """
-    side = given(solution, instants)
+    side = given(solution, instants).solution
     numbers, claims = (
         {quantity: part for quantity, part in arrays.items() if part}
-        for arrays in (side.numbers, side.claims)
+        for arrays in (side.numbers, side.accuracy.claims)
     )
-    return Solution(
-        side.formulation, instants[side.found], numbers, Accuracy(side.condition, claims, usual=side.usual)
-    )
+    accuracy = Accuracy(side.accuracy.condition, claims, usual=side.accuracy.usual)
+    return Solution(side.formulation, side.times, numbers, accuracy)
 
 
 def _places(times: Array, instants: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp] | slice]:

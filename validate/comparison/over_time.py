@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from validate.comparison.compare import Comparison, Outcome, Pair, shares
-from validate.comparison.given import given
+from validate.comparison.given import given_by_both
 
 Array = NDArray[np.float64]
 
@@ -34,12 +34,10 @@ class OverTime:
 
 def over_time(outcome: Outcome, row: Comparison, instants: Array) -> OverTime | None:
     """A row of an outcome over its instants, (N,); None where one of both gives no such numbers."""
-    sides = [given(solution, instants) for solution in outcome.solutions]
-    both = sides[0].found & sides[1].found
-    one, two = (side.at(both) for side in sides)
+    times, one, two = given_by_both(*outcome.solutions, instants)
     pair = Pair.of(one, two, row.quantity, outcome.factor)
     if not pair.gives(row.name):
         return None
     gap, allowed = pair.gap(row.name), pair.allowed(row.name)
     each, worst = np.arange(len(gap)), np.argmax(shares(gap, allowed), axis=1)
-    return OverTime(np.asarray(instants)[both], gap[each, worst], allowed[each, worst])
+    return OverTime(times, gap[each, worst], allowed[each, worst])

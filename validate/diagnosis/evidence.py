@@ -20,7 +20,7 @@ from pointcoord.linkage.car_axes import CarAxes
 from pointcoord.numerics.rounding import EPS
 from pointcoord.simulation import finest_tolerance
 from validate.comparison.compare import SMALLEST, Outcome, Pair, gaps_between
-from validate.comparison.given import given as given_numbers
+from validate.comparison.given import given_by_both
 from validate.formulations.asked_numbers import per_second
 from validate.formulations.protocol import Numbers, Solution
 
@@ -174,17 +174,14 @@ class Evidence:
     @classmethod
     def of(cls, scene: Scene, given: Solution, held: Solution, outcome: Outcome) -> Evidence:
         """The numbers of all rows that both give, held to what both claim."""
-        instants = scene.instants
-        one, two = given_numbers(given, instants), given_numbers(held, instants)
-        both = one.found & two.found
-        one, two = one.at(both), two.at(both)
+        times, one, two = given_by_both(given, held, scene.instants)
         pairs = {quantity: Pair.of(one, two, quantity, outcome.factor) for quantity in one.numbers}
         rows = [(q, name) for q, pair in pairs.items() for name in pair.one.numbers if pair.gives(name)]
         trusted = {row: two.numbers[row[0]][row[1]] for row in rows}
         disagree = {(row.quantity, row.name) for row in outcome.disagreements}
         return cls(
             scene=scene,
-            times=instants[both],
+            times=times,
             given={row: one.numbers[row[0]][row[1]] for row in rows},
             held=trusted,
             allowed={(q, n): pairs[q].allowed(n).reshape(trusted[q, n].shape) + SMALLEST for q, n in rows},

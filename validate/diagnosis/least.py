@@ -83,8 +83,9 @@ def fitted(
         read: the numbers (B, M) at sets of parameters (B, P); NaN where there are none.
         start: where the parameters are ours. step: of differences by each.
         off: how far the numbers may be from theirs; if all are within it nothing is left.
-        rounded: whether the roundest parameters that leave as little are taken, which are meant: those by
-            which all numbers are within what they may be off go before rounder ones.
+        rounded: whether, of numbers that are all nearly within what they may be off, the roundest parameters
+            that leave as little are taken, which are meant: those by which all are within it go before
+            rounder ones.
         known: the difference at the start, (M,), and its slopes, (M, P), where they are.
     """
     differences = _Differences(read, theirs, step)
@@ -99,17 +100,19 @@ def fitted(
     if found is None:
         return None
     least = differences.left(found)
-    if least > PROMISING * apart and not (np.abs(differences.at(found)) <= NEARLY * np.asarray(off)).all():
+    near = bool((np.abs(differences.at(found)) <= NEARLY * np.asarray(off)).all())
+    if least > PROMISING * apart and not near:
         return None
 
-    def kept(near: Array) -> bool:
-        return differences.left(near) <= KEPT * least and bool((np.abs(differences.at(near)) <= off).all())
+    def kept(one: Array) -> bool:
+        return differences.left(one) <= KEPT * least and bool((np.abs(differences.at(one)) <= off).all())
 
-    if rounded:
-        near = roundest(found, DECIMALS, kept)
-        found = (
-            near if kept(near) else roundest(found, DECIMALS, lambda n: differences.left(n) <= CLOSE * least)
-        )
+    def close(one: Array) -> bool:
+        return differences.left(one) <= CLOSE * least
+
+    if rounded and near:
+        meant = roundest(found, DECIMALS, kept)
+        found = meant if kept(meant) else roundest(found, DECIMALS, close)
     return Fit(found, differences.left(found))
 
 

@@ -21,6 +21,15 @@ Numbers = Mapping[str, Mapping[str, Array]]
 """By quantity, then by point, body or angle: (N, 3), or (N,) of what the car has one number of."""
 
 
+Places = slice | NDArray[np.bool_] | NDArray[np.intp]
+"""Which instants of several."""
+
+
+def numbers_at(numbers: Numbers, places: Places) -> Numbers:
+    """Numbers at some of their instants."""
+    return {q: {name: array[places] for name, array in of.items()} for q, of in numbers.items()}
+
+
 def shape_of(quantity: str, count: int) -> tuple[int, ...]:
     """The shape of the numbers of a quantity at `count` instants: vectors but of what the whole car has."""
     return (count,) if QUANTITIES[quantity].of == "car" else (count, 3)
@@ -65,6 +74,16 @@ class Accuracy:
     blind: NDArray[np.bool_] | None = None
     stated: float | None = None
     usual: Mapping[str, Array] = field(default_factory=dict)
+
+    def at(self, places: Places) -> Accuracy:
+        """The same at some of its instants."""
+        return replace(
+            self,
+            condition=self.condition[places],
+            claims=numbers_at(self.claims, places),
+            blind=None if self.blind is None else self.blind[places],
+            usual={quantity: most[places] for quantity, most in self.usual.items()},
+        )
 
     def with_claims(self, claims: Numbers) -> Accuracy:
         """The same with other claims of some quantities."""
@@ -126,6 +145,11 @@ class Solution:
     accuracy: Accuracy
     notes: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
+
+    def at(self, places: Places) -> Solution:
+        """The same at some of its instants."""
+        numbers, accuracy = numbers_at(self.numbers, places), self.accuracy.at(places)
+        return replace(self, times=self.times[places], numbers=numbers, accuracy=accuracy)
 
     def with_numbers(self, numbers: Numbers) -> Solution:
         """The same with other numbers of some quantities."""

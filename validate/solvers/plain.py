@@ -176,9 +176,9 @@ class PlainSolver:
         numbers, notes, faults = _numbers(self.name, answer, scene)
         times = self._times(answer, scene)
         accuracy, untold = self._accuracy(scene)
-        return Solution(
-            self.name, times, numbers, _at(accuracy, scene.instants, times), (*notes, *untold), faults
-        )
+        # Of times that are none of the scene's nothing is compared.
+        places = np.clip(np.searchsorted(scene.instants, times), 0, len(scene.instants) - 1)
+        return Solution(self.name, times, numbers, accuracy.at(places), (*notes, *untold), faults)
 
     def _accuracy(self, scene: Scene) -> tuple[Accuracy, tuple[str, ...]]:
         """What is claimed at the scene's instants; nothing, and why, of a scene without a reference."""
@@ -247,14 +247,6 @@ def _left_out(who: str, what: str, name: object, there: Iterable[str]) -> str:
     return f"{who} gives {what}, which the scene does not ask for{hint}; it is left out" + (
         "" if hint else f"; asked for: {', '.join(names)}"
     )
-
-
-def _at(accuracy: Accuracy, instants: Array, times: Array) -> Accuracy:
-    """An accuracy at instants, at times of which some are among these; the others are not compared."""
-    places = np.clip(np.searchsorted(instants, times), 0, len(instants) - 1)
-    claims = {q: {n: array[places] for n, array in arrays.items()} for q, arrays in accuracy.claims.items()}
-    blind = None if accuracy.blind is None else accuracy.blind[places]
-    return replace(accuracy, condition=accuracy.condition[places], claims=claims, blind=blind)
 
 
 def raised_at(error: BaseException) -> str:

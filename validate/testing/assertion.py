@@ -156,9 +156,9 @@ def assert_refuses(
     except FormulationError as error:
         raise WrongStates([str(error)]) from None
     side = given(solution, taken.instants)
-    if side.faults:
-        raise WrongStates(side.faults)
-    arrays = [array for part in side.numbers.values() for array in part.values()]
+    if side.solution.faults:
+        raise WrongStates(side.solution.faults)
+    arrays = [array for part in side.solution.numbers.values() for array in part.values()]
     if not arrays:
         raise WrongStates([f"the solver gives nothing that {name!r} asks for"])
     finite = np.all([np.isfinite(a.reshape(len(a), -1)).all(axis=-1) for a in arrays], axis=0)
