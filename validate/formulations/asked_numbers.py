@@ -2,22 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from pointcoord import Scene
+from pointcoord.effects.effect import Effect
 from pointcoord.effects.loads import LOADS
 from pointcoord.effects.plan import plan_effects
 from pointcoord.effects.registry import QUANTITIES
+from pointcoord.linkage.topology import Topology
 
 
 def asked_numbers(scene: Scene) -> dict[str, tuple[str, ...]]:
     """By quantity, in the order of pointcoord's registry, the names of what the scene's effects give."""
-    topology = scene.mechanism.topology
-    every = {"point": scene.reported_points, "body": tuple(topology.bodies), "joint": (), "car": ()}
-    asked: dict[str, tuple[str, ...]] = {}
-    for effect in plan_effects(scene.effects).computed:
+    effects = plan_effects(scene.effects).computed
+    return numbers_of(effects, scene.mechanism.topology, scene.reported_points)
+
+
+def numbers_of(
+    effects: Iterable[Effect], topology: Topology, points: tuple[str, ...]
+) -> dict[str, tuple[str, ...]]:
+    """The same of effects, with all of these points."""
+    every = {"point": points, "body": tuple(topology.bodies), "joint": (), "car": ()}
+    found: dict[str, tuple[str, ...]] = {}
+    for effect in effects:
         for quantity, names in effect.gives_numbers(topology).items():
             named = every[QUANTITIES[quantity].of] if names is None else names
-            asked[quantity] = tuple(dict.fromkeys((*asked.get(quantity, ()), *named)))
-    return {quantity: asked[quantity] for quantity in QUANTITIES if quantity in asked}
+            found[quantity] = tuple(dict.fromkeys((*found.get(quantity, ()), *named)))
+    return {quantity: found[quantity] for quantity in QUANTITIES if quantity in found}
 
 
 def asked_of_the_car(scene: Scene) -> tuple[str, ...]:

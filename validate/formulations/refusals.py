@@ -11,9 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Integral
 
-from pointcoord import AssemblyError, InputOutOfRange, MotionTooLong, Scene, SceneError
+from pointcoord import AssemblyError, MotionTooLong, Scene
 from validate.formulations.protocol import FormulationError
-from validate.peers.errors import HardpointsError, InputError, PeerError
 
 DRAWING = "drawing has no assembly"
 HARDPOINTS = "hardpoints make no mechanism"
@@ -25,6 +24,15 @@ INPUT = "input out of range"
 # assembled, the end of the reach on the way to the first instant or after it.
 FAMILIES = ({DRAWING, HARDPOINTS}, {START, MOTION})
 
+KINDS: Mapping[str, str] = {
+    "SceneError": HARDPOINTS,
+    "HardpointsError": HARDPOINTS,
+    "DescriptionError": HARDPOINTS,
+    "InputOutOfRange": INPUT,
+    "InputError": INPUT,
+}
+"""Of errors by the names of their classes: without Pinocchio there is no module of absolute to ask."""
+
 
 def why_refused(error: FormulationError) -> str:
     """The kind of reason of a refusal; the name of its error where that is of no kind."""
@@ -32,43 +40,17 @@ def why_refused(error: FormulationError) -> str:
 
 
 def _class_of(reason: Exception) -> str:
-    if isinstance(reason, SceneError):
-        return HARDPOINTS
-    if isinstance(reason, InputOutOfRange):
-        return INPUT
+    names = [one.__name__ for one in type(reason).__mro__]
     if isinstance(reason, AssemblyError):
         if reason.problem.startswith("the drawing"):
             return DRAWING
-        return MOTION if reason.partial is not None else START
-    if isinstance(reason, HardpointsError):
-        return HARDPOINTS
-    if isinstance(reason, InputError):
-        return INPUT
-    if isinstance(reason, PeerError):
-        return _of_instant(reason.instant)
-    if type(reason).__module__.partition(".")[0] == "absolute":
-        return _class_of_absolute(reason)
-    return type(reason).__name__
-
-
-def _class_of_absolute(reason: Exception) -> str:
-    # Imported where such an error is there: without Pinocchio there is none, and no such module.
-    from absolute import errors
-
-    if isinstance(reason, errors.DescriptionError):
-        return HARDPOINTS
-    if isinstance(reason, errors.InputError):
-        return INPUT
-    if isinstance(reason, errors.PoseError):
-        return _of_instant(reason.instant)
-    return type(reason).__name__
-
-
-def _of_instant(number: int | None) -> str:
-    """What cannot be solved at an instant, or in the drawing."""
-    if number is None:
-        return DRAWING
-    return START if number == 0 else MOTION
+        return START if reason.partial is None else MOTION
+    found = next((KINDS[name] for name in names if name in KINDS), "")
+    if not found and {"PeerError", "PoseError"} & {*names}:
+        # What cannot be solved at an instant, or in the drawing.
+        instant = getattr(reason, "instant", None)
+        return DRAWING if instant is None else START if instant == 0 else MOTION
+    return found or type(reason).__name__
 
 
 def same_reason(first: str, second: str) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from pointcoord.method import AUTO, CHORD, MAP, NEWTON, NEWTON_COLD
 from validate.errors import UsageError
@@ -52,6 +53,18 @@ OUTSIDE = ("mujoco", "exudyn")
 """Other people's programs, which the extra `peers` brings."""
 
 
+MODELS = {
+    "absolute": "validate.formulations.absolute_coordinates.AbsoluteCoordinates",
+    "reference": "validate.formulations.many_digits.ManyDigits",
+}
+PROGRAMS = {
+    "relative": "validate.peers.in_pinocchio.InPinocchio",
+    "mujoco": "validate.peers.in_mujoco.InMujoco",
+    "exudyn": "validate.peers.in_exudyn.InExudyn",
+}
+"""What makes a linkage a model of a program."""
+
+
 def formulation(name: str) -> Formulation:
     """A formulation by its name; what it needs is imported when it is used.
 
@@ -64,11 +77,31 @@ def formulation(name: str) -> Formulation:
     if name not in WORDS:
         raise UsageError(f"no formulation is called {name!r}; there are: {', '.join(NAMES)}")
     try:
-        return _OTHERS[name]() if name in _OTHERS else _in_tree(name)
+        if name in MODELS:
+            model: Formulation = _imported(MODELS[name])()
+            return model
+        from validate.formulations.trees import InTree
+
+        return InTree(name, program_of(name))
     except MissingPackage:
         raise
     except ImportError as error:
         raise MissingPackage(name, error) from error
+
+
+def program_of(name: str) -> Callable[[Linkage], Program]:
+    """What makes a linkage a model of a program: `relative`, or one of `OUTSIDE`.
+
+    Raises:
+        MissingPackage: the program is not installed, or does not load.
+    """
+    found: Callable[[Linkage], Program] = _imported(PROGRAMS[name])
+    return found
+
+
+def _imported(path: str) -> Any:
+    module, _, name = path.rpartition(".")
+    return getattr(import_module(module), name)
 
 
 def second_there() -> tuple[str, str]:
@@ -97,43 +130,3 @@ def missing(names: Iterable[str]) -> dict[str, str]:
         except MissingPackage as error:
             lacking[name] = str(error)
     return lacking
-
-
-def _absolute() -> Formulation:
-    from validate.formulations.absolute_coordinates import AbsoluteCoordinates
-
-    return AbsoluteCoordinates()
-
-
-def _reference() -> Formulation:
-    from validate.formulations.many_digits import ManyDigits
-
-    return ManyDigits()
-
-
-_OTHERS: dict[str, Callable[[], Formulation]] = {"absolute": _absolute, "reference": _reference}
-
-
-def _in_tree(name: str) -> Formulation:
-    from validate.formulations.trees import InTree
-
-    return InTree(name, program_of(name))
-
-
-def program_of(name: str) -> Callable[[Linkage], Program]:
-    """What makes a linkage a model of a program: `relative`, or one of `OUTSIDE`.
-
-    Raises:
-        MissingPackage: the program is not installed, or does not load.
-    """
-    if name == "mujoco":
-        from validate.peers.in_mujoco import InMujoco
-
-        return InMujoco
-    if name == "exudyn":
-        from validate.peers.in_exudyn import InExudyn
-
-        return InExudyn
-    from validate.peers.in_pinocchio import InPinocchio
-
-    return InPinocchio

@@ -5,21 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection
 from difflib import get_close_matches
 
-from pointcoord.effects.registry import ALWAYS, EFFECTS, QUANTITIES
+from pointcoord.effects.registry import ALWAYS, EFFECTS
 from pointcoord.linkage.topology import Topology
+from validate.formulations.asked_numbers import numbers_of
 
 ALIKE = 0.8  # of their letters, of names of which one is the other misspelt: "iterations" is no acceleration
 
 
 def known_names(topology: Topology) -> dict[str, tuple[str, ...]]:
     """By quantity, every name that a number of it can have, whether a scene asks for it or not."""
-    every = {"point": topology.points, "body": tuple(topology.bodies), "car": ()}
-    found: dict[str, tuple[str, ...]] = {}
-    for effect in (*ALWAYS, *EFFECTS.values()):
-        for quantity, names in effect.gives_numbers(topology).items():
-            there = every[QUANTITIES[quantity].of] if names is None else names
-            found[quantity] = tuple(dict.fromkeys((*found.get(quantity, ()), *there)))
-    return found
+    return numbers_of((*ALWAYS, *EFFECTS.values()), topology, tuple(topology.points))
 
 
 def misspelt(name: object, known: Collection[str]) -> str:
