@@ -117,6 +117,8 @@ def test_what_is_no_solution_and_a_claim_that_is_no_bound_are_refusals(
     with pytest.raises(FormulationError, match=r"^mine: ") as caught:
         with_solution(lambda scene: make())
     assert said in str(caught.value)
+    if isinstance(caught.value.reason, AccuracyError):
+        assert "; allowed: " in str(caught.value)
 
 
 def test_numbers_that_are_none_are_counted_by_instants_and_whole_ones_not_told_of() -> None:
@@ -133,18 +135,3 @@ def test_numbers_that_are_none_are_counted_by_instants_and_whole_ones_not_told_o
     told = f"mine: position of wheel_centre is not a number at 2 of {COUNT} instants"
     assert told in notes[0]
     assert not any("not a number" in note or "instants; the others" in note for note in notes[1])
-
-
-@pytest.mark.parametrize(
-    ("claim", "said"),
-    [
-        (np.full((COUNT, 3), -1e-9), "velocity of wheel_centre is -1e-09 at instant number 0"),
-        (np.full((COUNT, 3), np.nan), "is nan"),
-        (np.ones((COUNT, 3), dtype=int), "is of type int64"),
-        (np.ones(COUNT), "has the shape"),
-    ],
-)
-def test_a_claim_that_is_no_bound_is_refused_with_what_is_allowed(claim: Any, said: str) -> None:
-    with pytest.raises(AccuracyError, match="allowed: ") as caught:
-        Accuracy(np.ones(COUNT), {"velocity": {"wheel_centre": claim}})
-    assert said in str(caught.value)

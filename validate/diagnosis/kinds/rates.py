@@ -1,7 +1,7 @@
 """Rates by finite differences.
 
-Their velocity is then what their positions change by from instant to instant. With h the time between two
-instants: forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
+A velocity is then what positions change by from instant to instant. With h the time between two instants:
+forward (x_{k+1} - x_k) / h, backward (x_k - x_{k-1}) / h, central the mean of both, and for
 accelerations also (x_{k+1} - 2 x_k + x_{k-1}) / h^2. At the ends, where the rule has no neighbour, it is
 one-sided, or the neighbour's number is repeated, or a zero stands for it. Differences of numbers that
 disagree themselves explain nothing: any car's rates are nearly differences of its positions.
@@ -37,19 +37,10 @@ def _inner(x: Array, t: Array) -> Array:
 
 
 def _padded(rule: Rule, before: int, after: int, mode: Literal["edge", "constant"] = "edge") -> Rule:
-    """A rule with its first and last number repeated, or with zeros."""
-
     def padded(x: Array, t: Array) -> Array:
         return np.pad(rule(x, t), [(before, after), *[(0, 0)] * (x.ndim - 1)], mode=mode)
 
     return padded
-
-
-def _not_halved(x: Array, t: Array) -> Array:
-    """(x_{k+1} - x_{k-1}) / h, and one-sided differences at the ends."""
-    found = _central(x, t)
-    found[1:-1] *= 2.0
-    return found
 
 
 def _twice(rule: Rule) -> Rule:
@@ -65,7 +56,6 @@ ONCE: dict[str, Rule] = {
     "central differences, zero at the ends": _padded(_inner, 1, 1, "constant"),
     "forward differences, zero in the last row": _padded(_steps, 0, 1, "constant"),
     "backward differences, zero in the first row": _padded(_steps, 1, 0, "constant"),
-    "central differences over one step, not two": _not_halved,
 }
 RULES: list[tuple[str, Rule, int]] = [
     *((words, rule, 1) for words, rule in ONCE.items()),
