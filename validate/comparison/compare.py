@@ -169,7 +169,8 @@ class Outcome:
 
     def __repr__(self) -> str:
         first, second = (solution.formulation for solution in self.solutions)
-        counts = (counted(sum(row.verdict == v for row in self.rows), v) for v in _verdicts(self.rows))
+        verdicts = dict.fromkeys(row.verdict for row in self.rows)
+        counts = (counted(sum(row.verdict == v for row in self.rows), v) for v in verdicts)
         return f"<Outcome of {self.scene!r}, {first} and {second}: {', '.join(counts)}>"
 
     def _repr_html_(self) -> str:
@@ -193,10 +194,6 @@ def counted(count: int, verdict: str) -> str:
     if verdict in ("agrees", "disagrees") and count != 1:
         return f"{count} {verdict.removesuffix('s')}"
     return f"{count} {verdict}"
-
-
-def _verdicts(rows: tuple[Comparison, ...]) -> list[str]:
-    return list(dict.fromkeys(row.verdict for row in rows))
 
 
 def compare(
@@ -470,5 +467,4 @@ def gaps_between(mine: Array, other: Array, unit: str) -> Array:
 
 
 def _columns(array: Array) -> Array:
-    """Numbers (N,) or (N, 3) as (N, components)."""
     return array.reshape(len(array), -1)

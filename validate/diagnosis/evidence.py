@@ -330,11 +330,6 @@ class Evidence:
         """The quantities of which a row disagrees."""
         return tuple(dict.fromkeys(row[0] for row in self.wrong))
 
-    @property
-    def axes(self) -> CarAxes:
-        """The car's directions."""
-        return axes_of(self.scene)
-
     def places(self, point: str) -> Array | None:
         """Where a point is, (N, 3), whether the scene reports it or not; None where it cannot be solved."""
         if point in self.known:

@@ -175,12 +175,10 @@ def _open(evidence: Evidence, found: Iterable[_Found], mostly: bool = False) -> 
 
 
 def _supposed(evidence: Evidence, stage: str) -> list[_Found]:
-    """What the numbers carry of the faults of a stage."""
     return [one for kind in KINDS if kind.stage == stage for one in _of_kind(evidence, kind)]
 
 
 def _of_kind(evidence: Evidence, kind: Kind) -> list[_Found]:
-    """What the numbers carry of the faults of a kind."""
     found: list[_Found] = []
     if evidence.over_time or not kind.of_time:
         # A car that cannot be solved, or gives no such numbers, explains nothing.

@@ -202,12 +202,13 @@ def _coordinate(evidence: Evidence, names: Coordinate) -> Change:
 
 
 def _said(evidence: Evidence, names: Coordinate, amount: float) -> str:
-    """A coordinate, how far off it is drawn and to which side."""
     coordinate, *others = names
     point, _, axis = coordinate.rpartition(".")
     place = evidence.scene.mechanism.points[point]["xyz".index(axis)]
     direction = np.eye(3)["xyz".index(axis)] * np.sign(amount)
-    words = [word for way, word in TOO.items() if evidence.axes.component(direction, way) > 0.999]
+    words = [
+        word for way, word in TOO.items() if evidence.scene.mechanism.axes.component(direction, way) > 0.999
+    ]
     word = words[0] if words else "large" if amount > 0.0 else "small"
     with_it = "".join(f", and {other.rpartition('.')[0]} with it" for other in others)
     drawn = f"{abs(amount):.4g} mm too {word}, at {place + amount:.6g} for {place:.6g}"

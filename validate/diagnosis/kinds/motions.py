@@ -82,7 +82,6 @@ def _number(name: str, which: int) -> Change:
 
 
 def _times(law: Content, factor: float) -> Content:
-    """A law as plain data, so many times itself."""
     ((kind, of),) = law.items()
     if kind == "sum":
         return {kind: [_times(term, factor) for term in of]}
@@ -111,7 +110,6 @@ def _meant(amount: float, size: float) -> float:
 
 
 def _said(evidence: Evidence, name: str, factor: float, more: float) -> str:
-    """An input that is taken as k times itself and so much more, in words."""
     unit = evidence.scene.mechanism.topology.input_units[name]
     by = f"{abs(more):.6g} {unit} {'more' if more > 0.0 else 'less'}"
     if factor == 1.0:

@@ -141,7 +141,7 @@ def exchanged_axes(evidence: Evidence) -> Iterator[Hypothesis]:
 
 def mirrored(evidence: Evidence) -> Iterator[Hypothesis]:
     """Left for right: vectors are mirrored in the car's middle plane, angles that count outboard stay."""
-    right = evidence.axes.right
+    right = evidence.scene.mechanism.axes.right
     matrix = np.eye(3) - 2.0 * np.outer(right, right)
     rows = {row: (evidence.held[row], evidence.allowed[row]) for row in evidence.held}
     rows |= _in_axes(evidence, matrix, evidence.held)
@@ -182,7 +182,7 @@ def other_definitions(evidence: Evidence) -> Iterator[Hypothesis]:
         if start is None or end is None:
             continue
         length = np.linalg.norm(end - start, axis=-1)
-        axes = evidence.axes.on(wheel.side)
+        axes = evidence.scene.mechanism.axes.on(wheel.side)
         p, q = (axes.component(end - start, direction) for direction in (angle.sine, angle.cosine))
         # The line is a difference of coordinates that are each rounded; a few such roundings.
         size = max(float(np.abs(start).max()), float(np.abs(end).max()))
