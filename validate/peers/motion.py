@@ -62,6 +62,9 @@ def numbers(
 ) -> dict[str, dict[str, Array]]:
     """All that is known of a motion, by quantity and name, in the car's axes, mm, s and rad.
 
+    How the chassis moves and what a wheel's numbers are is the reference's: a program is a witness of where
+    points of the mechanism are relative to the chassis, and how they move there.
+
     Args:
         inputs: what moves the chassis; it rests where there are none.
         effects: names of the numbers of the wheels that are wanted, see `spanning_tree.wheels`.
