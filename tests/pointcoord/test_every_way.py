@@ -135,6 +135,7 @@ def test_every_number_is_within_its_proven_bound_of_the_reference(name: str, way
     truth, scene = exact(name).numbers, asked(name)
     effects = [effect for effect in scene.effects if given(effect, way)]
     numbers, bounds = WAYS[way](scene.model_copy(update={"effects": effects}))
+    assert numbers["position"]
     for quantity, channel in numbers.items():
         for own, found in channel.items():
             if own in OF_A_TURN:
