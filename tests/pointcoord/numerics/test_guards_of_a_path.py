@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from pointcoord.numerics.branch import (
     NEAR,
-    hidden,
     on_branch,
     regular_on,
 )
@@ -76,18 +75,6 @@ def test_a_series_is_proven_regular_up_to_where_the_next_singular_pose_lies(
     assume(abs(least) > 1e-6)
     found = regular_on(PARABOLA, series[None, 0], series[1:, None], range(series.shape[-1]))
     assert found.tolist() == [least > 0.0]
-
-
-def test_a_pose_within_rounding_of_a_meeting_is_hidden_and_no_other() -> None:
-    # Of u^2 = w a pose is off by a rounding of u, some 1e-16 u, and alone up to 2 u: nothing hides it.
-    # With w = (w + 1) - 1 it is off by that of w, 1e-16 / u.
-    rows = [(Product(1.0, (0, 2), (0, 2)), Product(-1.0, (1, 2), (3, 2)), Product(1.0, (4, 2), (3, 2)))]
-    shifted = quadratic_map(rows, unknowns=1, size=5)
-    for u, plain, moved in ((1e-3, False, False), (1e-6, False, False), (1e-9, False, True)):
-        y = np.array([u, u * u, 0.0, 1.0])
-        assert bool(hidden(PARABOLA, y, factorise(np.array([[2.0 * u]])))) is plain
-        y = np.array([u, 1.0 + u * u, 0.0, 1.0, 1.0])
-        assert bool(hidden(shifted, y, factorise(np.array([[2.0 * u]])))) is moved
 
 
 def path_to(w: float) -> tuple[float, float]:
