@@ -86,8 +86,9 @@ class CloseInstants:
                 laws = self._laws(times) if len(cells) else np.empty((0, 0))
                 for low in range(0, laws.shape[1], MOST):
                     stand = rows[still:, low : low + MOST]
-                    np.matmul(self._added[still:, :-1], laws[:, low : low + MOST], out=stand)
-                    stand += self._added[still:, -1:]
+                    stand[...] = self._added[still:, -1:]
+                    if len(laws):
+                        stand += self._added[still:, :-1] @ laws[:, low : low + MOST]
                 while len(cells):
                     good = self._narrow(cells, times)
                     coefficients, fits = self._coefficients(cells[good], times)
