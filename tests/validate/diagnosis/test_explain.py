@@ -395,6 +395,23 @@ def test_inputs_that_are_taken_otherwise_are_the_first_diagnosis_and_the_only_on
     assert {"position", "velocity", "acceleration"} <= set(only.quantities)
 
 
+def test_an_input_that_is_a_sum_is_taken_otherwise_as_a_whole() -> None:
+    scene, _ = solved("double-wishbone")
+    rack = scene.inputs["rack"]
+    summed, wrong = (
+        scene.model_copy(update={"inputs": {**scene.inputs, "rack": InputPart(sum=terms)}})
+        for terms in (
+            (rack, InputPart(constant=4.0)),
+            (taken(-1.0)(rack), InputPart(constant=-4.0)),
+        )
+    )
+    held, found = (formulation("pointcoord").solve(one) for one in (summed, wrong))
+    given = held.with_numbers(found.numbers)
+    (only,) = explain_outcome(summed, compare_solutions(summed, held, given, "summed"))
+    assert (only.kind, only.leftover <= 1.0) == ("input", True)
+    assert only.words.endswith(": the input rack has the other sign")
+
+
 def test_another_assembly_of_the_same_links_is_told_as_one() -> None:
     # The tie rod's other side: its outer end mirrored in the plane of its inner end and the kingpin keeps all
     # three distances, and the knuckle's other points turn about the kingpin with it.
