@@ -4,7 +4,7 @@ The rows are first scaled by powers of two to a largest entry near 1, which chan
 LU with partial pivoting then gives the inverse, because the condition number and the error bound of
 a pose need it anyway; each solution is refined once with its own residual, which gives it the accuracy
 of the LU solve (Higham, Accuracy and Stability of Numerical Algorithms, ch. 12 and 14). A large matrix of
-few entries is inverted block after block (see `block_inverse`), and its solutions are found so too.
+few entries is factorised by sparse algebra (see `few_entries`), and its solutions are found so too.
 """
 
 from __future__ import annotations
@@ -15,8 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics import block_inverse
-from pointcoord.numerics.block_inverse import Substitution, inverse_by_blocks
+from pointcoord.numerics.few_entries import LARGE, SparseFactors, sparse_inverse
 from pointcoord.numerics.rounding import EPS
 
 Array = NDArray[np.float64]
@@ -36,27 +35,27 @@ class Factors:
         row_scale: the power of two that scales each row, shape (..., n).
         condition: condition number of the scaled matrix in the maximum norm, shape (...,); infinite
             where the matrix is exactly singular.
-        substitution: solutions of the scaled matrix by its blocks, if it was inverted so.
+        sparse: factors of the scaled matrix, if it is large and has few entries.
     """
 
     matrix: Array
     inverse: Array
     row_scale: Array
     condition: Array
-    substitution: Substitution | None = None
+    sparse: SparseFactors | None = None
 
     def solve(self, right: Array) -> Array:
         """x with matrix x = right, shapes (..., n), refined once."""
         rows = right * self.row_scale
-        if self.substitution is not None:
-            found = self.substitution.solve(rows)
-            return np.asarray(found + self.substitution.solve(rows - self._times(found)))
+        if self.sparse is not None:
+            found = self.sparse.solve(rows)
+            return np.asarray(found + self.sparse.solve(rows - self._times(found)))
         found = np.matvec(self.inverse, rows)
         return np.asarray(found + np.matvec(self.inverse, rows - np.matvec(self.matrix, found)))
 
     def solve_many(self, rights: Array) -> Array:
         """The same of several right-hand sides for each matrix, (m, ..., n)."""
-        if self.substitution is not None:
+        if self.sparse is not None:
             return self.solve(rights)
         rows = rights * self.row_scale
         found = _times(rows, self.inverse)
@@ -70,7 +69,7 @@ class Factors:
         is that of the old one.
         """
         scaled = matrix * self.row_scale[..., None]
-        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.substitution)
+        return Factors(scaled, self.inverse, self.row_scale, self.condition, self.sparse)
 
     def _times(self, x: Array) -> Array:
         """The product with vectors of shape (..., n), of the matrix' entries only."""
@@ -93,7 +92,7 @@ class Factors:
             self.inverse.reshape(*batch, n, n),
             self.row_scale.reshape(*batch, n),
             self.condition.reshape(batch),
-            None if self.substitution is None else self.substitution.reshaped(batch),
+            None if self.sparse is None else self.sparse.reshaped(batch),
         )
 
     def taken(self, members: NDArray[np.intp]) -> Factors:
@@ -103,7 +102,7 @@ class Factors:
             self.inverse[members],
             self.row_scale[members],
             self.condition[members],
-            None if self.substitution is None else self.substitution.taken(members),
+            None if self.sparse is None else self.sparse.taken(members),
         )
 
     def part(self, rows: Indices, unknowns: Indices) -> Factors:
@@ -150,10 +149,10 @@ def factorise(matrix: Array) -> Factors:
     sound = usable.all(axis=-1)
     whole = bool(sound.all())
     safe = scaled if whole else _with_identity(scaled, sound)
-    blocks = inverse_by_blocks(safe) if whole else None
-    if blocks is not None:
-        own, substitution = blocks
-        return Factors(scaled, own, row_scale, _condition(scaled, own), substitution)
+    found = sparse_inverse(safe) if whole else None
+    if found is not None:
+        own, sparse = found
+        return Factors(scaled, own, row_scale, _condition(scaled, own), sparse)
     try:
         inverse = np.linalg.inv(safe)
     except np.linalg.LinAlgError:
@@ -175,7 +174,7 @@ def _condition(matrix: Array, inverse: Array) -> Array:
 
 def _norm(matrix: Array) -> Array:
     """The largest sum of magnitudes of a row, shape (...,)."""
-    if matrix.shape[-2] < block_inverse.LARGE:
+    if matrix.shape[-2] < LARGE:
         # A product takes a fraction of the time of a reduction.
         return np.asarray((np.abs(matrix) @ np.ones(matrix.shape[-1])).max(axis=-1))
     parts = (matrix[..., low : low + ROWS, :] for low in range(0, matrix.shape[-2], ROWS))

@@ -159,10 +159,10 @@ def _solved_sums(factors: Factors, terms: MovingProducts) -> tuple[Combine, Comb
     """From sums of products, (powers, ..., count), to what they take off the unknowns and off their factors.
 
     The unknowns lose C_u^-1 times the rows that the sums make, (powers, ..., n), and the factors of all
-    products the differences of these. Of a matrix that is not inverted by blocks both are one product of
+    products the differences of these. Of a matrix that is not large and sparse both are one product of
     matrices, made beforehand.
     """
-    if factors.substitution is not None:
+    if factors.sparse is not None:
 
         def substituted(sums: Array) -> Array:
             return factors.solve_many(terms.gather(sums))

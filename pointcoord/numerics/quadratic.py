@@ -21,8 +21,8 @@ from math import frexp
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.block_inverse import product_of_few_entries
 from pointcoord.numerics.block_order import BlockOrder, block_order_of
+from pointcoord.numerics.few_entries import product_of_few_entries
 from pointcoord.numerics.rounding import UNIT_ROUNDOFF
 
 Array = NDArray[np.float64]

@@ -22,9 +22,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.block_inverse import LARGE
 from pointcoord.numerics.branch import hidden, orientation, same_side
 from pointcoord.numerics.counters import Work
+from pointcoord.numerics.few_entries import LARGE
 from pointcoord.numerics.linear import Factors, factorise
 from pointcoord.numerics.newton import factors_at, newton_refine
 from pointcoord.numerics.power_series import expand

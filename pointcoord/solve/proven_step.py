@@ -26,7 +26,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from pointcoord.numerics.block_inverse import product_of_few_entries
+from pointcoord.numerics.few_entries import product_of_few_entries
 from pointcoord.numerics.kantorovich import nearer_perron
 from pointcoord.numerics.multi_index import products
 from pointcoord.numerics.power_series import multiplied, powers_first
